@@ -8,6 +8,24 @@
 namespace photorque {
 namespace {
 
+namespace target_key {
+constexpr TextKey node("node", "a node of the scene, with the nodes below it");
+constexpr TextKey name("name", "of the results", {.usually = "the node"});
+}  // namespace target_key
+
+namespace grid_key {
+constexpr NumbersKey bins("bins", {1.0, max_grid_bins}, "whole numbers: [along u, along v]",
+                          {.optional = true, .size = 2});
+constexpr ChoiceKey over("over",
+                         {{"plane", "a plane that fits the surface"},
+                          {"uv", "the texture coordinates"}},
+                         0, "what the bins lie on");
+constexpr ChoiceKey side("side", {"front", "back", "both"}, "which side of the surface counts");
+constexpr Vec3Key facing("facing",
+                         "only faces turned towards this body direction; closed bodies need it",
+                         {.usually = "all faces"});
+}  // namespace grid_key
+
 // Every name that `node` could have been: the components of all paths.
 std::set<std::string> node_names(const Scene& scene) {
   std::set<std::string> names;
@@ -41,12 +59,12 @@ std::string file_stem(std::string name) {
 }
 
 std::string read_name(const Settings& settings, const std::string& otherwise) {
-  const std::string name = settings.text_or("name", otherwise);
-  if (name.empty()) throw settings.error("name", "an empty text", "a name");
+  const std::string name = settings.get_or(target_key::name, otherwise);
+  if (name.empty()) throw settings.error(target_key::name, "an empty text", "a name");
   // Files are called by it, with a few words before and after.
   constexpr size_t longest = 150;
   if (name.size() > longest) {
-    throw settings.error("name", std::to_string(name.size()) + " letters", "at most 150");
+    throw settings.error(target_key::name, std::to_string(name.size()) + " letters", "at most 150");
   }
   return file_stem(name);
 }
@@ -55,7 +73,7 @@ int read_bins(const Settings& settings, double bins) {
   if (!(bins >= 1 && bins <= max_grid_bins && bins == std::floor(bins))) {
     std::ostringstream found;
     found << bins;
-    throw settings.error("bins", found.str(),
+    throw settings.error(grid_key::bins, found.str(),
                          "two whole numbers from 1 to " + std::to_string(max_grid_bins));
   }
   return static_cast<int>(bins);
@@ -64,18 +82,18 @@ int read_bins(const Settings& settings, double bins) {
 }  // namespace
 
 ReceiverTarget read_target(const Settings& settings, const Scene& scene) {
-  const std::string node = settings.text("node");
+  const std::string node = settings.get(target_key::node);
   std::vector<uint32_t> instances;
   if (!node.empty()) instances = scene.instances_of(node);
   if (instances.empty()) {
-    throw settings.error("node", "\"" + node + "\"", known_nodes(scene, node));
+    throw settings.error(target_key::node, "\"" + node + "\"", known_nodes(scene, node));
   }
   return {read_name(settings, node.substr(node.find_last_of('/') + 1)), std::move(instances)};
 }
 
 ReceiverTarget read_target_or_all(const Settings& settings, const Scene& scene,
                                   const std::string& otherwise_name) {
-  if (settings.has("node")) return read_target(settings, scene);
+  if (settings.has(target_key::node)) return read_target(settings, scene);
   std::vector<uint32_t> all(scene.instances.size());
   std::iota(all.begin(), all.end(), 0u);
   return {read_name(settings, otherwise_name), std::move(all)};
@@ -86,58 +104,43 @@ SurfaceGrid read_surface_grid(const Settings& settings, const Scene& scene,
   SurfaceGridOptions options;
   options.where = settings.where();
   options.key = settings.name();
-  if (settings.has("bins")) {
-    const std::vector<double> bins = settings.numbers("bins");
+  if (settings.has(grid_key::bins)) {
+    const std::vector<double> bins = settings.numbers(grid_key::bins);
     if (bins.size() != 2) {
-      throw settings.error("bins", "an array of " + std::to_string(bins.size()),
+      throw settings.error(grid_key::bins, "an array of " + std::to_string(bins.size()),
                            "two whole numbers");
     }
     options.width = read_bins(settings, bins[0]);
     options.height = read_bins(settings, bins[1]);
   }
-  options.over = settings.choice_or("over", {"plane", "uv"}, 0) == 0 ? SurfaceGrid::Over::plane
-                                                                     : SurfaceGrid::Over::texture;
+  options.over =
+      settings.get(grid_key::over) == 0 ? SurfaceGrid::Over::plane : SurfaceGrid::Over::texture;
   options.side = static_cast<Side>(
-      settings.choice_or("side", {"front", "back", "both"}, static_cast<size_t>(default_side)));
-  if (settings.has("facing")) {
-    options.facing_body = settings.vector3("facing");
+      settings.get(grid_key::side.with_default(static_cast<size_t>(default_side))));
+  if (settings.has(grid_key::facing)) {
+    options.facing_body = settings.get(grid_key::facing);
     if (!(options.facing_body->norm() > 0.0)) {
-      throw settings.error("facing", "[0, 0, 0]", "a direction in body axes");
+      throw settings.error(grid_key::facing, "[0, 0, 0]", "a direction in body axes");
     }
   }
   return make_surface_grid(scene, target.instances, options);
 }
 
 std::vector<Key> target_keys() {
-  return {Key::text("node", "a node of the scene, with the nodes below it"),
-          Key::text("name", "of the results").usually_is("the node")};
+  return {target_key::node, target_key::name};
 }
 
 std::vector<Key> target_or_all_keys(const std::string& otherwise_name) {
-  return {
-      Key::text("node", "a node of the scene, with the nodes below it").usually_is("everything"),
-      Key::text("name", "of the results").usually_is("the node, or `" + otherwise_name + "`")};
+  return {target_key::node.usually("everything"),
+          target_key::name.usually("the node, or `" + otherwise_name + "`")};
 }
 
 std::vector<Key> surface_grid_keys(Side default_side) {
-  Key bins =
-      Key::numbers("bins", {1.0, max_grid_bins}, "whole numbers: [along u, along v]").of_size(2);
-  bins.required = false;
+  using namespace grid_key;
+  Key counts = bins;
   const SurfaceGridOptions usual;
-  bins.otherwise = {SettingsNode::Array{{int64_t{usual.width}}, {int64_t{usual.height}}}};
-  return {
-      bins,
-      Key::choice_or(
-          "over", {{"plane", "a plane that fits the surface"}, {"uv", "the texture coordinates"}},
-          0, "what the bins lie on"),
-      Key::choice_or("side", words({"front", "back", "both"}), static_cast<size_t>(default_side),
-                     "which side of the surface counts"),
-      Key::vector3("facing", "only faces turned towards this body direction; closed bodies need it")
-          .usually_is("all faces")};
-}
-
-Key torque_point_key() {
-  return Key::vector3_or("about_m", Vec3::Zero(), "the point that torques are about, body axes");
+  counts.otherwise = {SettingsNode::Array{{int64_t{usual.width}}, {int64_t{usual.height}}}};
+  return {counts, over, side.with_default(static_cast<size_t>(default_side)), facing};
 }
 
 }  // namespace photorque

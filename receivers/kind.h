@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/settings/keys.h"
-#include "core/settings/settings.h"
+#include "core/settings/typed_keys.h"
 #include "raytrace/receiver.h"
 #include "raytrace/scene.h"
 #include "receivers/surface_grid.h"
@@ -67,10 +66,13 @@ SurfaceGrid read_surface_grid(const Settings& settings, const Scene& scene,
                               const ReceiverTarget& target, Side default_side);
 
 // The keys of read_target(), or of read_target_or_all() with that name; those of
-// read_surface_grid(); and the point of torques.
+// read_surface_grid().
 std::vector<Key> target_keys();
 std::vector<Key> target_or_all_keys(const std::string& otherwise_name);
 std::vector<Key> surface_grid_keys(Side default_side);
-Key torque_point_key();
+
+// The point of torques.
+inline constexpr Vec3Key torque_point("about_m", {0.0, 0.0, 0.0},
+                                      "the point that torques are about, body axes");
 
 }  // namespace photorque

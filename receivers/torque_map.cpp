@@ -96,6 +96,14 @@ Product TorqueMapReceiver::product(const BinSums& sums) const {
 
 namespace kinds::torque_map {
 
+constexpr ChoiceKey force_key(
+    "force",
+    {{"momentum", "momentum in minus momentum out"},
+     {"as_published",
+      "equation 29 of the paper as it stands: all light absorbed, and the cosine, which the "
+      "irradiance on a surface holds already, taken once more ([paper.md](paper.md))"}},
+    0, "what light does to an element");
+
 ReceiverKind kind() {
   return {"torque_map", "Torque of light per bin of a surface",
           [](const Settings& settings, const Scene& scene) -> MadeReceiver {
@@ -105,21 +113,10 @@ ReceiverKind kind() {
             // Light pushes on either side, so that the total is the torque on the node.
             const auto map = std::make_shared<const TorqueMapReceiver>(
                 target.name, scene, read_surface_grid(settings, scene, target, Side::both),
-                settings.vector3_or("about_m", Vec3::Zero()),
-                forces[settings.choice_or("force", {"momentum", "as_published"}, 0)]);
+                settings.get(torque_point), forces[settings.get(force_key)]);
             return {.receiver = map, .torque_map = map};
           },
-          joined({target_keys(),
-                  surface_grid_keys(Side::both),
-                  {torque_point_key(),
-                   Key::choice_or(
-                       "force",
-                       {{"momentum", "momentum in minus momentum out"},
-                        {"as_published",
-                         "equation 29 of the paper as it stands: all light absorbed, and the "
-                         "cosine, which the irradiance on a surface holds already, taken once more "
-                         "([paper.md](paper.md))"}},
-                       0, "what light does to an element")}})};
+          joined({target_keys(), surface_grid_keys(Side::both), {torque_point, force_key}})};
 }
 
 }  // namespace kinds::torque_map

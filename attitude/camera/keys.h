@@ -1,11 +1,106 @@
-// The keys of a camera that sees markers, and [camera_study], as they are declared.
+// The keys of a camera that sees markers, and [camera_study].
 #pragma once
 
 #include <vector>
 
-#include "core/settings/keys.h"
+#include "core/constants.h"
+#include "core/settings/typed_keys.h"
 
 namespace photorque {
+
+namespace tracking_key {
+inline constexpr Vec3sKey markers(
+    "markers_m",
+    "places of the markers, body axes, two or more, four of a free pose: the noise then "
+    "follows from board, lens and sensor, in place of `noise_arcsec`",
+    {.optional = true});
+inline constexpr Vec3Key marker_normal("marker_normal", {0.0, 0.0, 1.0},
+                                       "where they shine to, body axes, any length");
+inline constexpr Vec3sKey marker_error(
+    "marker_error_m",
+    "one per marker: where they are in truth, less `markers_m`; turns every attitude that "
+    "is recorded, and the filter does not know",
+    {.usually = "none"});
+inline constexpr NumberKey intensity("intensity_W_sr", Range::positive(),
+                                     "radiant intensity of a marker along its normal",
+                                     {.optional = true});
+inline constexpr NumberKey half_angle(
+    "half_angle_deg", {0.0, 0.5 * pi, true, true},
+    "at which it has fallen to half, by a power of the cosine: 60 is Lambert's law",
+    {.optional = true});
+inline constexpr NumberKey wavelength("wavelength_nm", {1e-7, 2e-6}, "of the markers",
+                                      {.optional = true});
+inline constexpr NumberKey focal_length("focal_length_mm", Range::positive(), "of the lens",
+                                        {.optional = true});
+inline constexpr NumberKey f_number("f_number", {0.5, 128.0}, "of the lens", {.optional = true});
+inline constexpr NumberKey transmittance("transmittance", {0.0, 1.0, true, false},
+                                         "of lens and filter", {.optional = true});
+inline constexpr NumberKey spot("spot_px", {0.3, 50.0},
+                                "standard deviation of a spot besides diffraction and motion",
+                                {.optional = true});
+inline constexpr NumbersKey distortion(
+    "distortion", {-10.0, 10.0},
+    "of the lens as calibrated, which the pose knows: [k1, k2, p1, p2], radial and "
+    "tangential, as OpenCV defines them",
+    {.usually = "none", .size = 4});
+inline constexpr NumbersKey distortion_error(
+    "distortion_error", {-10.0, 10.0},
+    "that of the lens, less `distortion`: turns every attitude that is recorded, and "
+    "the filter does not know",
+    {.usually = "none", .size = 4});
+inline constexpr NumberKey pixel("pixel_um", {1e-7, 1e-3}, "of the sensor", {.optional = true});
+inline constexpr NumbersKey resolution("resolution", {8.0, 65536.0},
+                                       "of the sensor: [columns, rows]",
+                                       {.optional = true, .size = 2});
+inline constexpr NumberKey exposure("exposure_s", Range::positive(),
+                                    "no pixel may be beyond the full well at zero tilt",
+                                    {.optional = true});
+inline constexpr NumberKey line_time("line_time_s", Range::not_negative(),
+                                     "rolling shutter: a row begins so much after the one above it",
+                                     {.optional = true});
+inline constexpr NumberKey quantum_efficiency("quantum_efficiency", {0.0, 1.0, true, false},
+                                              "of the sensor", {.optional = true});
+inline constexpr NumberKey read_noise_electrons("read_noise_electrons", Range::positive(),
+                                                "of a pixel", {.optional = true});
+inline constexpr NumberKey background_electrons("background_electrons", Range::not_negative(),
+                                                "of a pixel in an exposure", {.optional = true});
+inline constexpr NumberKey full_well_electrons("full_well_electrons", Range::positive(),
+                                               "of a pixel", {.optional = true});
+inline constexpr Vec3Key position("position_m", "of the camera, lab axes", {.optional = true});
+inline constexpr Vec3Key aim("aim_m", {0.0, 0.0, 0.0}, "where its optical axis passes, lab axes");
+inline constexpr ChoiceKey pose("pose",
+                                {{"about_centre", "the centre of rotation is known"},
+                                 {"free", "the position is found too"}},
+                                0, "what is known of the platform's place");
+inline constexpr ChoiceKey pose_weights("pose_weights",
+                                        {{"information",
+                                          "the more a spot's image says of its centre"},
+                                         {"equal", "as solvers do that know no errors"}},
+                                        0, "how the pose weighs markers");
+}  // namespace tracking_key
+
+namespace study_key {
+inline constexpr NumberKey max_tilt("max_tilt_deg", {0.0, 0.5 * pi, true, true}, "of the tables",
+                                    {.usually = "the platform's stop, else 30"});
+inline constexpr Vec3Key rate("rate_rad_s", {0.0, 0.0, 0.0},
+                              "of the platform while images are taken, body axes");
+inline constexpr NumberKey calibration("calibration_px", Range::positive(),
+                                       "error of calibration in the tables", {.optional = true});
+inline constexpr NumbersKey distortion_error(
+    "distortion_error", {-10.0, 10.0}, "[k1, k2, p1, p2] that no calibration knows, in the tables",
+    {.usually = "[-0.1, 0, 1e-3, 1e-3]", .size = 4});
+inline constexpr IntegerKey images("images", 10, 1'000'000, "simulated at each of four attitudes",
+                                   {.optional = true});
+inline constexpr IntegerKey grid("grid", 5, 1000, "bins of the maps along a side",
+                                 {.optional = true});
+inline constexpr NumbersKey focal_length("focal_length_mm", Range::positive(),
+                                         "[from, to] of the map over lens and board",
+                                         {.usually = "0.75 to 1.5 times the lens", .size = 2});
+inline constexpr NumbersKey board_scale("board_scale", Range::positive(),
+                                        "[from, to] of the same map",
+                                        {.usually = "[0.5, 2]", .size = 2});
+inline constexpr TableKey camera_study("camera_study", "what `camera` looks at");
+}  // namespace study_key
 
 // read_tracking_camera().
 std::vector<Key> tracking_camera_keys();

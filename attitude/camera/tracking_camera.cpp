@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "attitude/camera/keys.h"
 #include "attitude/camera/spot.h"
 #include "core/constants.h"
 #include "core/transform.h"
@@ -15,50 +16,52 @@ double emission(double cosine, double half_angle_rad) {
 }
 
 void read_markers(const Settings& s, TrackingCamera& camera) {
-  const Vec3 normal = s.vector3_or("marker_normal", Vec3::UnitZ());
-  if (!(normal.norm() > 0.0)) throw s.error("marker_normal", "no direction", "a direction");
-  for (const Vec3& position_m : s.vectors3("markers_m")) {
+  const Vec3 normal = s.get(tracking_key::marker_normal);
+  if (!(normal.norm() > 0.0))
+    throw s.error(tracking_key::marker_normal, "no direction", "a direction");
+  for (const Vec3& position_m : s.get(tracking_key::markers)) {
     camera.markers.push_back({position_m, normal.normalized(), true});
   }
-  if (s.has("marker_error_m")) camera.marker_error_body_m = s.vectors3("marker_error_m");
+  if (s.has(tracking_key::marker_error))
+    camera.marker_error_body_m = s.get(tracking_key::marker_error);
   if (!camera.marker_error_body_m.empty() &&
       camera.marker_error_body_m.size() != camera.markers.size()) {
-    throw s.error("marker_error_m", std::to_string(camera.marker_error_body_m.size()) + " errors",
+    throw s.error(tracking_key::marker_error,
+                  std::to_string(camera.marker_error_body_m.size()) + " errors",
                   "one for each of the " + std::to_string(camera.markers.size()) + " markers");
   }
-  camera.radiant_intensity_W_sr = s.number("intensity_W_sr", Range::positive());
-  camera.half_angle_rad =
-      s.number_or("half_angle_deg", camera.half_angle_rad, {0.0, 0.5 * pi, true, true});
-  camera.wavelength_m = s.number_or("wavelength_nm", camera.wavelength_m, {1e-7, 2e-6});
+  camera.radiant_intensity_W_sr = s.get(tracking_key::intensity);
+  camera.half_angle_rad = s.get_or(tracking_key::half_angle, camera.half_angle_rad);
+  camera.wavelength_m = s.get_or(tracking_key::wavelength, camera.wavelength_m);
 }
 
 void read_sensor(const Settings& s, TrackingCamera& camera) {
-  camera.pixel_m = s.number("pixel_um", {1e-7, 1e-3});
-  const std::vector<double> size = s.numbers("resolution", {8.0, 65536.0});
+  camera.pixel_m = s.get(tracking_key::pixel);
+  const std::vector<double> size = s.get(tracking_key::resolution);
   if (size.size() != 2) {
-    throw s.error("resolution", std::to_string(size.size()) + " numbers", "[columns, rows]");
+    throw s.error(tracking_key::resolution, std::to_string(size.size()) + " numbers",
+                  "[columns, rows]");
   }
   camera.width = static_cast<int>(size[0]);
   camera.height = static_cast<int>(size[1]);
-  camera.exposure_s = s.number("exposure_s", Range::positive());
-  camera.line_time_s = s.number_or("line_time_s", 0.0, Range::not_negative());
-  camera.quantum_efficiency =
-      s.number_or("quantum_efficiency", camera.quantum_efficiency, {0.0, 1.0, true, false});
+  camera.exposure_s = s.get(tracking_key::exposure);
+  camera.line_time_s = s.get_or(tracking_key::line_time, 0.0);
+  camera.quantum_efficiency = s.get_or(tracking_key::quantum_efficiency, camera.quantum_efficiency);
   camera.read_noise_electrons =
-      s.number_or("read_noise_electrons", camera.read_noise_electrons, Range::positive());
+      s.get_or(tracking_key::read_noise_electrons, camera.read_noise_electrons);
   camera.background_electrons =
-      s.number_or("background_electrons", camera.background_electrons, Range::not_negative());
+      s.get_or(tracking_key::background_electrons, camera.background_electrons);
   camera.full_well_electrons =
-      s.number_or("full_well_electrons", camera.full_well_electrons, Range::positive());
+      s.get_or(tracking_key::full_well_electrons, camera.full_well_electrons);
 }
 
 void read_place(const Settings& s, TrackingCamera& camera) {
-  const Vec3 position_m = s.vector3("position_m");
-  const Vec3 direction = s.vector3_or("aim_m", Vec3::Zero()) - position_m;
-  if (!(direction.norm() > 0.0)) throw s.error("aim_m", "position_m", "another point");
+  const Vec3 position_m = s.get(tracking_key::position);
+  const Vec3 direction = s.get(tracking_key::aim) - position_m;
+  if (!(direction.norm() > 0.0)) throw s.error(tracking_key::aim, "position_m", "another point");
   camera.lab_from_camera = frame_looking_along(direction, position_m);
-  camera.knows_centre = s.choice_or("pose", {"about_centre", "free"}, 0) == 0;
-  camera.weighs_alike = s.choice_or("pose_weights", {"information", "equal"}, 0) == 1;
+  camera.knows_centre = s.get(tracking_key::pose) == 0;
+  camera.weighs_alike = s.get(tracking_key::pose_weights) == 1;
 }
 
 // What the signal and the number of markers must be for a pose at zero tilt.
@@ -71,22 +74,22 @@ void check_view(const Settings& s, const TrackingCamera& camera) {
     ++seen;
     const double peak = brightest_pixel(spot_of(camera, *view)) + camera.background_electrons;
     if (peak > camera.full_well_electrons) {
-      throw s.error("exposure_s",
+      throw s.error(tracking_key::exposure,
                     "a spot of " + std::to_string(std::lround(peak)) + " electrons in a pixel",
                     "at most full_well_electrons");
     }
   }
   if (seen < least) {
-    throw s.error("markers_m",
+    throw s.error(tracking_key::markers,
                   std::to_string(seen) + " in the image at zero tilt, of " +
                       std::to_string(camera.markers.size()),
                   "at least " + std::to_string(least));
   }
 }
 
-Distortion read_distortion(const Settings& s, const char* key) {
+Distortion read_distortion(const Settings& s, const NumbersKey& key) {
   if (!s.has(key)) return {};
-  const std::vector<double> numbers = s.numbers(key, {-10.0, 10.0});
+  const std::vector<double> numbers = s.get(key);
   if (numbers.size() != 4) {
     throw s.error(key, std::to_string(numbers.size()) + " numbers", "[k1, k2, p1, p2]");
   }
@@ -95,7 +98,7 @@ Distortion read_distortion(const Settings& s, const char* key) {
 
 // The image must grow with the angle as far as the sensor's corners: beyond, places would be seen
 // twice.
-void check_distortion(const Settings& s, const char* key, const TrackingCamera& camera,
+void check_distortion(const Settings& s, const NumbersKey& key, const TrackingCamera& camera,
                       const Distortion& distortion) {
   const Vec2 corner =
       0.5 * Vec2(camera.width, camera.height) * camera.pixel_m / camera.focal_length_m;
@@ -132,19 +135,18 @@ Eigen::Matrix2d Distortion::slope(const Vec2& u) const {
 }
 
 std::optional<TrackingCamera> read_tracking_camera(const Settings& settings) {
-  if (!settings.has("markers_m")) return {};
+  if (!settings.has(tracking_key::markers)) return {};
   TrackingCamera camera;
   read_markers(settings, camera);
-  camera.focal_length_m = settings.number("focal_length_mm", Range::positive());
-  camera.f_number = settings.number_or("f_number", camera.f_number, {0.5, 128.0});
-  camera.transmittance =
-      settings.number_or("transmittance", camera.transmittance, {0.0, 1.0, true, false});
-  camera.spot_px = settings.number_or("spot_px", camera.spot_px, {0.3, 50.0});
+  camera.focal_length_m = settings.get(tracking_key::focal_length);
+  camera.f_number = settings.get_or(tracking_key::f_number, camera.f_number);
+  camera.transmittance = settings.get_or(tracking_key::transmittance, camera.transmittance);
+  camera.spot_px = settings.get_or(tracking_key::spot, camera.spot_px);
   read_sensor(settings, camera);
-  camera.distortion = read_distortion(settings, "distortion");
-  camera.distortion_error = read_distortion(settings, "distortion_error");
-  check_distortion(settings, "distortion", camera, camera.distortion);
-  check_distortion(settings, "distortion_error", camera,
+  camera.distortion = read_distortion(settings, tracking_key::distortion);
+  camera.distortion_error = read_distortion(settings, tracking_key::distortion_error);
+  check_distortion(settings, tracking_key::distortion, camera, camera.distortion);
+  check_distortion(settings, tracking_key::distortion_error, camera,
                    camera.distortion + camera.distortion_error);
   read_place(settings, camera);
   check_view(settings, camera);

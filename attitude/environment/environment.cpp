@@ -8,6 +8,34 @@
 namespace photorque {
 namespace {
 
+namespace environment_key {
+constexpr Range latitudes{-0.5 * pi, 0.5 * pi, false, false}, years{1900.0, 2035.0, false, false};
+constexpr NumberKey gravity(
+    "gravity_m_s2", standard_gravity_m_s2, Range::not_negative(),
+    "along lab −z; without it a free platform, and any with `[environment.sun]`, feels no weight");
+constexpr NumberKey latitude("latitude_deg", latitudes, "for `earth_rotation`",
+                             {.usually = "that of `igrf`, else 0"});
+constexpr Vec3Key magnetic_field("magnetic_field_T", {0.0, 0.0, 0.0},
+                                 "lab axes: east, north, up; *or*");
+constexpr OtherKey date("date", Key::a_number | Key::a_text | Key::a_date,
+                        "2025-06-30, the same in quotes, or 2025.5; 1900 … 2035",
+                        {.optional = true});
+constexpr NumberKey date_year("date_year", years, "instead of `date`", {.optional = true});
+constexpr NumberKey igrf_latitude("latitude_deg", latitudes, "geodetic");
+constexpr NumberKey longitude("longitude_deg", {}, "east");
+constexpr NumberKey height("height_m", 0.0, {-12e3, 1e10, false, false}, "above the ellipsoid");
+constexpr TableKey igrf("igrf", "the field by IGRF-14");
+constexpr NumberKey air_temperature("air_temperature_K", room_temperature_K,
+                                    {100.0, 1000.0, false, false}, "of the air around");
+constexpr NumberKey air_pressure("air_pressure_Pa", room_pressure_Pa, Range::not_negative(),
+                                 "of the air around");
+constexpr NumberKey air_density("air_density_kg_m3", Range::not_negative(), "from the two above",
+                                {.usually = "ideal gas, dry"});
+constexpr NumberKey air_viscosity("air_viscosity_Pa_s", Range::positive(), "from the temperature",
+                                  {.usually = "Sutherland's law"});
+constexpr TableKey environment("environment", "what surrounds the platform");
+}  // namespace environment_key
+
 // Specific gas constant of dry air, and Sutherland's law: see environment.h.
 double dry_air_density_kg_m3(double pressure_Pa, double temperature_K) {
   return pressure_Pa / (287.05 * temperature_K);
@@ -20,66 +48,74 @@ double dry_air_viscosity_Pa_s(double temperature_K) {
 
 // date = 2025-06-30, or a decimal year.
 double read_year(const Settings& igrf) {
-  constexpr Range known{1900.0, 2035.0, false, false};
-  if (igrf.has("date_year")) return igrf.number("date_year", known);
-  if (!igrf.has("date")) throw igrf.error("date", "nothing", "a date");
-  if (igrf.raw("date").is_number()) return igrf.number("date", known);
-  const std::string date = igrf.text("date");
+  if (igrf.has(environment_key::date_year)) return igrf.get(environment_key::date_year);
+  if (!igrf.has(environment_key::date))
+    throw igrf.error(environment_key::date, "nothing", "a date");
+  if (igrf.raw(environment_key::date).is_number())
+    return igrf.number(environment_key::date, environment_key::years);
+  const std::string date = igrf.text(environment_key::date);
   const auto day = parse_epoch(date.find('T') == std::string::npos ? date + "T00:00:00" : date);
   const auto year = day ? parse_epoch(date.substr(0, 4) + "-001T00:00:00") : std::nullopt;
   const auto next =
       year ? parse_epoch(std::to_string(std::stoi(date.substr(0, 4)) + 1) + "-001T00:00:00")
            : std::nullopt;
-  if (!next) throw igrf.error("date", "\"" + date + "\"", "a date like 2025-06-30");
+  if (!next) throw igrf.error(environment_key::date, "\"" + date + "\"", "a date like 2025-06-30");
   const double decimal_year =
       std::stoi(date.substr(0, 4)) + day->seconds_since(*year) / next->seconds_since(*year);
-  if (decimal_year < known.low || decimal_year > known.high) {
-    throw igrf.error("date", date, "a date from 1900 to 2035");
+  if (decimal_year < environment_key::years.low || decimal_year > environment_key::years.high) {
+    throw igrf.error(environment_key::date, date, "a date from 1900 to 2035");
   }
   return decimal_year;
 }
 
 Vec3 read_field_lab_T(const Settings& settings) {
-  const bool measured = settings.has("magnetic_field_T");
-  if (!settings.has("igrf")) {
-    return settings.vector3_or("magnetic_field_T", Vec3::Zero());
+  const bool measured = settings.has(environment_key::magnetic_field);
+  if (!settings.has(environment_key::igrf)) {
+    return settings.get(environment_key::magnetic_field);
   }
-  if (measured) throw settings.error("igrf", "a field beside magnetic_field_T", "one of the two");
-  const Settings igrf = settings.table("igrf");
+  if (measured)
+    throw settings.error(environment_key::igrf, "a field beside magnetic_field_T",
+                         "one of the two");
+  const Settings igrf = settings.get(environment_key::igrf);
   const GeomagneticModel model(read_year(igrf));
-  return model.lab_T(GeodeticPosition{
-      igrf.number("latitude_deg", {-pi / 2, pi / 2, false, false}), igrf.number("longitude_deg"),
-      igrf.number_or("height_m", 0.0, {-12e3, 1e10, false, false})});
+  return model.lab_T(GeodeticPosition{igrf.get(environment_key::igrf_latitude),
+                                      igrf.get(environment_key::longitude),
+                                      igrf.get(environment_key::height)});
 }
 
 }  // namespace
 
 Environment read_environment(const Settings& settings) {
   Environment e;
-  const double gravity_m_s2 =
-      settings.number_or("gravity_m_s2", standard_gravity_m_s2, Range::not_negative());
+  const double gravity_m_s2 = settings.get(environment_key::gravity);
   e.gravity_lab_m_s2 = {0.0, 0.0, -gravity_m_s2};
   e.gravity_gradient_1_s2 = gravity_m_s2 / earth_radius_m;
   e.magnetic_field_lab_T = read_field_lab_T(settings);
-  const Range latitudes{-pi / 2, pi / 2, false, false};
   const double of_field_rad =
-      settings.has("igrf") ? settings.table("igrf").number("latitude_deg", latitudes) : 0.0;
-  e.latitude_rad = settings.number_or("latitude_deg", of_field_rad, latitudes);
+      settings.has(environment_key::igrf)
+          ? settings.get(environment_key::igrf).get(environment_key::igrf_latitude)
+          : 0.0;
+  e.latitude_rad = settings.get_or(environment_key::latitude, of_field_rad);
   e.earth_rate_lab_rad_s =
       earth_rate_rad_s * Vec3(0.0, std::cos(e.latitude_rad), std::sin(e.latitude_rad));
 
   if (settings.has("sun")) e.sun = read_sun(settings.table("sun"));
 
-  e.air_temperature_K =
-      settings.number_or("air_temperature_K", e.air_temperature_K, {100.0, 1000.0, false, false});
-  e.air_pressure_Pa =
-      settings.number_or("air_pressure_Pa", e.air_pressure_Pa, Range::not_negative());
-  e.air_density_kg_m3 = settings.number_or(
-      "air_density_kg_m3", dry_air_density_kg_m3(e.air_pressure_Pa, e.air_temperature_K),
-      Range::not_negative());
-  e.air_viscosity_Pa_s = settings.number_or(
-      "air_viscosity_Pa_s", dry_air_viscosity_Pa_s(e.air_temperature_K), Range::positive());
+  e.air_temperature_K = settings.get(environment_key::air_temperature);
+  e.air_pressure_Pa = settings.get(environment_key::air_pressure);
+  e.air_density_kg_m3 = settings.get_or(
+      environment_key::air_density, dry_air_density_kg_m3(e.air_pressure_Pa, e.air_temperature_K));
+  e.air_viscosity_Pa_s =
+      settings.get_or(environment_key::air_viscosity, dry_air_viscosity_Pa_s(e.air_temperature_K));
   return e;
+}
+
+Key environment_table() {
+  using namespace environment_key;
+  return environment.of({gravity, latitude, magnetic_field,
+                         igrf.of({date, date_year, igrf_latitude, longitude, height}),
+                         sun_table().optional(), air_temperature, air_pressure, air_density,
+                         air_viscosity});
 }
 
 }  // namespace photorque

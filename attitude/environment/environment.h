@@ -6,7 +6,7 @@
 
 #include "attitude/environment/sun.h"
 #include "core/constants.h"
-#include "core/settings/settings.h"
+#include "core/settings/typed_keys.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -14,6 +14,8 @@ namespace photorque {
 // Mean radius of the Earth (IUGG R1) and its rate of rotation (IERS Conventions 2010, table 1.1).
 inline constexpr double earth_radius_m = 6371008.7714;
 inline constexpr double earth_rate_rad_s = 7.292115e-5;
+
+inline constexpr double room_temperature_K = 293.15, room_pressure_Pa = 101325.0;
 
 struct Environment {
   // Lab axes: x east, y north, z up (inertial axes for a spacecraft).
@@ -28,8 +30,8 @@ struct Environment {
   // Where the Sun is; none: nothing is said of it.
   std::optional<SunPath> sun = {};
 
-  double air_temperature_K = 293.15;
-  double air_pressure_Pa = 101325.0;
+  double air_temperature_K = room_temperature_K;
+  double air_pressure_Pa = room_pressure_Pa;
   // Dry air at that temperature and pressure unless given: ideal gas with R = 287.05 J/(kg K), and
   // Sutherland's law with 1.716e-5 Pa s at 273.15 K and S = 110.4 K (White, Viscous Fluid Flow,
   // 3rd ed., table 1-2).
@@ -41,5 +43,6 @@ struct Environment {
 // 20 °C and 1013.25 hPa, latitude 0. The field is magnetic_field_T[3] in lab axes, or igrf = {date
 // (2025-06-30, or a decimal year), latitude_deg, longitude_deg, height_m (0)}.
 Environment read_environment(const Settings& settings);
+Key environment_table();
 
 }  // namespace photorque

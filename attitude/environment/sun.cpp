@@ -12,6 +12,37 @@ namespace photorque {
 
 namespace {
 
+namespace sun_key {
+constexpr Range declinations{-0.5 * pi, 0.5 * pi, false, false};
+constexpr Vec3Key direction("direction", "towards the Sun, lab axes, any length; *or*",
+                            {.optional = true});
+constexpr TextKey table(
+    "table", "CSV: `t_s`, `sun_x`, `sun_y`, `sun_z`, towards the Sun, lab axes, any length; *or*",
+    {.optional = true});
+constexpr NumberKey distance("distance_au", astronomical_unit_m, Range::positive(),
+                             "of the Sun, with `direction` or `table`");
+constexpr TextKey date(
+    "date", "calendar time of t = 0, \"2015-04-27T03:00\": the Sun moves as the orbit says",
+    {.optional = true});
+constexpr NumberKey semi_major_axis("semi_major_axis_au", Range::positive(), "of the ellipse");
+constexpr NumberKey eccentricity("eccentricity", 0.0, {0.0, 1.0, false, true}, "of the ellipse");
+constexpr NumberKey inclination("inclination_deg", 0.0, {}, "to the ecliptic of J2000");
+constexpr NumberKey ascending_node("ascending_node_deg", 0.0, {}, "longitude");
+constexpr NumberKey perihelion("perihelion_deg", 0.0, {}, "argument, from the node");
+constexpr NumberKey mean_anomaly("mean_anomaly_deg", {}, "at the epoch");
+constexpr TextKey epoch("epoch", "of the mean anomaly", {.usually = "`date`"});
+constexpr TableKey orbit("orbit", "of the spacecraft about the Sun, with `date`",
+                         {.usually = "the Earth's"});
+constexpr ChoiceKey axis("axis", {"x", "y", "z"}, 2, "the lab axis that points");
+constexpr NumberKey right_ascension("right_ascension_deg", {}, "J2000");
+constexpr NumberKey declination("declination_deg", declinations, "J2000");
+constexpr NumberKey roll("roll_deg", 0.0, {},
+                         "of the next axis (y after x) about it, from celestial north");
+constexpr TableKey pointing("pointing", "where a lab axis points in the sky, with `date`",
+                            {.usually = "lab axes are equatorial, J2000"});
+constexpr TableKey sun("sun", "where the Sun is, for `radiation_pressure`");
+}  // namespace sun_key
+
 // IAU 1976, at J2000.
 constexpr double obliquity_rad = 23.4392911 * degree_rad;
 // Gauss's year: of a body without mass at 1 au.
@@ -73,14 +104,13 @@ Epoch read_date(const Settings& settings, const char* key) {
 
 HeliocentricOrbit read_orbit(const Settings& settings, const Epoch& date) {
   HeliocentricOrbit orbit;
-  orbit.semi_major_axis_au =
-      settings.number("semi_major_axis_au", Range::positive()) / astronomical_unit_m;
-  orbit.eccentricity = settings.number_or("eccentricity", 0.0, {0.0, 1.0, false, true});
-  orbit.inclination_rad = settings.number_or("inclination_deg", 0.0);
-  orbit.ascending_node_rad = settings.number_or("ascending_node_deg", 0.0);
-  orbit.perihelion_rad = settings.number_or("perihelion_deg", 0.0);
-  orbit.mean_anomaly_rad = settings.number("mean_anomaly_deg");
-  if (settings.has("epoch")) {
+  orbit.semi_major_axis_au = settings.get(sun_key::semi_major_axis) / astronomical_unit_m;
+  orbit.eccentricity = settings.get(sun_key::eccentricity);
+  orbit.inclination_rad = settings.get(sun_key::inclination);
+  orbit.ascending_node_rad = settings.get(sun_key::ascending_node);
+  orbit.perihelion_rad = settings.get(sun_key::perihelion);
+  orbit.mean_anomaly_rad = settings.get(sun_key::mean_anomaly);
+  if (settings.has(sun_key::epoch)) {
     orbit.mean_anomaly_rad += gaussian_motion_rad_s / std::pow(orbit.semi_major_axis_au, 1.5) *
                               date.seconds_since(read_date(settings, "epoch"));
   }
@@ -89,11 +119,10 @@ HeliocentricOrbit read_orbit(const Settings& settings, const Epoch& date) {
 
 Pointing read_pointing(const Settings& settings) {
   Pointing pointing;
-  pointing.axis = static_cast<int>(settings.choice_or("axis", {"x", "y", "z"}, 2));
-  pointing.right_ascension_rad = settings.number("right_ascension_deg");
-  pointing.declination_rad =
-      settings.number("declination_deg", {-0.5 * pi, 0.5 * pi, false, false});
-  pointing.roll_rad = settings.number_or("roll_deg", 0.0);
+  pointing.axis = static_cast<int>(settings.get(sun_key::axis));
+  pointing.right_ascension_rad = settings.get(sun_key::right_ascension);
+  pointing.declination_rad = settings.get(sun_key::declination);
+  pointing.roll_rad = settings.get(sun_key::roll);
   return pointing;
 }
 
@@ -211,37 +240,36 @@ Mat3 Pointing::lab_from_equatorial() const {
 }
 
 SunPath read_sun(const Settings& settings) {
-  const int ways = (settings.has("direction") ? 1 : 0) + (settings.has("table") ? 1 : 0) +
-                   (settings.has("date") ? 1 : 0);
+  const int ways = (settings.has(sun_key::direction) ? 1 : 0) +
+                   (settings.has(sun_key::table) ? 1 : 0) + (settings.has(sun_key::date) ? 1 : 0);
   if (ways != 1) {
-    throw settings.error("date", ways == 0 ? "nothing" : "several of direction, table and date",
+    throw settings.error(sun_key::date,
+                         ways == 0 ? "nothing" : "several of direction, table and date",
                          "one of direction, table and date");
   }
-  if (settings.has("date")) {
+  if (settings.has(sun_key::date)) {
     const Epoch date = read_date(settings, "date");
     const Epoch J2000 = *parse_epoch("2000-01-01T12:00:00");
-    const HeliocentricOrbit orbit = settings.has("orbit")
-                                        ? read_orbit(settings.table("orbit"), date)
+    const HeliocentricOrbit orbit = settings.has(sun_key::orbit)
+                                        ? read_orbit(settings.get(sun_key::orbit), date)
                                         : orbit_of_earth(date.seconds_since(J2000));
     Mat3 lab_from_equatorial = Mat3::Identity();
-    if (settings.has("pointing")) {
-      lab_from_equatorial = read_pointing(settings.table("pointing")).lab_from_equatorial();
+    if (settings.has(sun_key::pointing)) {
+      lab_from_equatorial = read_pointing(settings.get(sun_key::pointing)).lab_from_equatorial();
     }
     return SunPath::orbit(orbit, lab_from_equatorial * equatorial_from_ecliptic());
   }
-  const double distance_au =
-      settings.number_or("distance_au", astronomical_unit_m, Range::positive()) /
-      astronomical_unit_m;
-  if (settings.has("table")) {
+  const double distance_au = settings.get(sun_key::distance) / astronomical_unit_m;
+  if (settings.has(sun_key::table)) {
     const std::filesystem::path path =
-        std::filesystem::path(settings.where().file).parent_path() / settings.text("table");
+        std::filesystem::path(settings.where().file).parent_path() / settings.get(sun_key::table);
     return SunPath::table(
         read_time_series(path, {"sun_x", "sun_y", "sun_z"}, TimeSeries::Outside::hold),
         distance_au);
   }
-  const Vec3 direction = settings.vector3("direction");
+  const Vec3 direction = settings.get(sun_key::direction);
   if (!(direction.norm() > 0.0)) {
-    throw settings.error("direction", "a zero vector", "a direction");
+    throw settings.error(sun_key::direction, "a zero vector", "a direction");
   }
   return SunPath::fixed(distance_au * direction.normalized());
 }
@@ -275,6 +303,14 @@ double sunlit_fraction(const Vec3& satellite_m, const Vec3& sun_m, double planet
   return uncovered_fraction(std::asin(sun_radius_m / to_sun.norm()),
                             std::asin(std::min(1.0, planet_radius_m / to_planet.norm())),
                             separation);
+}
+
+Key sun_table() {
+  using namespace sun_key;
+  return sun.of({direction, table, distance, date,
+                 orbit.of({semi_major_axis, eccentricity, inclination, ascending_node, perihelion,
+                           mean_anomaly, epoch}),
+                 pointing.of({axis, right_ascension, declination, roll})});
 }
 
 }  // namespace photorque

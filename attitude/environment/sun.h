@@ -7,7 +7,7 @@
 #include "attitude/environment/time_series.h"
 #include "core/constants.h"
 #include "core/numerics/dual.h"
-#include "core/settings/settings.h"
+#include "core/settings/typed_keys.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -77,6 +77,7 @@ struct Pointing {
 //     Earth; pointing = { axis ("z"), right_ascension_deg, declination_deg, roll_deg (0) }, by
 //     default lab axes are equatorial.
 SunPath read_sun(const Settings& settings);
+Key sun_table();
 
 // How much of the Sun is seen past a sphere.
 

@@ -1,12 +1,32 @@
-// [estimate] as it is declared; study.cpp reads it.
+// [estimate], which study.cpp reads.
 #pragma once
 
 #include <vector>
 
-#include "core/settings/keys.h"
+#include "attitude/filtering/motion_model.h"
+#include "core/settings/typed_keys.h"
 
 namespace photorque {
 
+namespace estimate_key {
+inline constexpr ChoiceKey model(
+    "model",
+    {{"disturbances", "the modelled torques"}, {"gyro", "the gyro"}, {"walk", "a rate that walks"}},
+    0, "what moves the platform between readings in the estimate that is written");
+inline constexpr NumberKey rate_walk("rate_walk", Range::positive(),
+                                     "random walk of the rate without torques, rad/s per √s",
+                                     {.usually = "the likeliest"});
+inline constexpr NumberKey disturbed_rate_walk("disturbed_rate_walk", Range::positive(),
+                                               "the same beside the modelled torques",
+                                               {.usually = "the likeliest"});
+inline constexpr NumberKey rate_sigma("rate_sigma_rad_s", FilterSettings{}.rate_sigma_rad_s,
+                                      Range::positive(), "of the rate before the first reading");
+inline constexpr IntegerKey search_readings("search_readings", 2000, 50, 100'000'000,
+                                            "over how many the likeliest is looked for");
+inline constexpr IntegerKey runs("runs", 20, 0, 100'000,
+                                 "simulated for the consistency, where there is no recording");
+inline constexpr TableKey estimate("estimate", "how the attitude is estimated");
+}  // namespace estimate_key
 Key estimate_table();
 
 }  // namespace photorque

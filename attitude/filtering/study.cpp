@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "attitude/filtering/keys.h"
 #include "attitude/filtering/report.h"
 #include "attitude/observation/noise_levels.h"
 #include "attitude/observation/observation.h"
@@ -186,16 +187,14 @@ EstimateStudy read_estimate(const Settings& root) {
   study.nominal = read_attitude_model(root);
   const Settings own = own_table(root, "estimate", false);
   constexpr Motion motions[] = {Motion::disturbances, Motion::gyro_drives, Motion::rate_walks};
-  study.filter.motion = motions[own.choice_or("model", {"disturbances", "gyro", "walk"}, 0)];
-  if (own.has("rate_walk")) study.rate_walk = own.number("rate_walk", Range::positive());
-  if (own.has("disturbed_rate_walk")) {
-    study.disturbed_rate_walk = own.number("disturbed_rate_walk", Range::positive());
+  study.filter.motion = motions[own.get(estimate_key::model)];
+  if (own.has(estimate_key::rate_walk)) study.rate_walk = own.get(estimate_key::rate_walk);
+  if (own.has(estimate_key::disturbed_rate_walk)) {
+    study.disturbed_rate_walk = own.get(estimate_key::disturbed_rate_walk);
   }
-  study.filter.rate_sigma_rad_s =
-      own.number_or("rate_sigma_rad_s", study.filter.rate_sigma_rad_s, Range::positive());
-  study.search_readings =
-      static_cast<size_t>(own.integer_or("search_readings", 2000, 50, 100'000'000));
-  study.runs = static_cast<int>(own.integer_or("runs", study.runs, 0, 100'000));
+  study.filter.rate_sigma_rad_s = own.get(estimate_key::rate_sigma);
+  study.search_readings = static_cast<size_t>(own.get(estimate_key::search_readings));
+  study.runs = static_cast<int>(own.get(estimate_key::runs));
   own.finish();
   return study;
 }

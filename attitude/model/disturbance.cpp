@@ -47,6 +47,13 @@ double bound_rate_slope(const Disturbance& disturbance, const ExtraState& state,
   return (rate_body_rad_s[component] - unit[component] * unit.dot(rate_body_rad_s)) / axis.norm();
 }
 
+PlacedParameters scalar_parameter(const Settings& settings, const ScalarKey& key) {
+  if (key.otherwise_SI) {
+    return scalar_parameter_or(settings, key, *key.otherwise_SI, key.range);
+  }
+  return scalar_parameter(settings, key, key.range);
+}
+
 PlacedParameters scalar_parameter(const Settings& settings, ScalarKey key, Range range) {
   const Uncertain x = settings.uncertain(key.name, range);
   return {key.first, {{key.name, -1, x.value, x.sigma}}};
@@ -58,7 +65,7 @@ PlacedParameters scalar_parameter_or(const Settings& settings, ScalarKey key, do
   return {key.first, {{key.name, -1, otherwise_SI, 0.0}}};
 }
 
-PlacedParameters vector_parameter(const Settings& settings, VectorKey key) {
+PlacedParameters vector_parameter(const Settings& settings, const VectorKey& key) {
   const UncertainVec3 v = settings.uncertain_vector(key.name);
   Parameters all;
   for (int i = 0; i < 3; ++i) all.push_back({key.name, i, v.value[i], v.sigma[i]});
@@ -90,7 +97,7 @@ PlacedParameters array_parameter(const Settings& settings, const std::string& ke
   return {first, all};
 }
 
-size_t count_as_written(const Settings& settings, const std::string& key) {
+size_t count_as_written(const Settings& settings, std::string_view key) {
   const SettingsNode* node = &settings.raw(key);
   if (const auto* table = std::get_if<SettingsNode::Table>(&node->value)) {
     const auto value = table->find("value");
@@ -107,7 +114,7 @@ size_t count_as_written(const Settings& settings, const std::string& key) {
   return count;
 }
 
-std::filesystem::path file_of(const Settings& settings, const std::string& key) {
+std::filesystem::path file_of(const Settings& settings, std::string_view key) {
   const std::filesystem::path experiment = settings.where().file;
   return experiment.parent_path() / settings.text(key);
 }

@@ -9,7 +9,7 @@
 //   namespace photorque {
 //   namespace {
 //
-//   constexpr ScalarKey coefficient{"coefficient_N_m_s"};
+//   constexpr ScalarKey coefficient("coefficient_N_m_s", Range::not_negative(), "c in T = −c ω");
 //
 //   // T = −c ω.
 //   struct BearingDrag final : TorqueLaw<BearingDrag> {
@@ -20,8 +20,7 @@
 //   };
 //
 //   Disturbance read(const Settings& settings, const DisturbanceContext&) {
-//     return make_disturbance<BearingDrag>(
-//         {scalar_parameter(settings, coefficient, Range::not_negative())});
+//     return make_disturbance<BearingDrag>({scalar_parameter(settings, coefficient)});
 //   }
 //
 //   }  // namespace
@@ -31,7 +30,8 @@
 //             .summary = "viscous drag of the bearing's air film, linear in the rate",
 //             .read = read,
 //             .screening = {.parametrisations = {{"a sentence for the report",
-//                                                 {EffectKey::number(coefficient.name, 2e-5)}}}}};
+//                                                 {EffectKey::number(coefficient.name, 2e-5)}}}},
+//             .keys = {coefficient}};
 //   }
 //
 //   }  // namespace photorque
@@ -39,6 +39,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -46,7 +47,7 @@
 #include "attitude/environment/environment.h"
 #include "attitude/model/platform.h"
 #include "core/numerics/dual.h"
-#include "core/settings/settings.h"
+#include "core/settings/typed_keys.h"
 
 namespace photorque {
 
@@ -162,16 +163,47 @@ struct ExtraState {
   std::string key = {};
 };
 
-// Where the numbers of one key stand among a law's parameters. A law names its keys in their order,
-//   constexpr VectorKey torque_N_m{"torque_N_m"};
-//   constexpr ScalarKey frequency_Hz{"frequency_Hz", torque_N_m.end()};
-// and reads them by these names, own[frequency_Hz], which costs no more than an index.
+// A key of a law, and where its numbers stand among the law's parameters. A law names its keys in
+// their order,
+//   constexpr VectorKey torque_N_m("torque_N_m", "amplitude, body axes");
+//   constexpr ScalarKey frequency_Hz("frequency_Hz", {0.0, 1e6}, "of it", torque_N_m.end());
+// reads them by these names, own[frequency_Hz], which costs no more than an index, and lists them
+// among the keys of its kind.
 template <int size>
 struct KeyOf {
   const char* name;
   int first = 0;
+  Range range = {};                         // of one number, SI
+  const char* what = "";                    // as Key::what
+  std::optional<double> otherwise_SI = {};  // of one number
+  bool required = true;
 
+  constexpr explicit KeyOf(const char* key, int first_number = 0)
+      : name(key), first(first_number) {}
+  constexpr KeyOf(const char* key, const char* sentence, int first_number = 0)
+      : name(key), first(first_number), what(sentence) {}
+  constexpr KeyOf(const char* key, Range admitted, const char* sentence, int first_number = 0)
+      : name(key), first(first_number), range(admitted), what(sentence) {}
+  constexpr KeyOf(const char* key, double otherwise, Range admitted, const char* sentence,
+                  int first_number = 0)
+      : name(key), first(first_number), range(admitted), what(sentence), otherwise_SI(otherwise) {}
+
+  constexpr operator std::string_view() const { return name; }
   constexpr int end() const { return first + size; }
+  // The table can do without it.
+  constexpr KeyOf optional() const {
+    KeyOf copy = *this;
+    copy.required = false;
+    return copy;
+  }
+
+  // As it is declared, where its numbers may have a sigma each.
+  operator Key() const requires(size <= 3) {
+    Key key = size == 3      ? Key::uncertain_vector(name, what)
+              : otherwise_SI ? Key::uncertain_or(name, *otherwise_SI, range, what)
+                             : Key::uncertain(name, range, what);
+    return required ? key : std::move(key).optional();
+  }
 };
 using ScalarKey = KeyOf<1>;
 using VectorKey = KeyOf<3>;
@@ -190,18 +222,18 @@ struct ParametersAndStates {
   const T* states;  // of the ExtraStates that it declared
   T* state_rates;   // to be set: d/dt of each
 
-  const T& operator[](ScalarKey key) const { return parameters[key.first]; }
-  Vec3Of<T> operator[](VectorKey key) const {
+  const T& operator[](const ScalarKey& key) const { return parameters[key.first]; }
+  Vec3Of<T> operator[](const VectorKey& key) const {
     return {parameters[key.first], parameters[key.first + 1], parameters[key.first + 2]};
   }
-  Mat3Of<T> operator[](MatrixKey key) const {
+  Mat3Of<T> operator[](const MatrixKey& key) const {
     Mat3Of<T> m;
     for (int i = 0; i < 9; ++i) m(i / 3, i % 3) = parameters[key.first + i];
     return m;
   }
   // One number of an array of any length.
   template <int size>
-  const T& element(KeyOf<size> key, int index) const {
+  const T& element(const KeyOf<size>& key, int index) const {
     return parameters[key.first + index];
   }
 
@@ -310,18 +342,19 @@ struct PlacedParameters {
   int first = 0;
   Parameters parameters;
 };
-PlacedParameters scalar_parameter(const Settings& settings, ScalarKey key, Range range = {});
+PlacedParameters scalar_parameter(const Settings& settings, const ScalarKey& key);
+PlacedParameters scalar_parameter(const Settings& settings, ScalarKey key, Range range);
 PlacedParameters scalar_parameter_or(const Settings& settings, ScalarKey key, double otherwise_SI,
                                      Range range = {});
-PlacedParameters vector_parameter(const Settings& settings, VectorKey key);
+PlacedParameters vector_parameter(const Settings& settings, const VectorKey& key);
 // `size` numbers, e.g. the six of a symmetric matrix.
 PlacedParameters array_parameter(const Settings& settings, const std::string& key, size_t size,
                                  int first = 0);
 // How many numbers the user wrote for `key`: 0 for a single number, the length of an array, nine
 // for three rows of three; looks into { value = …, sigma = … }.
-size_t count_as_written(const Settings& settings, const std::string& key);
+size_t count_as_written(const Settings& settings, std::string_view key);
 // The file that `key` names; a relative path counts from the experiment file.
-std::filesystem::path file_of(const Settings& settings, const std::string& key);
+std::filesystem::path file_of(const Settings& settings, std::string_view key);
 // Parameters that were not written but computed (a compliance from a beam's dimensions).
 PlacedParameters fixed_parameter(const std::string& key, std::span<const double> values_SI,
                                  int first = 0);

@@ -26,21 +26,47 @@ void check_inertia(const Mat3& inertia_kg_m2, const InputLocation& where, const 
 
 namespace {
 
-constexpr const char* inertia_key = "inertia_kg_m2";
+namespace platform_key {
+constexpr NumberKey mass("mass_kg", Range::positive(), "of all that turns");
+constexpr OtherKey inertia("inertia_kg_m2", Key::an_array | Key::a_table,
+                           "3 × 3, symmetric, positive, body axes, about the centre of rotation");
+// About the one axis that is free.
+constexpr OtherKey inertia_about(inertia.name, Key::a_number | Key::an_array | Key::a_table,
+                                 "about that axis, or 3 × 3", {.usually = "1"});
+constexpr ChoiceKey topology(
+    "topology",
+    {{"dumbbell", "two arms on an air bearing"},
+     {"tabletop", "a plate on an air bearing"},
+     {"hollow", "a ball around its payload"},
+     {"free", "no bearing"},
+     {"one_axis", "bearings hold all but one axis"},
+     {"planar", "slides on a table: x and y in the lab, and a turn about the vertical"}},
+    "what it is and what holds it");
+constexpr ChoiceKey axis("axis", {"x", "y", "z"}, 2, "the axis that is left");
+constexpr NumberKey tilt_limit("tilt_limit_deg", {0.0, pi, true, false},
+                               "the bearing's stop: a run ends there", {.usually = "none"});
+constexpr NumberKey battery_capacity("battery_capacity_Ah", Range::positive(),
+                                     "only says when the battery is empty",
+                                     {.usually = "never empty"});
+constexpr NumberKey battery_voltage("battery_voltage_V", usual_battery_voltage_V, Range::positive(),
+                                    "nominal");
+constexpr TableKey platform("platform", "what turns");
+}  // namespace platform_key
 
 // The table with value and sigma, or the platform's own.
 bool has_sigma(const Settings& platform) {
-  return platform.has(inertia_key) && platform.raw(inertia_key).is_table();
+  return platform.has(platform_key::inertia) && platform.raw(platform_key::inertia).is_table();
 }
 
 Mat3 read_inertia(const Settings& settings, const Platform& platform) {
   if (!platform.turns_about_one_axis()) {
-    return has_sigma(settings) ? settings.table(inertia_key).matrix3("value")
-                               : settings.matrix3(inertia_key);
+    return has_sigma(settings) ? settings.table(platform_key::inertia).matrix3("value")
+                               : settings.matrix3(platform_key::inertia);
   }
-  if (!settings.has(inertia_key)) return Mat3::Identity();
-  if (settings.raw(inertia_key).is_array()) return settings.matrix3(inertia_key);
-  return settings.uncertain(inertia_key, Range::positive()).value * Mat3::Identity();
+  if (!settings.has(platform_key::inertia)) return Mat3::Identity();
+  if (settings.raw(platform_key::inertia).is_array())
+    return settings.matrix3(platform_key::inertia);
+  return settings.uncertain(platform_key::inertia, Range::positive()).value * Mat3::Identity();
 }
 
 // Measured moments may break the triangle inequality by their errors.
@@ -55,7 +81,7 @@ bool breaks_within_sigma(const Mat3& inertia_kg_m2, const Mat3& sigma_kg_m2) {
 
 Mat3 inertia_sigma_kg_m2(const Settings& platform) {
   if (!has_sigma(platform)) return Mat3::Zero();
-  const Settings both = platform.table(inertia_key);
+  const Settings both = platform.table(platform_key::inertia);
   // Of three moments where products are known to vanish: numbers of the diagonal alone.
   if (!both.raw("sigma").is_array()) {
     return both.number("sigma", Range::not_negative()) * Mat3::Identity();
@@ -65,32 +91,27 @@ Mat3 inertia_sigma_kg_m2(const Settings& platform) {
 
 Platform read_platform(const Settings& settings) {
   Platform platform;
-  platform.topology = static_cast<Topology>(settings.choice(
-      "topology", {"dumbbell", "tabletop", "hollow", "free", "one_axis", "planar"}));
+  platform.topology = static_cast<Topology>(settings.get(platform_key::topology));
   if (platform.topology == Topology::one_axis) {
-    const size_t z = 2;
-    platform.axis =
-        Vec3::Unit(static_cast<Eigen::Index>(settings.choice_or("axis", {"x", "y", "z"}, z)));
+    platform.axis = Vec3::Unit(static_cast<Eigen::Index>(settings.get(platform_key::axis)));
   }
-  platform.mass_kg = platform.has_air_bearing()
-                         ? settings.number("mass_kg", Range::positive())
-                         : settings.number_or("mass_kg", 1.0, Range::positive());
+  platform.mass_kg = platform.has_air_bearing() ? settings.get(platform_key::mass)
+                                                : settings.get_or(platform_key::mass, 1.0);
   platform.inertia_kg_m2 = read_inertia(settings, platform);
-  if (settings.has(inertia_key) &&
+  if (settings.has(platform_key::inertia) &&
       !breaks_within_sigma(platform.inertia_kg_m2, inertia_sigma_kg_m2(settings))) {
-    check_inertia(platform.inertia_kg_m2, settings.raw(inertia_key).where,
-                  settings.name() + "." + inertia_key);
+    check_inertia(platform.inertia_kg_m2, settings.raw(platform_key::inertia).where,
+                  settings.name() + "." + std::string(platform_key::inertia));
   }
   platform.inertia_kg_m2 =
       0.5 * (platform.inertia_kg_m2 + platform.inertia_kg_m2.transpose()).eval();
-  if (settings.has("tilt_limit_deg")) {
-    platform.tilt_limit_rad = settings.number("tilt_limit_deg", {0.0, pi, true, false});
+  if (settings.has(platform_key::tilt_limit)) {
+    platform.tilt_limit_rad = settings.get(platform_key::tilt_limit);
   }
-  if (settings.has("battery_capacity_Ah")) {
-    platform.battery_capacity_C = settings.number("battery_capacity_Ah", Range::positive());
+  if (settings.has(platform_key::battery_capacity)) {
+    platform.battery_capacity_C = settings.get(platform_key::battery_capacity);
   }
-  platform.battery_voltage_V =
-      settings.number_or("battery_voltage_V", platform.battery_voltage_V, Range::positive());
+  platform.battery_voltage_V = settings.get(platform_key::battery_voltage);
   return platform;
 }
 
@@ -103,6 +124,19 @@ double tilt_rad(const PlatformState& state) {
 double heading_rad(const PlatformState& state) {
   const Vec3 body_x_lab = state.lab_from_body * Vec3::UnitX();
   return std::atan2(body_x_lab.y(), body_x_lab.x());
+}
+
+Key platform_table() {
+  using namespace platform_key;
+  const std::vector<Key> on_bearing = {mass, inertia};
+  return platform.of({topology.bringing({on_bearing,
+                                         on_bearing,
+                                         on_bearing,
+                                         {mass.usually("1"), inertia.meaning("as above")},
+                                         {axis, mass.usually("1"), inertia_about},
+                                         {mass.usually("1"),
+                                          inertia_about.meaning("about the vertical, or 3 × 3")}}),
+                      tilt_limit, battery_capacity, battery_voltage});
 }
 
 }  // namespace photorque

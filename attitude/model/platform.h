@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/constants.h"
-#include "core/settings/settings.h"
+#include "core/settings/typed_keys.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -19,6 +19,8 @@ enum class Topology {
   planar,    // a puck on an air table: slides in the horizontal plane, turns about the vertical
 };
 
+inline constexpr double usual_battery_voltage_V = 14.8;
+
 struct Platform {
   Topology topology = Topology::tabletop;
   double mass_kg = 1.0;                   // > 0, of everything that turns
@@ -27,7 +29,7 @@ struct Platform {
   std::optional<double> tilt_limit_rad;
   // Charge that the battery can give [C]; none: it never runs empty.
   std::optional<double> battery_capacity_C;
-  double battery_voltage_V = 14.8;  // nominal, > 0
+  double battery_voltage_V = usual_battery_voltage_V;  // nominal, > 0
   // Of a one_axis platform: x, y or z, in body and lab axes alike, because it turns about nothing
   // else.
   Vec3 axis = Vec3::UnitZ();
@@ -51,6 +53,7 @@ struct Platform {
 // not positive, the inertia not symmetric, not positive definite or against the triangle inequality
 // (the largest principal moment exceeds the sum of the others: no body has such an inertia).
 Platform read_platform(const Settings& settings);
+Key platform_table();
 
 // The sigmas of [platform] inertia_kg_m2 = { value, sigma }, an entry each; zero where none is
 // given.

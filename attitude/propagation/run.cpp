@@ -6,6 +6,7 @@
 
 #include "attitude/disturbances/kind.h"
 #include "attitude/environment/epoch.h"
+#include "core/settings/typed_keys.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -13,6 +14,52 @@ namespace photorque {
 namespace {
 
 constexpr double max_run_s = 1e10;  // three centuries
+
+namespace propagate_key {
+constexpr NumberKey duration("duration_s", 600.0, {0.0, max_run_s, true, false}, "of the run");
+constexpr NumberKey output_rate("output_rate_Hz", 10.0, Range::positive(),
+                                "rows of the recording, at most 2e7 in all");
+constexpr IntegerKey history_rows("history_rows", 20000, 2, 20'000'000,
+                                  "rows of `time_history.csv` at most");
+constexpr NumberKey tolerance("tolerance", PropagationOptions{}.tolerance,
+                              {1e-13, 1e-3, false, false}, "of a step");
+constexpr NumberKey longest_step("longest_step_s", Range::positive(), "of the integrator",
+                                 {.usually = "none"});
+constexpr NumberKey tick_rate("tick_rate_Hz", 0.0, {0.0, 1e6, false, false},
+                              "steps end at these ticks too and begin afresh, as those of a run in "
+                              "real time do; 0: no ticks");
+constexpr IntegerKey seed("seed", 1, 0, INT64_MAX, "of the sensors' noise; also `--seed`");
+constexpr NumberKey initial_tilt("initial_tilt_deg", 0.0, {0.0, pi, false, false},
+                                 "leans by the tilt towards the heading; *or*");
+constexpr NumberKey initial_heading("initial_heading_deg", 0.0, {}, "where it leans to");
+constexpr NumbersKey initial_attitude("initial_attitude", {},
+                                      "[w, x, y, z], lab from body, unit to 1e-3",
+                                      {.optional = true, .size = 4});
+constexpr Vec3Key initial_rate("initial_rate_rad_s", {0.0, 0.0, 0.0}, "body axes");
+constexpr NumbersKey initial_position("initial_position_m", {}, "of a planar platform, lab x and y",
+                                      {.usually = "0, 0", .size = 2});
+constexpr NumbersKey initial_velocity("initial_velocity_m_s", {}, "the same",
+                                      {.usually = "0, 0", .size = 2});
+constexpr NumberKey initial_charge("initial_charge_Ah", 0.0, {}, "drawn before");
+constexpr NumberKey initial_time(
+    "initial_time_s", 0.0, {},
+    "of the first row; commands, measured series and laws in time count in it");
+constexpr TextKey commands(
+    "commands",
+    "CSV: `t_s` and any of `command_x_N_m`, `…_y_…`, `…_z_…`, `battery_current_A`, "
+    "`led_current_A`, each row held until the next (zero-order hold); *or*",
+    {.usually = "none"});
+constexpr NumberKey time("time_s", {}, "rising");
+constexpr Vec3Key torque("torque_N_m", {0.0, 0.0, 0.0}, "commanded, body axes");
+constexpr NumberKey battery_current("battery_current_A", 0.0, {}, "drawn");
+constexpr NumberKey led_current("led_current_A", Range::not_negative(),
+                                "of lamps; not given: they shine as ever", {.optional = true});
+constexpr TablesKey command("command", "each held until the next");
+constexpr TextKey epoch(
+    "epoch", "2000-01-01T00:00:00",
+    "calendar time of t = 0, for `attitude.aem`; does not move `igrf` or `orbit`");
+constexpr TableKey propagate("propagate", "a run of the motion");
+}  // namespace propagate_key
 
 // [[disturbance]] alone: who reads the rest of the file complains about its keys.
 Settings disturbances_of(const Settings& root) {
@@ -45,31 +92,34 @@ std::filesystem::path beside_experiment(const Settings& settings, const std::str
 }
 
 Schedule read_schedule(const Settings& settings) {
-  if (settings.has("commands")) {
+  if (settings.has(propagate_key::commands)) {
     // An empty list takes those of the file away.
-    if (settings.has("command") && !settings.tables("command").empty()) {
-      throw settings.error("command", "[[propagate.command]] beside commands", "one of the two");
+    if (settings.has(propagate_key::command) && !settings.get(propagate_key::command).empty()) {
+      throw settings.error(propagate_key::command, "[[propagate.command]] beside commands",
+                           "one of the two");
     }
-    const std::string name = settings.text("commands");
+    const std::string name = settings.get(propagate_key::commands);
     const std::filesystem::path path = beside_experiment(settings, name);
     if (!std::filesystem::is_regular_file(path)) {
-      throw settings.error("commands", "\"" + name + "\"", "a file beside the experiment");
+      throw settings.error(propagate_key::commands, "\"" + name + "\"",
+                           "a file beside the experiment");
     }
     return read_command_file(path);
   }
   Schedule schedule;
   std::optional<double> before_s;
-  for (const Settings& command : settings.tables("command")) {
-    const double time_s = command.number("time_s");
+  for (const Settings& command : settings.get(propagate_key::command)) {
+    const double time_s = command.get(propagate_key::time);
     if (before_s && time_s <= *before_s) {
-      throw command.error("time_s", std::to_string(time_s) + " after " + std::to_string(*before_s),
+      throw command.error(propagate_key::time,
+                          std::to_string(time_s) + " after " + std::to_string(*before_s),
                           "commands in order of time");
     }
     before_s = time_s;
-    ZeroOrderHold held{.command_body_N_m = command.vector3_or("torque_N_m", Vec3::Zero()),
-                       .battery_current_A = command.number_or("battery_current_A", 0.0)};
-    if (command.has("led_current_A")) {
-      held.led_current_A = command.number("led_current_A", Range::not_negative());
+    ZeroOrderHold held{.command_body_N_m = command.get(propagate_key::torque),
+                       .battery_current_A = command.get(propagate_key::battery_current)};
+    if (command.has(propagate_key::led_current)) {
+      held.led_current_A = command.get(propagate_key::led_current);
       held.lamps_as_stated = 0.0;
     }
     schedule.append(time_s, held);
@@ -78,19 +128,19 @@ Schedule read_schedule(const Settings& settings) {
 }
 
 Quat read_initial_attitude(const Settings& settings) {
-  if (!settings.has("initial_attitude")) {
-    const double tilt_rad = settings.number_or("initial_tilt_deg", 0.0, {0.0, pi, false, false});
-    const double heading_rad = settings.number_or("initial_heading_deg", 0.0);
+  if (!settings.has(propagate_key::initial_attitude)) {
+    const double tilt_rad = settings.get(propagate_key::initial_tilt);
+    const double heading_rad = settings.get(propagate_key::initial_heading);
     return lab_from_body_at(tilt_rad, heading_rad).rotation;
   }
-  const std::vector<double> q = settings.numbers("initial_attitude");
+  const std::vector<double> q = settings.get(propagate_key::initial_attitude);
   if (q.size() != 4) {
-    throw settings.error("initial_attitude", std::to_string(q.size()) + " numbers",
+    throw settings.error(propagate_key::initial_attitude, std::to_string(q.size()) + " numbers",
                          "a quaternion [w, x, y, z]");
   }
   const Quat attitude(q[0], q[1], q[2], q[3]);
   if (!(std::abs(attitude.norm() - 1.0) < 1e-3)) {
-    throw settings.error("initial_attitude",
+    throw settings.error(propagate_key::initial_attitude,
                          "a quaternion of norm " + std::to_string(attitude.norm()),
                          "a quaternion of unit norm");
   }
@@ -106,13 +156,15 @@ void check_begins_about_axis(const Settings& settings, const Platform& platform,
   };
   constexpr double rounding = 1e-6;
   if (beside(rate_rad_s) > rounding * rate_rad_s.norm()) {
-    throw settings.error("initial_rate_rad_s", "a rate beside the axis that the bearings leave",
+    throw settings.error(propagate_key::initial_rate,
+                         "a rate beside the axis that the bearings leave",
                          "a rate about platform.axis alone");
   }
   if (beside(lab_from_body.vec()) > rounding) {
-    throw settings.error(settings.has("initial_attitude") ? "initial_attitude" : "initial_tilt_deg",
-                         "a turn about another axis than the bearings leave",
-                         "a turn about platform.axis alone");
+    throw settings.error(
+        settings.has(propagate_key::initial_attitude) ? propagate_key::initial_attitude.name
+                                                      : propagate_key::initial_tilt.name,
+        "a turn about another axis than the bearings leave", "a turn about platform.axis alone");
   }
 }
 
@@ -187,35 +239,32 @@ PropagationRun read_propagation(const Settings& root) {
   run.model = std::move(nominal.model);
   run.sensors = std::move(nominal.sensors);
   const Settings settings = own_table(root, "propagate", false);
-  run.duration_s = settings.number_or("duration_s", 600.0, {0.0, max_run_s, true, false});
-  run.output_rate_Hz = settings.number_or("output_rate_Hz", 10.0, Range::positive());
+  run.duration_s = settings.get(propagate_key::duration);
+  run.output_rate_Hz = settings.get(propagate_key::output_rate);
   constexpr double max_rows = 2e7;
   if (run.duration_s * run.output_rate_Hz > max_rows) {
-    throw settings.error("output_rate_Hz", "more than 20 million rows", "a lower rate");
+    throw settings.error(propagate_key::output_rate, "more than 20 million rows", "a lower rate");
   }
-  run.history_rows =
-      static_cast<size_t>(settings.integer_or("history_rows", 20000, 2, int64_t{20'000'000}));
-  run.seed = static_cast<uint64_t>(settings.integer_or("seed", 1, 0, INT64_MAX));
-  run.options.tolerance =
-      settings.number_or("tolerance", run.options.tolerance, {1e-13, 1e-3, false, false});
-  run.options.max_step_s =
-      settings.number_or("longest_step_s", run.options.max_step_s, Range::positive());
+  run.history_rows = static_cast<size_t>(settings.get(propagate_key::history_rows));
+  run.seed = static_cast<uint64_t>(settings.get(propagate_key::seed));
+  run.options.tolerance = settings.get(propagate_key::tolerance);
+  run.options.max_step_s = settings.get_or(propagate_key::longest_step, run.options.max_step_s);
   if (run.duration_s / run.options.max_step_s > static_cast<double>(run.options.max_steps)) {
-    throw settings.error("longest_step_s", "more than a thousand million steps to the end",
-                         "longer steps");
+    throw settings.error(propagate_key::longest_step,
+                         "more than a thousand million steps to the end", "longer steps");
   }
-  run.options.tick_rate_Hz = settings.number_or("tick_rate_Hz", 0.0, {0.0, 1e6, false, false});
+  run.options.tick_rate_Hz = settings.get(propagate_key::tick_rate);
   run.model.schedule = read_schedule(settings);
-  run.epoch = settings.text_or("epoch", "2000-01-01T00:00:00");
+  run.epoch = settings.get(propagate_key::epoch);
   if (!parse_epoch(run.epoch)) {
-    throw settings.error("epoch", "\"" + run.epoch + "\"", "a time as 2000-01-01T12:00:00");
+    throw settings.error(propagate_key::epoch, "\"" + run.epoch + "\"",
+                         "a time as 2000-01-01T12:00:00");
   }
   // Times of a run count without leap seconds.
   if (run.epoch.find(":60") != std::string::npos) {
-    throw settings.error("epoch", "\"" + run.epoch + "\"", "no leap second");
+    throw settings.error(propagate_key::epoch, "\"" + run.epoch + "\"", "no leap second");
   }
-  run.initial =
-      Dynamics(run.model).initial_state(settings.vector3_or("initial_rate_rad_s", Vec3::Zero()));
+  run.initial = Dynamics(run.model).initial_state(settings.get(propagate_key::initial_rate));
   run.initial.lab_from_body = read_initial_attitude(settings);
   check_begins_about_axis(settings, run.model.platform, run.initial.lab_from_body,
                           run.initial.rate_body_rad_s);
@@ -224,22 +273,25 @@ PropagationRun read_propagation(const Settings& root) {
       std::acos(std::clamp(run.initial.lab_from_body.toRotationMatrix()(2, 2), -1.0, 1.0));
   const std::optional<double> limit_rad = run.model.platform.tilt_limit_rad;
   if (limit_rad && tilt_rad > *limit_rad) {
-    throw settings.error(settings.has("initial_attitude") ? "initial_attitude" : "initial_tilt_deg",
+    throw settings.error(settings.has(propagate_key::initial_attitude)
+                             ? propagate_key::initial_attitude.name
+                             : propagate_key::initial_tilt.name,
                          "a tilt of " + std::to_string(tilt_rad / degree_rad) + " deg",
                          "at most platform.tilt_limit_deg");
   }
-  run.initial.charge_drawn_C = settings.number_or("initial_charge_Ah", 0.0);
+  run.initial.charge_drawn_C = settings.get(propagate_key::initial_charge);
   const std::optional<double>& capacity_C = run.model.platform.battery_capacity_C;
   if (capacity_C && run.initial.charge_drawn_C > *capacity_C) {
     throw settings.error(
-        "initial_charge_Ah", std::to_string(run.initial.charge_drawn_C / 3600.0) + " drawn",
+        propagate_key::initial_charge,
+        std::to_string(run.initial.charge_drawn_C / 3600.0) + " drawn",
         "at most the " + std::to_string(*capacity_C / 3600.0) + " of platform.battery_capacity_Ah");
   }
-  run.initial.time_s = settings.number_or("initial_time_s", 0.0);
+  run.initial.time_s = settings.get(propagate_key::initial_time);
   // A calendar time has four digits of the year in attitude.aem.
   const double left_s = parse_epoch("9999-12-31T23:59:59")->seconds_since(*parse_epoch(run.epoch));
   if (run.initial.time_s + run.duration_s > left_s) {
-    throw settings.error("epoch", "an end after the year 9999", "an earlier time");
+    throw settings.error(propagate_key::epoch, "an end after the year 9999", "an earlier time");
   }
   settings.finish();
   return run;
@@ -250,9 +302,8 @@ void read_initial_place(const Settings& settings, const AttitudeModel& model,
   const int place = Dynamics(model).first_of_translation();
   if (place < 0) return;
   auto to = initial.extra.begin() + (place - component::extra);
-  for (const char* key : {"initial_position_m", "initial_velocity_m_s"}) {
-    const std::vector<double> two =
-        settings.has(key) ? settings.numbers(key) : std::vector<double>{0.0, 0.0};
+  for (const NumbersKey& key : {propagate_key::initial_position, propagate_key::initial_velocity}) {
+    const std::vector<double> two = settings.get_or(key, std::vector<double>{0.0, 0.0});
     if (two.size() != 2) {
       throw settings.error(key, std::to_string(two.size()) + " numbers", "two, along lab x and y");
     }
@@ -267,6 +318,15 @@ std::optional<std::array<double, 4>> place_of(const Dynamics& dynamics,
   std::array<double, 4> four{};
   std::copy_n(y.begin() + place, 4, four.begin());
   return four;
+}
+
+Key propagate_table() {
+  using namespace propagate_key;
+  return propagate_key::propagate.of(
+      {duration, output_rate, history_rows, tolerance, longest_step, tick_rate, seed, initial_tilt,
+       initial_heading, initial_attitude, initial_rate, initial_position, initial_velocity,
+       initial_charge, initial_time, commands,
+       command.of({time, torque, battery_current, led_current}), epoch});
 }
 
 }  // namespace photorque

@@ -63,6 +63,7 @@ NominalModel read_attitude_model(const Settings& root);
 //     or [[propagate.command]] with time_s, torque_N_m[3], battery_current_A (rising times);
 //   epoch (default "2000-01-01T00:00:00").
 PropagationRun read_propagation(const Settings& root);
+Key propagate_table();
 
 struct PropagationResult {
   Recording recording;  // as the sensors saw it

@@ -1,11 +1,33 @@
-// [sensors] and [recording] as they are declared; sensors.cpp and recording.cpp read them.
+// [sensors] and [recording], which sensors.cpp and recording.cpp read.
 #pragma once
 
 #include <vector>
 
-#include "core/settings/keys.h"
+#include "core/settings/typed_keys.h"
 
 namespace photorque {
+
+namespace recording_key {
+inline constexpr OtherKey columns(
+    "columns", Key::a_table,
+    "`{ gyro_x_rad_s = \"wx\", … }`: the file's name of a channel. A unit in the "
+    "channel's key converts: `gyro_x_deg_s = \"wx\"`",
+    {.usually = "names as they are"});
+inline constexpr ChoiceKey angle_sequence(
+    "angle_sequence",
+    {{"found",
+      "the one with which the rates integrate to the angles; `zyx` where there are no rates"},
+     {"zyx", "q = Rz(yaw) Ry(pitch) Rx(roll)"},
+     {"xyz", "q = Rx(roll) Ry(pitch) Rz(yaw)"},
+     {"xzy", "q = Rx(roll) Rz(yaw) Ry(pitch)"},
+     {"yxz", "q = Ry(pitch) Rx(roll) Rz(yaw)"},
+     {"yzx", "q = Ry(pitch) Rz(yaw) Rx(roll)"},
+     {"zxy", "q = Rz(yaw) Rx(roll) Ry(pitch)"}},
+    0, "in which roll, pitch and yaw are turned, about axes that turn along");
+inline constexpr FlagKey remove_outliers(
+    "remove_outliers", true, "empties cells of attitude and gyro far from all neighbours");
+inline constexpr TableKey recording("recording", "how files of recordings are read");
+}  // namespace recording_key
 
 // The instruments of the attitude; those of light and power are in diagnosis/light/model.
 std::vector<Key> sensor_keys();

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "attitude/recordings/cleaning.h"
+#include "attitude/recordings/keys.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/files.h"
 #include "core/numerics/steady_stretches.h"
@@ -313,16 +314,15 @@ Schedule Recording::schedule() const {
 
 RecordingOptions read_recording_options(const Settings& settings) {
   RecordingOptions options;
-  if (settings.has("columns")) {
-    const Settings columns = settings.table("columns");
+  if (settings.has(recording_key::columns)) {
+    const Settings columns = settings.table(recording_key::columns);
     for (const std::string& channel : columns.keys()) {
       options.columns[channel] = columns.text(channel);
     }
   }
-  options.remove_outliers = settings.flag_or("remove_outliers", true);
-  const std::vector<std::string> sequences = {"found", "zyx", "xyz", "xzy", "yxz", "yzx", "zxy"};
-  const size_t sequence = settings.choice_or("angle_sequence", sequences, 0);
-  if (sequence > 0) options.angle_sequence = sequences[sequence];
+  options.remove_outliers = settings.get(recording_key::remove_outliers);
+  const size_t sequence = settings.get(recording_key::angle_sequence);
+  if (sequence > 0) options.angle_sequence = recording_key::angle_sequence.words[sequence].name;
   return options;
 }
 
@@ -331,8 +331,8 @@ Recording read_recording(const std::filesystem::path& path, const RecordingOptio
 }
 
 void refuse_absent_columns(const Settings& settings, const std::vector<const Recording*>& of) {
-  if (!settings.has("columns")) return;
-  const Settings columns = settings.table("columns");
+  if (!settings.has(recording_key::columns)) return;
+  const Settings columns = settings.table(recording_key::columns);
   for (const std::string& channel : columns.keys()) {
     const std::string written = columns.text(channel);
     const bool absent = std::ranges::all_of(

@@ -4,11 +4,67 @@
 #include <algorithm>
 #include <cmath>
 
+#include "attitude/camera/keys.h"
 #include "core/numerics/random.h"
+#include "core/settings/typed_keys.h"
 #include "core/snapshot.h"
 
 namespace photorque {
 namespace {
+
+namespace sensor_key {
+constexpr Vec3Key noise("noise_arcsec", usual_camera_noise_rad,
+                        "standard deviation about lab x, y, z");
+constexpr NumberKey rate("rate_Hz", 0.0, Range::not_negative(), "of readings; 0: every row");
+constexpr TableKey camera("camera", "sees the attitude",
+                          {.usually = "without any `[sensors]` an ideal one"});
+constexpr NumberKey angle_noise("noise_arcsec", Range::positive(), "standard deviation");
+constexpr TableKey angle("angle", "the angle of a one-axis platform, instead of a camera");
+constexpr NumberKey gyro_noise("noise_rad_s", 0.0, Range::not_negative(), "per reading and axis");
+constexpr NumberKey bias_drift("bias_drift", 0.0, Range::not_negative(),
+                               "random walk of the bias, rad/s per √s");
+constexpr TableKey gyro("gyro", "feels the rate",
+                        {.usually = "without any `[sensors]` an ideal one"});
+constexpr NumberKey accelerometer_noise("noise_m_s2", 0.0, Range::not_negative(),
+                                        "per reading and axis; 0: found in the readings");
+constexpr Vec3Key position("position_m", {0.0, 0.0, 0.0},
+                           "from the centre of rotation (of mass, where nothing carries it)");
+constexpr Vec3Key bias("bias_m_s2", {0.0, 0.0, 0.0}, "what it reads too much");
+constexpr TableKey accelerometer("accelerometer", "feels the specific force; for `diagnose`");
+constexpr NumberKey magnetometer_noise("noise_T", 0.0, Range::not_negative(),
+                                       "per reading and axis; 0: found in the readings");
+constexpr Vec3Key magnetometer_bias("bias_T", {0.0, 0.0, 0.0},
+                                    "the platform's own field, body axes");
+constexpr TableKey magnetometer("magnetometer",
+                                "feels the environment's magnetic field; for `diagnose`");
+constexpr NumberKey place_noise("noise_m", 0.0, Range::not_negative(),
+                                "per reading and axis; 0: found in the readings");
+constexpr NumberKey velocity_noise("noise_m_s", 0.0, Range::not_negative(),
+                                   "the same of a velocity; 0: none is recorded");
+constexpr TableKey place("position", "sees where a planar platform is");
+constexpr NumberKey resolution("resolution_arcsec", Range::positive(), "step of the heading");
+constexpr TableKey encoder("encoder", "reads the heading");
+constexpr NumberKey current_noise("current_noise_A", 0.0, Range::not_negative(),
+                                  "on the battery's current");
+constexpr NumberKey power_noise("power_noise_W", 0.0, Range::not_negative(),
+                                "on the array's power");
+constexpr TableKey power("power", "reads battery and array");
+constexpr ChoiceKey noise_is(
+    "noise_is",
+    {{"found", "`diagnose` looks for level and correlation of the noise in the recordings"},
+     {"stated", "it takes them as stated here"}},
+    0, "where the noise is known from");
+}  // namespace sensor_key
+
+// The errors that stand with an instrument as well as in [[disturbance]].
+std::vector<Key> errors_of(const std::string& instrument) {
+  std::vector<Key> keys;
+  for (const DisturbanceKind& kind : disturbance_kinds()) {
+    if (kind.instrument != instrument) continue;
+    for (const Key& key : kind.keys) keys.push_back(Key(key).usually_is("0"));
+  }
+  return keys;
+}
 
 // One stream of random numbers for each purpose.
 enum Stream : uint64_t {
@@ -45,14 +101,14 @@ void read_errors(const Settings& settings, const DisturbanceContext& context,
 void read_camera_noise(const Settings& s, Sensors::Camera& camera) {
   camera.geometry = read_tracking_camera(s);
   if (!camera.geometry) {
-    camera.noise_rad = s.vector3_or("noise_arcsec", camera.noise_rad);
+    camera.noise_rad = s.get(sensor_key::noise);
     if ((camera.noise_rad.array() < 0.0).any()) {
-      throw s.error("noise_arcsec", "a negative number", "numbers >= 0");
+      throw s.error(sensor_key::noise, "a negative number", "numbers >= 0");
     }
     return;
   }
-  if (s.has("noise_arcsec")) {
-    throw s.error("noise_arcsec", "a noise beside markers_m", "one of them");
+  if (s.has(sensor_key::noise)) {
+    throw s.error(sensor_key::noise, "a noise beside markers_m", "one of them");
   }
   const auto covariance = attitude_covariance_lab_rad2(*camera.geometry, {});
   if (!covariance) {
@@ -97,54 +153,52 @@ Sensors perfect_sensors() {
 
 Sensors read_sensors(const Settings& settings, const DisturbanceContext& context) {
   Sensors sensors;
-  const Range not_negative = Range::not_negative();
-  if (settings.has("camera")) {
-    const Settings s = settings.table("camera");
+  if (settings.has(sensor_key::camera)) {
+    const Settings s = settings.get(sensor_key::camera);
     Sensors::Camera& camera = sensors.camera.emplace();
     read_camera_noise(s, camera);
-    camera.rate_Hz = s.number_or("rate_Hz", 0.0, not_negative);
+    camera.rate_Hz = s.get(sensor_key::rate);
     read_errors(s, context, "camera", sensors.errors);
   }
-  if (settings.has("angle")) {
-    const double noise_rad = settings.table("angle").number("noise_arcsec", Range::positive());
+  if (settings.has(sensor_key::angle)) {
+    const double noise_rad = settings.get(sensor_key::angle).get(sensor_key::angle_noise);
     sensors.camera.emplace().noise_rad = Vec3::Constant(noise_rad);
   }
-  if (settings.has("gyro")) {
-    const Settings s = settings.table("gyro");
+  if (settings.has(sensor_key::gyro)) {
+    const Settings s = settings.get(sensor_key::gyro);
     Sensors::Gyro& gyro = sensors.gyro.emplace();
-    gyro.noise_rad_s = s.number_or("noise_rad_s", 0.0, not_negative);
-    gyro.bias_drift_rad_s_1_s = s.number_or("bias_drift", 0.0, not_negative);
-    gyro.rate_Hz = s.number_or("rate_Hz", 0.0, not_negative);
+    gyro.noise_rad_s = s.get(sensor_key::gyro_noise);
+    gyro.bias_drift_rad_s_1_s = s.get(sensor_key::bias_drift);
+    gyro.rate_Hz = s.get(sensor_key::rate);
     read_errors(s, context, "gyro", sensors.errors);
   }
-  if (settings.has("accelerometer")) {
-    const Settings s = settings.table("accelerometer");
+  if (settings.has(sensor_key::accelerometer)) {
+    const Settings s = settings.get(sensor_key::accelerometer);
     Sensors::Accelerometer& accelerometer = sensors.accelerometer.emplace();
-    accelerometer.noise_m_s2 = s.number_or("noise_m_s2", 0.0, not_negative);
-    accelerometer.position_m = s.vector3_or("position_m", Vec3::Zero());
-    accelerometer.bias_m_s2 = s.vector3_or("bias_m_s2", Vec3::Zero());
+    accelerometer.noise_m_s2 = s.get(sensor_key::accelerometer_noise);
+    accelerometer.position_m = s.get(sensor_key::position);
+    accelerometer.bias_m_s2 = s.get(sensor_key::bias);
   }
-  if (settings.has("magnetometer")) {
-    const Settings s = settings.table("magnetometer");
+  if (settings.has(sensor_key::magnetometer)) {
+    const Settings s = settings.get(sensor_key::magnetometer);
     Sensors::Magnetometer& magnetometer = sensors.magnetometer.emplace();
-    magnetometer.noise_T = s.number_or("noise_T", 0.0, not_negative);
-    magnetometer.bias_T = s.vector3_or("bias_T", Vec3::Zero());
+    magnetometer.noise_T = s.get(sensor_key::magnetometer_noise);
+    magnetometer.bias_T = s.get(sensor_key::magnetometer_bias);
   }
-  if (settings.has("position")) {
-    const Settings s = settings.table("position");
-    sensors.position = {s.number_or("noise_m", 0.0, not_negative),
-                        s.number_or("noise_m_s", 0.0, not_negative)};
+  if (settings.has(sensor_key::place)) {
+    const Settings s = settings.get(sensor_key::place);
+    sensors.position = {s.get(sensor_key::place_noise), s.get(sensor_key::velocity_noise)};
   }
-  if (settings.has("encoder")) {
+  if (settings.has(sensor_key::encoder)) {
     sensors.encoder.emplace().resolution_rad =
-        settings.table("encoder").number("resolution_arcsec", Range::positive());
+        settings.get(sensor_key::encoder).get(sensor_key::resolution);
   }
-  if (settings.has("power")) {
-    const Settings s = settings.table("power");
-    sensors.power.current_noise_A = s.number_or("current_noise_A", 0.0, not_negative);
-    sensors.power.power_noise_W = s.number_or("power_noise_W", 0.0, not_negative);
+  if (settings.has(sensor_key::power)) {
+    const Settings s = settings.get(sensor_key::power);
+    sensors.power.current_noise_A = s.get(sensor_key::current_noise);
+    sensors.power.power_noise_W = s.get(sensor_key::power_noise);
   }
-  sensors.noise_is_stated = settings.choice_or("noise_is", {"found", "stated"}, 0) == 1;
+  sensors.noise_is_stated = settings.get(sensor_key::noise_is) == 1;
   // Whoever reads light reads its instruments.
   for (const char* of_light : {"irradiance", "array"}) {
     if (settings.has(of_light)) settings.raw(of_light);
@@ -275,6 +329,19 @@ void Recorder::keep(Snapshot& snapshot) {
     channel.values.resize(recording_.rows());
     snapshot.fixed(channel.values);
   });
+}
+
+std::vector<Key> sensor_keys() {
+  using namespace sensor_key;
+  return {camera.of(joined({{noise, rate}, errors_of("camera"), tracking_camera_keys()})),
+          angle.of({angle_noise}),
+          gyro.of(joined({{sensor_key::gyro_noise, bias_drift, rate}, errors_of("gyro")})),
+          accelerometer.of({accelerometer_noise, position, bias}),
+          magnetometer.of({magnetometer_noise, magnetometer_bias}),
+          place.of({sensor_key::place_noise, velocity_noise}),
+          encoder.of({resolution}),
+          power.of({sensor_key::current_noise, sensor_key::power_noise}),
+          noise_is};
 }
 
 }  // namespace photorque

@@ -21,11 +21,15 @@ namespace photorque {
 
 class Snapshot;  // core/snapshot.h
 
+inline constexpr std::array<double, 3> usual_camera_noise_rad = {
+    37 * arcsecond_rad, 37 * arcsecond_rad, 12 * arcsecond_rad};
+
 // Star-tracker-like camera that reports attitudes. Defaults: the source paper's, 12 arcsec in the
 // image plane (about lab z, for a camera above) and 37 arcsec out of it.
 struct CameraInstrument {
-  Vec3 noise_rad = Vec3(37, 37, 12) * arcsecond_rad;  // about lab x, y, z; one standard deviation
-  double rate_Hz = 0.0;                               // 0: in every row
+  Vec3 noise_rad =
+      Vec3(usual_camera_noise_rad.data());  // about lab x, y, z; one standard deviation
+  double rate_Hz = 0.0;                     // 0: in every row
   // Where it is given, the noise follows from it at every attitude and rate; noise_rad is then
   // that at zero tilt.
   std::optional<TrackingCamera> geometry = {};

@@ -8,11 +8,49 @@
 #include "attitude/propagation/run.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/settings/typed_keys.h"
 #include "core/text/parse.h"
 #include "core/transform.h"
 
 namespace photorque {
 namespace {
+
+namespace budget_key {
+constexpr BearingDatasheet usual;
+constexpr NumberKey source_to_cell("source_to_cell", Range::fraction(),
+                                   "light on the cells over what is emitted",
+                                   {.usually = "the paper's"});
+constexpr NumberKey conversion("conversion", Range::fraction(), "of light on the cells to power",
+                               {.usually = "the paper's"});
+constexpr NumberKey power("power_W", Range::positive(), "of the array at zero tilt",
+                          {.usually = "the paper's"});
+constexpr NumberKey power_at_30("power_at_30_deg_W", Range::positive(), "of the array at 30 deg",
+                                {.usually = "the paper's"});
+constexpr Vec3Key torque_at_30("torque_at_30_deg_N_m", "of the light at 30 deg, body axes",
+                               {.usually = "the paper's"});
+constexpr TableKey light("light", "what `power` printed, beside the paper's");
+constexpr TextKey name("name", "of the bearing");
+constexpr NumberKey radius("radius_m", Range::positive(), "of the ball");
+constexpr NumberKey half_angle("half_angle_deg", {0.0, 0.5 * pi, true, false}, "of the socket");
+constexpr NumberKey gap("gap_m", Range::positive(), "of the film");
+constexpr NumberKey inlet("inlet_Pa", Range::positive(), "absolute");
+constexpr NumberKey load("load_N", Range::positive(), "rated");
+constexpr NumberKey drag("drag_N_m", 0.0, Range::not_negative(), "0: not printed");
+constexpr NumberKey drag_rate("drag_rate_rpm", usual.drag_rate_rad_s, Range::positive(),
+                              "at which the drag was measured");
+constexpr TablesKey bearing("bearing", "a catalogue's bearing beside the paper's model");
+constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi, false, false}, "attitude, as in `[propagate]`");
+constexpr NumberKey heading("heading_deg", 0.0, {}, "where it leans to");
+constexpr NumberKey spin("spin_rpm", 0.0, {}, "about the lab's vertical");
+constexpr Vec3Key rate("rate_rad_s", {0.0, 0.0, 0.0}, "body axes, added");
+constexpr NumberKey state_of_charge("state_of_charge", Range::fraction(),
+                                    "below 1 needs `platform.battery_capacity_Ah`; *or*",
+                                    {.usually = "1"});
+constexpr NumberKey charge_drawn("charge_drawn_Ah", 0.0, Range::not_negative(),
+                                 "since the battery was full");
+constexpr NumberKey time("time_s", 0.0, {}, "of laws in time");
+constexpr TableKey budget("budget", "the state at which torques are compared");
+}  // namespace budget_key
 
 constexpr double minute_s = 60.0, hour_s = 3600.0, day_s = 86400.0;
 
@@ -38,50 +76,48 @@ Quat lab_from_body(double tilt_rad, double heading_rad) {
 }
 
 double read_charge_drawn_C(const Settings& settings, const Platform& platform) {
-  if (!settings.has("state_of_charge")) {
-    const double drawn_C = settings.number_or("charge_drawn_Ah", 0.0, Range::not_negative());
+  if (!settings.has(budget_key::state_of_charge)) {
+    const double drawn_C = settings.get(budget_key::charge_drawn);
     if (platform.battery_capacity_C && drawn_C > *platform.battery_capacity_C) {
-      throw settings.error("charge_drawn_Ah", shortest(drawn_C / 3600.0),
+      throw settings.error(budget_key::charge_drawn, shortest(drawn_C / 3600.0),
                            "no more than platform.battery_capacity_Ah");
     }
     return drawn_C;
   }
-  if (settings.has("charge_drawn_Ah")) {
-    throw settings.error("charge_drawn_Ah", "state_of_charge too", "one of the two");
+  if (settings.has(budget_key::charge_drawn)) {
+    throw settings.error(budget_key::charge_drawn, "state_of_charge too", "one of the two");
   }
-  const double state_of_charge = settings.number("state_of_charge", Range::fraction());
+  const double state_of_charge = settings.get(budget_key::state_of_charge);
   if (state_of_charge < 1.0 && !platform.battery_capacity_C) {
-    throw settings.error("state_of_charge", "no platform.battery_capacity_Ah",
+    throw settings.error(budget_key::state_of_charge, "no platform.battery_capacity_Ah",
                          "the battery's capacity beside its state of charge");
   }
   return (1.0 - state_of_charge) * platform.battery_capacity_C.value_or(0.0);
 }
 
 PlatformState read_state(const Settings& settings, const AttitudeModel& model) {
-  const Quat attitude = lab_from_body(settings.number_or("tilt_deg", 0.0, {0.0, pi, false, false}),
-                                      settings.number_or("heading_deg", 0.0));
-  const Vec3 spin_lab_rad_s(0.0, 0.0, settings.number_or("spin_rpm", 0.0));
+  const Quat attitude =
+      lab_from_body(settings.get(budget_key::tilt), settings.get(budget_key::heading));
+  const Vec3 spin_lab_rad_s(0.0, 0.0, settings.get(budget_key::spin));
   const Vec3 rate_body_rad_s =
-      attitude.conjugate() * spin_lab_rad_s + settings.vector3_or("rate_rad_s", Vec3::Zero());
+      attitude.conjugate() * spin_lab_rad_s + settings.get(budget_key::rate);
   PlatformState state = Dynamics(model).initial_state(rate_body_rad_s);
   state.lab_from_body = attitude;
-  state.time_s = settings.number_or("time_s", 0.0);
+  state.time_s = settings.get(budget_key::time);
   state.charge_drawn_C = read_charge_drawn_C(settings, model.platform);
   return state;
 }
 
 std::vector<BearingDatasheet> read_catalogue(const Settings& settings) {
   std::vector<BearingDatasheet> catalogue;
-  for (const Settings& s : settings.tables("bearing")) {
+  for (const Settings& s : settings.get(budget_key::bearing)) {
     BearingDatasheet b;
-    b.name = s.text("name");
-    b.socket = {s.number("radius_m", Range::positive()),
-                s.number("half_angle_deg", {0.0, pi / 2, true, false}),
-                s.number("gap_m", Range::positive())};
-    b.inlet_Pa = s.number("inlet_Pa", Range::positive());
-    b.load_N = s.number("load_N", Range::positive());
-    b.drag_N_m = s.number_or("drag_N_m", 0.0, Range::not_negative());
-    b.drag_rate_rad_s = s.number_or("drag_rate_rpm", b.drag_rate_rad_s, Range::positive());
+    b.name = s.get(budget_key::name);
+    b.socket = {s.get(budget_key::radius), s.get(budget_key::half_angle), s.get(budget_key::gap)};
+    b.inlet_Pa = s.get(budget_key::inlet);
+    b.load_N = s.get(budget_key::load);
+    b.drag_N_m = s.get(budget_key::drag);
+    b.drag_rate_rad_s = s.get(budget_key::drag_rate);
     catalogue.push_back(b);
   }
   return catalogue;
@@ -178,14 +214,13 @@ std::vector<AirPart> read_own_air_parts(const Settings& root) {
 
 PaperLight read_light(const Settings& settings) {
   PaperLight light;
-  if (!settings.has("light")) return light;
-  const Settings s = settings.table("light");
-  light.source_to_cell = s.number_or("source_to_cell", light.source_to_cell, Range::fraction());
-  light.conversion = s.number_or("conversion", light.conversion, Range::fraction());
-  light.power_W = s.number_or("power_W", light.power_W, Range::positive());
-  light.power_at_30_deg_W =
-      s.number_or("power_at_30_deg_W", light.power_at_30_deg_W, Range::positive());
-  light.torque_at_30_deg_N_m = s.vector3_or("torque_at_30_deg_N_m", light.torque_at_30_deg_N_m);
+  if (!settings.has(budget_key::light)) return light;
+  const Settings s = settings.get(budget_key::light);
+  light.source_to_cell = s.get_or(budget_key::source_to_cell, light.source_to_cell);
+  light.conversion = s.get_or(budget_key::conversion, light.conversion);
+  light.power_W = s.get_or(budget_key::power, light.power_W);
+  light.power_at_30_deg_W = s.get_or(budget_key::power_at_30, light.power_at_30_deg_W);
+  light.torque_at_30_deg_N_m = s.get_or(budget_key::torque_at_30, light.torque_at_30_deg_N_m);
   return light;
 }
 
@@ -290,7 +325,7 @@ Budget make_budget(AttitudeModel model, const PlatformState& state) {
 
 Budget read_budget(const Settings& root) {
   AttitudeModel model = read_attitude_model(root).model;
-  if (!root.has("budget")) {
+  if (!root.has(budget_key::budget)) {
     const PlatformState upright = Dynamics(model).initial_state();
     Budget budget = make_budget(std::move(model), upright);
     budget.air_parts = read_own_air_parts(root);
@@ -302,7 +337,7 @@ Budget read_budget(const Settings& root) {
   Budget budget = make_budget(std::move(model), state);
   budget.catalogue = read_catalogue(settings);
   budget.light = read_light(settings);
-  budget.beside_paper = settings.has("light") || settings.has("bearing");
+  budget.beside_paper = settings.has(budget_key::light) || settings.has(budget_key::bearing);
   budget.air_parts = read_own_air_parts(root);
   settings.finish();
   return budget;
@@ -333,6 +368,13 @@ Product budget_product(const Budget& budget) {
     product.quantities.push_back({"bearing_drag_mean_ratio", {c.drag_ratio, 0.0}});
   }
   return product;
+}
+
+Key budget_table() {
+  using namespace budget_key;
+  return budget.of({tilt, heading, spin, rate, state_of_charge, charge_drawn, time,
+                    bearing.of({name, radius, half_angle, gap, inlet, load, drag, drag_rate}),
+                    light.of({source_to_cell, conversion, power, power_at_30, torque_at_30})});
 }
 
 }  // namespace photorque

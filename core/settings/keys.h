@@ -1,11 +1,9 @@
 // What a table of an experiment may hold: every key once, with type, unit, range, default and a
 // sentence.
 //
-// Each room declares the keys that it reads beside their readers, in the words of the readers:
-//   Key::number_or("tilt_deg", 0.0, {0.0, pi}, "the body's z axis leans by this")
-// stands for settings.number_or("tilt_deg", 0.0, {0.0, pi}). Schema, tables in documents and
-// `check` are made from these declarations; tests/tools/keys_test.cpp holds them against what the
-// readers ask for, expect and take by default.
+// A reader's keys are typed constants (core/settings/typed_keys.h), which each room lists beside
+// their readers; what has no constant name or default is declared by the functions below, in the
+// words of the readers. Schema, tables in documents and `check` are made from these declarations.
 #pragma once
 
 #include <optional>

@@ -25,12 +25,6 @@ struct Settings::Log {
   }
 };
 
-// Told of every key that a reader asks for, and of its default (SI) where the reader has one. It
-// does nothing and is a weak symbol: the test that holds the readers against the declared keys
-// (core/settings/keys.h) puts its own in the place of this one.
-void note_asked(const SettingsNode& table, const std::string& name, std::string_view key,
-                const SettingsNode* otherwise_SI);
-
 // Twelve significant digits, as people write numbers.
 std::string format_setting(double x);
 

@@ -100,10 +100,6 @@ std::string known_instead_of(std::string_view key, const std::set<std::string>& 
   return "one of " + list + (count > most ? ", …" : "");
 }
 
-__attribute__((weak)) void note_asked(const SettingsNode& /*table*/, const std::string& /*name*/,
-                                      std::string_view /*key*/,
-                                      const SettingsNode* /*otherwise_SI*/) {}
-
 Settings::Settings(std::shared_ptr<const SettingsNode> root, std::string name)
     : node_(root.get()),
       root_(std::move(root)),
@@ -134,7 +130,6 @@ InputError Settings::error(std::string_view key, const std::string& found,
 
 const SettingsNode* Settings::find(std::string_view key, double* factor) const {
   log_->asked[node_].insert(std::string(key));
-  note_asked(*node_, name_, key, nullptr);
   const auto& table = std::get<SettingsNode::Table>(node_->value);
   const KeyUnit wanted = unit_of_key(key);
   *factor = wanted.to_SI;
@@ -180,7 +175,6 @@ const SettingsNode& Settings::require(std::string_view key, double* factor,
 
 bool Settings::has(std::string_view key) const {
   log_->asked[node_].insert(std::string(key));
-  note_asked(*node_, name_, key, nullptr);
   const auto& table = std::get<SettingsNode::Table>(node_->value);
   if (table.contains(key)) return true;
   const KeyUnit wanted = unit_of_key(key);

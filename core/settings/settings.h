@@ -44,9 +44,9 @@ struct Range {
   bool low_open = false;
   bool high_open = false;
 
-  static Range positive() { return {0.0, 1e308, true, false}; }
-  static Range not_negative() { return {0.0, 1e308, false, false}; }
-  static Range fraction() { return {0.0, 1.0, false, false}; }
+  static constexpr Range positive() { return {0.0, 1e308, true, false}; }
+  static constexpr Range not_negative() { return {0.0, 1e308, false, false}; }
+  static constexpr Range fraction() { return {0.0, 1.0, false, false}; }
 };
 
 // A number with the user's one-sigma uncertainty (0: exact). SI units.
@@ -73,6 +73,18 @@ class Settings {
   explicit Settings(std::shared_ptr<const SettingsNode> root, std::string name = "");
 
   bool has(std::string_view key) const;
+
+  // What a key of core/settings/typed_keys.h holds, within its range; its default, or `otherwise`,
+  // where the user did not write it.
+  template <class TypedKey>
+  auto get(const TypedKey& key) const {
+    return key.read(*this);
+  }
+  template <class TypedKey, class Value>
+  auto get_or(const TypedKey& key, const Value& otherwise) const -> decltype(key.read(*this)) {
+    if (!has(key)) return otherwise;
+    return key.read(*this);
+  }
 
   double number(std::string_view key, Range range = {}) const;
   double number_or(std::string_view key, double otherwise_SI, Range range = {}) const;

@@ -42,15 +42,6 @@ std::string one_of(const std::vector<std::string>& choices, const std::string& i
   return known + " (did you mean \"" + likest + "\"?)";
 }
 
-namespace {
-
-void note_default(const SettingsNode& otherwise_SI, const SettingsNode& table,
-                  const std::string& name, std::string_view key) {
-  note_asked(table, name, key, &otherwise_SI);
-}
-
-}  // namespace
-
 double Settings::to_number(const SettingsNode& node, std::string_view key, double factor,
                            Range range) const {
   log_->read.insert(&node);
@@ -89,7 +80,6 @@ double Settings::number(std::string_view key, Range range) const {
 }
 
 double Settings::number_or(std::string_view key, double otherwise_SI, Range range) const {
-  note_default({otherwise_SI}, *node_, name_, key);
   double factor = 1.0;
   const SettingsNode* node = find(key, &factor);
   return node == nullptr ? otherwise_SI : to_number(*node, key, factor, range);
@@ -153,12 +143,10 @@ int64_t Settings::integer(std::string_view key, int64_t low, int64_t high) const
 
 int64_t Settings::integer_or(std::string_view key, int64_t otherwise, int64_t low,
                              int64_t high) const {
-  note_default({otherwise}, *node_, name_, key);
   return has(key) ? integer(key, low, high) : otherwise;
 }
 
 bool Settings::flag_or(std::string_view key, bool otherwise) const {
-  note_default({otherwise}, *node_, name_, key);
   double factor = 1.0;
   const SettingsNode* node = find(key, &factor);
   if (node == nullptr) return otherwise;
@@ -177,7 +165,6 @@ std::string Settings::text(std::string_view key) const {
 }
 
 std::string Settings::text_or(std::string_view key, std::string_view otherwise) const {
-  note_default({std::string(otherwise)}, *node_, name_, key);
   return has(key) ? text(key) : std::string(otherwise);
 }
 
@@ -195,7 +182,6 @@ size_t Settings::choice(std::string_view key, const std::vector<std::string>& ch
 
 size_t Settings::choice_or(std::string_view key, const std::vector<std::string>& choices,
                            size_t otherwise) const {
-  note_default({choices.at(otherwise)}, *node_, name_, key);
   return has(key) ? choice(key, choices) : otherwise;
 }
 
@@ -206,8 +192,6 @@ Vec3 Settings::vector3(std::string_view key) const {
 }
 
 Vec3 Settings::vector3_or(std::string_view key, const Vec3& otherwise_SI) const {
-  note_default({SettingsNode::Array{{otherwise_SI[0]}, {otherwise_SI[1]}, {otherwise_SI[2]}}},
-               *node_, name_, key);
   double factor = 1.0;
   const SettingsNode* node = find(key, &factor);
   return node == nullptr ? otherwise_SI : to_vector3(*node, key, factor);

@@ -4,8 +4,53 @@
 #include <array>
 #include <cmath>
 
+#include "core/settings/typed_keys.h"
+
 namespace photorque {
 namespace {
+
+namespace day_key {
+constexpr double year_s = 366.0 * 86400.0;
+constexpr DaySettings usual;
+constexpr CellHeat usual_heat;
+constexpr Range efficiency{0.0, 1.0, true, false};
+constexpr NumberKey load("load_W", usual.load_W, Range::not_negative(),
+                         "what is drawn all the time");
+constexpr NumberKey duration("duration_s", usual.duration_s, {0.0, year_s, true, false},
+                             "in steps of at most 30 s");
+constexpr FlagKey lamps_on("lamps_on", true, "false: the battery alone");
+constexpr NumberKey battery("battery_Wh", usual.battery.capacity_J, Range::positive(), "capacity");
+constexpr NumberKey battery_charge("battery_charge", usual.battery.charge, Range::fraction(),
+                                   "at the start");
+constexpr NumberKey charge_efficiency("charge_efficiency", usual.battery.charge_efficiency,
+                                      efficiency, "stored over delivered to it");
+constexpr NumberKey discharge_efficiency("discharge_efficiency", usual.battery.discharge_efficiency,
+                                         efficiency, "delivered over taken out of store");
+constexpr NumberKey converter_efficiency("converter_efficiency", usual.converter_efficiency,
+                                         efficiency,
+                                         "between array and battery; not that of `[array.chain]`");
+constexpr NumberKey droop_depth("droop_depth", usual.droop.depth, {0.0, 1.0, false, true},
+                                "fraction of their light that lamps lose when warm");
+constexpr NumberKey droop_time("droop_time_s", usual.droop.time_constant_s, Range::positive(),
+                               "within this time constant");
+constexpr NumberKey roll_off(
+    "roll_off_per_K", usual.droop.roll_off_1_K, {0.0, 0.1},
+    "fraction of their light that lamps lose per kelvin of their junctions (red LEDs about 5e-3)");
+constexpr NumberKey lamp_rise("lamp_rise_K", usual.droop.rise_K, {0.0, 300.0},
+                              "how much warmer the junctions become");
+constexpr NumberKey lamp_rise_time("lamp_rise_time_s", usual.droop.rise_time_constant_s,
+                                   Range::positive(), "within this time constant");
+constexpr FlagKey heat("heat", true,
+                       "cell temperature from the light, beginning at `air_K`; false: "
+                       "`array.temperature_K`, and the four keys below are unknown");
+constexpr NumberKey air("air_K", usual_heat.air_K, Range::positive(), "of the room");
+constexpr NumberKey convection("convection_W_m2_K", usual_heat.convection_W_m2_K, Range::positive(),
+                               "both faces and radiation, per area of the cells");
+constexpr NumberKey absorptance("absorptance", usual_heat.absorptance, Range::fraction(),
+                                "of the light on the cells; at least what they deliver");
+constexpr NumberKey capacity("capacity_J_m2_K", usual_heat.capacity_J_m2_K, Range::positive(),
+                             "about 1 mm of glass");
+}  // namespace day_key
 
 // Power over temperature and light, on a small grid.
 class PowerSurface {
@@ -113,36 +158,29 @@ DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const Day
 
 DaySettings read_day(const Settings& s) {
   DaySettings day;
-  day.load_W = s.number_or("load_W", day.load_W, Range::not_negative());
-  constexpr double year_s = 366.0 * 86400.0;
-  day.duration_s = s.number_or("duration_s", day.duration_s, {0.0, year_s, true, false});
-  day.lamps_on = s.flag_or("lamps_on", true);
-  day.converter_efficiency =
-      s.number_or("converter_efficiency", day.converter_efficiency, {0.0, 1.0, true, false});
-  day.battery.capacity_J = s.number_or("battery_J", 360.0 * 3600.0, Range::positive());
-  day.battery.charge = s.number_or("battery_charge", 1.0, Range::fraction());
-  day.battery.charge_efficiency =
-      s.number_or("charge_efficiency", day.battery.charge_efficiency, {0.0, 1.0, true, false});
-  day.battery.discharge_efficiency = s.number_or(
-      "discharge_efficiency", day.battery.discharge_efficiency, {0.0, 1.0, true, false});
-  day.droop.depth = s.number_or("droop_depth", 0.0, {0.0, 1.0, false, true});
-  day.droop.time_constant_s =
-      s.number_or("droop_time_s", day.droop.time_constant_s, Range::positive());
-  day.droop.roll_off_1_K = s.number_or("roll_off_per_K", 0.0, {0.0, 0.1});
-  day.droop.rise_K = s.number_or("lamp_rise_K", 0.0, {0.0, 300.0});
-  day.droop.rise_time_constant_s =
-      s.number_or("lamp_rise_time_s", day.droop.rise_time_constant_s, Range::positive());
+  day.load_W = s.get(day_key::load);
+  day.duration_s = s.get(day_key::duration);
+  day.lamps_on = s.get(day_key::lamps_on);
+  day.converter_efficiency = s.get(day_key::converter_efficiency);
+  day.battery.capacity_J = s.get(day_key::battery);
+  day.battery.charge = s.get(day_key::battery_charge);
+  day.battery.charge_efficiency = s.get(day_key::charge_efficiency);
+  day.battery.discharge_efficiency = s.get(day_key::discharge_efficiency);
+  day.droop.depth = s.get(day_key::droop_depth);
+  day.droop.time_constant_s = s.get(day_key::droop_time);
+  day.droop.roll_off_1_K = s.get(day_key::roll_off);
+  day.droop.rise_K = s.get(day_key::lamp_rise);
+  day.droop.rise_time_constant_s = s.get(day_key::lamp_rise_time);
   if (!(day.droop.roll_off_1_K * day.droop.rise_K < 1.0)) {
-    throw s.error("roll_off_per_K", "a roll-off that leaves no light at lamp_rise_K",
+    throw s.error(day_key::roll_off, "a roll-off that leaves no light at lamp_rise_K",
                   "roll_off_per_K * lamp_rise_K < 1");
   }
-  if (s.flag_or("heat", true)) {
+  if (s.get(day_key::heat)) {
     CellHeat heat;
-    heat.air_K = s.number_or("air_K", heat.air_K, Range::positive());
-    heat.convection_W_m2_K =
-        s.number_or("convection_W_m2_K", heat.convection_W_m2_K, Range::positive());
-    heat.absorptance = s.number_or("absorptance", heat.absorptance, Range::fraction());
-    heat.capacity_J_m2_K = s.number_or("capacity_J_m2_K", heat.capacity_J_m2_K, Range::positive());
+    heat.air_K = s.get(day_key::air);
+    heat.convection_W_m2_K = s.get(day_key::convection);
+    heat.absorptance = s.get(day_key::absorptance);
+    heat.capacity_J_m2_K = s.get(day_key::capacity);
     day.heat = heat;
   }
   return day;
@@ -170,6 +208,28 @@ Product day_product(const DayResult& day) {
   plot.below.push_back({"battery [Wh]", {{"charge", hours, charge_Wh, {}, false}}, false});
   product.plots.push_back(plot);
   return product;
+}
+
+std::vector<Key> day_keys() {
+  using namespace day_key;
+  return {load,
+          duration,
+          lamps_on,
+          battery,
+          battery_charge,
+          charge_efficiency,
+          discharge_efficiency,
+          converter_efficiency,
+          droop_depth,
+          droop_time,
+          roll_off,
+          lamp_rise,
+          lamp_rise_time,
+          heat,
+          air,
+          convection,
+          absorptance,
+          capacity};
 }
 
 }  // namespace photorque

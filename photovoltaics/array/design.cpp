@@ -4,10 +4,10 @@
 #include <cmath>
 #include <set>
 
+#include "photovoltaics/array/keys.h"
+
 namespace photorque {
 namespace {
-
-constexpr int max_cells = 100000;
 
 // Cells in the order in which they are joined.
 std::vector<int> serpentine(int columns, int rows, bool along_columns) {
@@ -36,19 +36,19 @@ ArrayWiring::String bypassed_string(const Rows& rows, const RegularWiring& optio
   return string;
 }
 
-Diode read_diode(const Settings& array, const std::string& name, Diode::Kind usual, double drop_V,
+template <class Kinds>
+Diode read_diode(const Settings& array, const Kinds& kinds, const TableKey& table, double drop_V,
                  double temperature_K) {
-  const std::vector<std::string> kinds = {"none", "ideal", "junction"};
   Diode diode;
-  diode.kind = static_cast<Diode::Kind>(array.choice_or(name, kinds, static_cast<size_t>(usual)));
+  diode.kind = static_cast<Diode::Kind>(array.get(kinds));
   diode.drop_V = drop_V;
   diode.temperature_K = temperature_K;
-  if (!array.has(name + "_diode")) return diode;
-  const Settings numbers = array.table(name + "_diode");
-  diode.drop_V = numbers.number_or("drop_V", drop_V, Range::not_negative());
-  diode.saturation_A = numbers.number_or("saturation_A", diode.saturation_A, Range::positive());
-  diode.ideality = numbers.number_or("ideality", diode.ideality, Range::positive());
-  diode.series_ohm = numbers.number_or("series_ohm", diode.series_ohm, series_ohm_range);
+  if (!array.has(table)) return diode;
+  const Settings numbers = array.get(table);
+  diode.drop_V = numbers.get(diode_key::drop.with_default(drop_V));
+  diode.saturation_A = numbers.get(diode_key::saturation);
+  diode.ideality = numbers.get(diode_key::ideality);
+  diode.series_ohm = numbers.get(diode_key::series);
   return diode;
 }
 
@@ -61,7 +61,7 @@ class WiringReader {
 
   ArrayWiring read(const Diode& bypass, const Diode& blocking) {
     ArrayWiring wiring;
-    for (const SettingsNode& string : list(array_.raw("wiring"), "strings")) {
+    for (const SettingsNode& string : list(array_.raw(array_key::wiring), "strings")) {
       ArrayWiring::String joined{{}, blocking};
       for (const SettingsNode& substring : list(string, "substrings")) {
         Rows rows;
@@ -107,63 +107,68 @@ class WiringReader {
 };
 
 void read_size(const Settings& array, ArrayDesign& design) {
-  const std::vector<double> size = array.numbers("cells", {1.0, max_cells});
+  const std::vector<double> size = array.numbers(array_key::cells, {1.0, most_cells});
   if (size.size() != 2 || size[0] != std::floor(size[0]) || size[1] != std::floor(size[1]) ||
-      size[0] * size[1] > max_cells) {
-    throw array.error("cells", "an array of " + std::to_string(size.size()) + " numbers",
+      size[0] * size[1] > most_cells) {
+    throw array.error(array_key::cells, "an array of " + std::to_string(size.size()) + " numbers",
                       "two whole numbers, at most 100000 cells");
   }
   design.columns = static_cast<int>(size[0]);
   design.rows = static_cast<int>(size[1]);
-  design.gap_m = array.number_or("gap_m", 0.0, Range::not_negative());
-  design.margin_m = array.number_or("margin_m", 0.0, Range::not_negative());
+  design.gap_m = array.get(array_key::gap);
+  design.margin_m = array.get(array_key::margin);
 }
 
 ArrayWiring read_wiring(const Settings& array, const ArrayDesign& design) {
   RegularWiring options;
-  options.bypass = read_diode(array, "bypass", Diode::Kind::clamp, 0.5, design.temperature_K);
-  options.blocking = read_diode(array, "blocking", Diode::Kind::none, 0.0, design.temperature_K);
+  options.bypass = read_diode(array, array_key::bypass, array_key::bypass_diode, bypass_drop_V,
+                              design.temperature_K);
+  options.blocking =
+      read_diode(array, array_key::blocking, array_key::blocking_diode, 0.0, design.temperature_K);
   if (options.bypass.kind == Diode::Kind::clamp && options.bypass.drop_V == 0.0) {
-    throw array.error("bypass_diode", "drop_V = 0", "a drop_V > 0 for an ideal bypass diode");
+    throw array.error(array_key::bypass_diode, "drop_V = 0",
+                      "a drop_V > 0 for an ideal bypass diode");
   }
-  if (array.has("wiring")) {
+  if (array.has(array_key::wiring)) {
     return WiringReader(array, design.cells()).read(options.bypass, options.blocking);
   }
-  options.along_columns = array.choice_or("series", {"columns", "rows"}, 0) == 0;
-  options.strings = static_cast<int>(array.integer_or("strings", 1, 1, design.cells()));
+  options.along_columns = array.get(array_key::series) == 0;
+  options.strings = static_cast<int>(array.get(array_key::strings.within(1, design.cells())));
   if (design.cells() % options.strings != 0) {
-    throw array.error("strings", std::to_string(options.strings),
+    throw array.error(array_key::strings, std::to_string(options.strings),
                       "a divisor of the " + std::to_string(design.cells()) + " cells");
   }
   const int length = design.cells() / options.strings;
-  options.bypass_every = static_cast<int>(array.integer_or("bypass_every", length, 1, length));
-  options.cross_tied = array.flag_or("cross_tied", false);
+  options.bypass_every =
+      static_cast<int>(array.get_or(array_key::bypass_every.within(1, length), length));
+  options.cross_tied = array.get(array_key::cross_tied);
   return regular_wiring(design.columns, design.rows, options);
 }
 
 // Single numbers of a cell replaced; they belong to its reference area, if that was stated.
 CellModel replaced(CellModel model, const Settings& s, bool area_is_stated) {
   CellParameters& p = model.reference;
-  p.saturation_1_A = s.number_or("saturation_1_A", p.saturation_1_A, Range::not_negative());
-  p.ideality_1 = s.number_or("ideality_1", p.ideality_1, Range::positive());
-  p.saturation_2_A = s.number_or("saturation_2_A", p.saturation_2_A, Range::not_negative());
-  p.ideality_2 = s.number_or("ideality_2", p.ideality_2, Range::positive());
-  p.series_ohm = s.number_or("series_ohm", p.series_ohm, series_ohm_range);
-  p.shunt_ohm = s.number_or("shunt_ohm", p.shunt_ohm, Range::positive());
-  p.breakdown_fraction = s.number_or("breakdown_fraction", p.breakdown_fraction, {0.0, 7.0});
-  p.breakdown_V = s.number_or("breakdown_V", p.breakdown_V, {-1e308, 0.0, false, true});
-  p.breakdown_exponent = s.number_or("breakdown_exponent", p.breakdown_exponent, {1.0, 1e3});
-  model.gap_eV = s.number_or("gap_eV", model.gap_eV, Range::positive());
-  model.gap_slope_1_K = s.number_or("gap_slope_per_K", model.gap_slope_1_K);
+  p.saturation_1_A = s.get_or(cell_key::saturation_1, p.saturation_1_A);
+  p.ideality_1 = s.get_or(cell_key::ideality_1, p.ideality_1);
+  p.saturation_2_A = s.get_or(cell_key::saturation_2, p.saturation_2_A);
+  p.ideality_2 = s.get_or(cell_key::ideality_2, p.ideality_2);
+  p.series_ohm = s.get_or(cell_key::series, p.series_ohm);
+  p.shunt_ohm = s.get_or(cell_key::shunt, p.shunt_ohm);
+  p.breakdown_fraction = s.get_or(cell_key::breakdown_fraction, p.breakdown_fraction);
+  p.breakdown_V = s.get_or(cell_key::breakdown, p.breakdown_V);
+  p.breakdown_exponent = s.get_or(cell_key::breakdown_exponent, p.breakdown_exponent);
+  model.gap_eV = s.get_or(cell_key::gap, model.gap_eV);
+  model.gap_slope_1_K = s.get_or(cell_key::gap_slope, model.gap_slope_1_K);
   model.photocurrent_slope_1_K =
-      s.number_or("photocurrent_slope_per_K", model.photocurrent_slope_1_K);
-  for (const char* key : {"saturation_1_A", "saturation_2_A", "series_ohm", "shunt_ohm"}) {
+      s.get_or(cell_key::photocurrent_slope, model.photocurrent_slope_1_K);
+  using namespace cell_key;
+  for (const NumberKey& key : {saturation_1, saturation_2, series, shunt}) {
     if (area_is_stated || !s.has(key)) continue;
-    throw s.error("reference_area_m2", "nothing beside " + std::string(key),
+    throw s.error(reference_area, "nothing beside " + std::string(key.name),
                   "the area of the cell that it was found on");
   }
   if (p.saturation_1_A + p.saturation_2_A == 0.0) {
-    throw s.error("saturation_1_A", "0 in both diodes", "a saturation current > 0 in one of them");
+    throw s.error(saturation_1, "0 in both diodes", "a saturation current > 0 in one of them");
   }
   return model;
 }
@@ -173,13 +178,12 @@ CellModel read_cell(const Settings& array) {
   std::vector<std::string> names;
   for (const NamedCell& cell : known) names.push_back(cell.name);
   CellModel model = known[array.choice_or("cell", names, 1)].model;
-  if (!array.has("cell_parameters")) return model;
-  const Settings s = array.table("cell_parameters");
-  model.reference_area_m2 =
-      s.number_or("reference_area_m2", model.reference_area_m2, Range::positive());
+  if (!array.has(array_key::cell_parameters)) return model;
+  const Settings s = array.get(array_key::cell_parameters);
+  model.reference_area_m2 = s.get_or(cell_key::reference_area, model.reference_area_m2);
   model.reference.temperature_K =
-      s.number_or("reference_temperature_K", model.reference.temperature_K, Range::positive());
-  return replaced(model, s, s.has("reference_area_m2"));
+      s.get_or(cell_key::reference_temperature, model.reference.temperature_K);
+  return replaced(model, s, s.has(cell_key::reference_area));
 }
 
 // The same cell with its numbers stated for another area.
@@ -192,21 +196,20 @@ CellModel stated_for(double area_m2, CellModel model) {
 // In the order of their cells.
 std::vector<CellOverride> read_overrides(const Settings& array, const ArrayDesign& design) {
   std::vector<CellOverride> overrides;
-  if (!array.has("cell_override")) return overrides;
-  const bool area_of_others =
-      array.has("cell_parameters") && array.table("cell_parameters").has("reference_area_m2");
+  if (!array.has(array_key::cell_override)) return overrides;
+  const bool area_of_others = array.has(array_key::cell_parameters) &&
+                              array.get(array_key::cell_parameters).has(cell_key::reference_area);
   std::set<int> known;
-  for (const Settings& s : array.tables("cell_override")) {
+  for (const Settings& s : array.get(array_key::cell_override)) {
     CellOverride one;
-    one.index = static_cast<int>(s.integer("index", 0, design.cells() - 1));
+    one.index = static_cast<int>(s.get(cell_key::index.within(0, design.cells() - 1)));
     if (!known.insert(one.index).second) {
-      throw s.error("index", std::to_string(one.index), "each cell at most once");
+      throw s.error(cell_key::index, std::to_string(one.index), "each cell at most once");
     }
-    one.photocurrent_factor = s.number_or("photocurrent_factor", 1.0, {0.0, 1e6, false, false});
-    const bool own_area = s.has("reference_area_m2");
+    one.photocurrent_factor = s.get(cell_key::photocurrent_factor);
+    const bool own_area = s.has(cell_key::reference_area);
     const CellModel others =
-        own_area ? stated_for(s.number("reference_area_m2", Range::positive()), design.cell)
-                 : design.cell;
+        own_area ? stated_for(s.get(cell_key::reference_area), design.cell) : design.cell;
     one.model = replaced(others, s, own_area || area_of_others);
     overrides.push_back(one);
   }
@@ -215,21 +218,20 @@ std::vector<CellOverride> read_overrides(const Settings& array, const ArrayDesig
 }
 
 QuantumEfficiency read_efficiency(const Settings& array) {
-  if (!array.has("quantum_efficiency")) {
-    return silicon_quantum_efficiency(
-        array.number_or("quantum_efficiency_peak", 0.95, Range::fraction()));
+  if (!array.has(array_key::quantum_efficiency)) {
+    return silicon_quantum_efficiency(array.get(array_key::quantum_efficiency_peak));
   }
-  const Settings table = array.table("quantum_efficiency");
-  QuantumEfficiency read{table.numbers("wavelength_m", Range::positive()),
-                         table.numbers("efficiency", Range::fraction())};
+  const Settings table = array.get(array_key::quantum_efficiency);
+  QuantumEfficiency read{table.get(array_key::wavelength), table.get(array_key::efficiency)};
   const bool ascending = std::ranges::adjacent_find(read.wavelength_m, std::greater_equal<>()) ==
                          read.wavelength_m.end();
   if (read.wavelength_m.size() < 2 || !ascending) {
-    throw table.error("wavelength_m", std::to_string(read.wavelength_m.size()) + " wavelengths",
+    throw table.error(array_key::wavelength,
+                      std::to_string(read.wavelength_m.size()) + " wavelengths",
                       "at least two, ascending");
   }
   if (read.efficiency.size() != read.wavelength_m.size()) {
-    throw table.error("efficiency", std::to_string(read.efficiency.size()) + " numbers",
+    throw table.error(array_key::efficiency, std::to_string(read.efficiency.size()) + " numbers",
                       std::to_string(read.wavelength_m.size()) + ", one per wavelength");
   }
   return read;
@@ -263,9 +265,10 @@ ArrayDesign read_array_design(const Settings& array, std::optional<CellPlaces> p
   ArrayDesign design;
   if (places) {
     const size_t count = places->parts.size();
-    if (count == 0 || count > max_cells) {
-      throw array.error(array.has("rectangle") ? "rectangle" : "cells",
-                        std::to_string(count) + " separate cells", "1 to 100000");
+    if (count == 0 || count > most_cells) {
+      throw array.error(
+          array.has(array_key::rectangle) ? array_key::rectangle.name : array_key::cells.name,
+          std::to_string(count) + " separate cells", "1 to 100000");
     }
     design.columns = places->columns;
     design.rows = places->rows;
@@ -273,12 +276,12 @@ ArrayDesign read_array_design(const Settings& array, std::optional<CellPlaces> p
   } else {
     read_size(array, design);
   }
-  design.temperature_K = array.number_or("temperature_K", design.temperature_K, {1.0, 1000.0});
+  design.temperature_K = array.get(array_key::temperature);
   design.wiring = read_wiring(array, design);
   design.cell = read_cell(array);
   design.overrides = read_overrides(array, design);
   design.efficiency = read_efficiency(array);
-  if (array.has("cover")) design.front = read_cell_front(array.table("cover"));
+  if (array.has(array_key::cover)) design.front = read_cell_front(array.get(array_key::cover));
   return design;
 }
 

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "photovoltaics/array/keys.h"
 #include "receivers/surface_grid.h"
 
 namespace photorque {
@@ -178,7 +179,8 @@ CellRectangle read_rectangle(const Settings& settings, const SurfaceGrid& grid) 
     const auto range = [](double from, double to) {
       return std::to_string(from) + " to " + std::to_string(to);
     };
-    throw settings.error("high_m", range(low.x(), high.x()) + " by " + range(low.y(), high.y()),
+    throw settings.error(array_key::high,
+                         range(low.x(), high.x()) + " by " + range(low.y(), high.y()),
                          "a rectangle within u = " + range(grid.u_low, grid.u_high) +
                              ", v = " + range(grid.v_low, grid.v_high));
   }
@@ -231,27 +233,28 @@ CellPlaces places_from_rectangles(std::span<const CellRectangle> cells, const Su
 
 std::optional<CellPlaces> read_cell_places(const Settings& array, const Scene& scene,
                                            const SurfaceGrid& grid) {
-  const bool mesh =
-      array.has("cells") && std::holds_alternative<std::string>(array.raw("cells").value);
-  const bool rectangles = array.has("rectangle");
+  const bool mesh = array.has(array_key::cells) &&
+                    std::holds_alternative<std::string>(array.raw(array_key::cells).value);
+  const bool rectangles = array.has(array_key::rectangle);
   if (!mesh && !rectangles) return std::nullopt;
-  if (rectangles && array.has("cells")) {
-    throw array.error("cells", "rectangles too", "cells or [[array.rectangle]]");
+  if (rectangles && array.has(array_key::cells)) {
+    throw array.error(array_key::cells, "rectangles too", "cells or [[array.rectangle]]");
   }
   for (const char* key : {"gap_m", "margin_m"}) {
     if (array.has(key)) throw array.error(key, "places of the cells too", "one of the two");
   }
   if (mesh) {
-    array.choice("cells", {"mesh"});
+    array.get(array_key::cells);
     return places_from_mesh(scene, grid);
   }
   std::vector<CellRectangle> cells;
-  for (const Settings& rectangle : array.tables("rectangle")) {
+  for (const Settings& rectangle : array.get(array_key::rectangle)) {
     const CellRectangle cell = read_rectangle(rectangle, grid);
     const auto other = std::ranges::find_if(
         cells, [&](const CellRectangle& known) { return overlapping(cell, known); });
     if (other != cells.end()) {
-      throw rectangle.error("low_m", "a cell over cell " + std::to_string(other - cells.begin()),
+      throw rectangle.error(array_key::low,
+                            "a cell over cell " + std::to_string(other - cells.begin()),
                             "cells beside each other");
     }
     cells.push_back(cell);

@@ -6,10 +6,31 @@
 #include <string>
 
 #include "core/errors.h"
+#include "core/settings/typed_keys.h"
 #include "photovoltaics/array/tracker_control.h"
 
 namespace photorque {
 namespace {
+
+namespace tracker_key {
+constexpr Tracker usual;
+constexpr TextsKey kinds(
+    "kinds",
+    "of `\"perturb_and_observe\"`, `\"incremental_conductance\"`, `\"global_scan\"`, "
+    "`\"periodic_sweep\"`; the first counts in the losses",
+    {.usually = "all four"});
+constexpr NumberKey period("period_s", usual.period_s, Range::positive(), "between decisions");
+constexpr NumberKey step_fraction("step_fraction", usual.step_fraction, {0.0, 0.5, true, false},
+                                  "step, of the range of voltages");
+constexpr NumberKey start_fraction("start_fraction", usual.start_fraction, {0.0, 1.0, true, false},
+                                   "where those begin that do not scan");
+constexpr IntegerKey sweep_points("sweep_points", usual.sweep_points, 2, 10000,
+                                  "of a sweep, one period each");
+constexpr NumberKey sweep_every("sweep_every_s", usual.sweep_every_s, Range::positive(),
+                                "of `periodic_sweep`");
+constexpr NumberKey rescan_fraction("rescan_fraction", usual.rescan_fraction, Range::positive(),
+                                    "of `global_scan`: change of power that starts a sweep");
+}  // namespace tracker_key
 
 constexpr const char* names[] = {"perturb_and_observe", "incremental_conductance", "global_scan",
                                  "periodic_sweep"};
@@ -124,19 +145,15 @@ std::vector<TrackerRun> run_trackers(const std::vector<Tracker>& trackers,
 
 std::vector<Tracker> read_trackers(const Settings& s) {
   Tracker common;
-  common.period_s = s.number_or("period_s", common.period_s, Range::positive());
-  common.step_fraction =
-      s.number_or("step_fraction", common.step_fraction, {0.0, 0.5, true, false});
-  common.start_fraction =
-      s.number_or("start_fraction", common.start_fraction, {0.0, 1.0, true, false});
-  common.sweep_points =
-      static_cast<int>(s.integer_or("sweep_points", common.sweep_points, 2, 10000));
-  common.sweep_every_s = s.number_or("sweep_every_s", common.sweep_every_s, Range::positive());
-  common.rescan_fraction =
-      s.number_or("rescan_fraction", common.rescan_fraction, Range::positive());
+  common.period_s = s.get(tracker_key::period);
+  common.step_fraction = s.get(tracker_key::step_fraction);
+  common.start_fraction = s.get(tracker_key::start_fraction);
+  common.sweep_points = static_cast<int>(s.get(tracker_key::sweep_points));
+  common.sweep_every_s = s.get(tracker_key::sweep_every);
+  common.rescan_fraction = s.get(tracker_key::rescan_fraction);
   std::vector<std::string> wanted;
-  if (s.has("kinds")) {
-    wanted = s.texts("kinds");
+  if (s.has(tracker_key::kinds)) {
+    wanted = s.get(tracker_key::kinds);
   } else {
     for (const auto kind : all_tracker_kinds()) wanted.push_back(name_of(kind));
   }
@@ -144,13 +161,18 @@ std::vector<Tracker> read_trackers(const Settings& s) {
   for (const std::string& name : wanted) {
     const auto at = std::ranges::find(names, name);
     if (at == std::end(names)) {
-      throw s.error("kinds", '"' + name + '"',
+      throw s.error(tracker_key::kinds, '"' + name + '"',
                     "perturb_and_observe, incremental_conductance, global_scan or periodic_sweep");
     }
     common.kind = static_cast<Tracker::Kind>(at - std::begin(names));
     trackers.push_back(common);
   }
   return trackers;
+}
+
+std::vector<Key> tracker_keys() {
+  using namespace tracker_key;
+  return {kinds, period, step_fraction, start_fraction, sweep_points, sweep_every, rescan_fraction};
 }
 
 }  // namespace photorque

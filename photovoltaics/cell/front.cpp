@@ -9,6 +9,25 @@
 namespace photorque {
 namespace {
 
+namespace cover_key {
+constexpr NumberKey refractive_index("refractive_index", CellFront{}.index, {1.0, 10.0},
+                                     "of the glass over the cells");
+constexpr NumberKey coating_index(
+    "coating_index", {1.0, 10.0},
+    "of a film on it, for the mean wavelength of each band; with the next", {.usually = "no film"});
+constexpr NumberKey coating_thickness("coating_thickness_m", Range::positive(), "of that film",
+                                      {.optional = true});
+constexpr NumbersKey angle("angle_deg", {0.0, 0.5 * pi},
+                           "instead of these: angles of incidence, from 0, rising",
+                           {.optional = true});
+constexpr NumbersKey transmittance("transmittance", Range::fraction(),
+                                   "T at each of them; only ratios count", {.optional = true});
+constexpr FlagKey cosine_twice(
+    "cosine_twice", false,
+    "instead of all these, T = cos θ: the light on the cells, which holds the cosine already, "
+    "counts with it once more; for the paper's figures ([paper.md](paper.md)), not for cells");
+}  // namespace cover_key
+
 // Amplitudes reflected on the way from a medium of index n and cosine c into another.
 struct BoundaryAmplitudes {
   double across, within;  // electric field across and within the plane of incidence
@@ -35,25 +54,29 @@ double table_at(const std::vector<double>& angle_rad, const std::vector<double>&
 }
 
 void read_front_table(const Settings& cover, CellFront& front) {
-  for (const char* key : {"refractive_index", "coating_index", "coating_thickness_m"}) {
+  for (const std::string_view key :
+       {cover_key::refractive_index.name, cover_key::coating_index.name,
+        cover_key::coating_thickness.name}) {
     if (cover.has(key)) throw cover.error(key, "a table by angle too", "one of the two");
   }
-  front.angle_rad = cover.numbers("angle_rad", {0.0, 0.5 * pi});
-  front.transmittance = cover.numbers("transmittance", Range::fraction());
+  front.angle_rad = cover.get(cover_key::angle);
+  front.transmittance = cover.get(cover_key::transmittance);
   const bool rising =
       std::ranges::adjacent_find(front.angle_rad, std::greater_equal<>()) == front.angle_rad.end();
   if (front.angle_rad.empty() || front.angle_rad[0] != 0.0 || !rising) {
-    throw cover.error("angle_rad", std::to_string(front.angle_rad.size()) + " angles",
+    throw cover.error(cover_key::angle, std::to_string(front.angle_rad.size()) + " angles",
                       "ascending angles from 0");
   }
   if (front.transmittance.size() != front.angle_rad.size()) {
-    throw cover.error("transmittance", std::to_string(front.transmittance.size()) + " numbers",
+    throw cover.error(cover_key::transmittance,
+                      std::to_string(front.transmittance.size()) + " numbers",
                       std::to_string(front.angle_rad.size()) + ", one per angle");
   }
   // Everything is measured by what goes straight in.
   constexpr double least = 1e-3;
   if (front.transmittance[0] < least) {
-    throw cover.error("transmittance", "a first of " + std::to_string(front.transmittance[0]),
+    throw cover.error(cover_key::transmittance,
+                      "a first of " + std::to_string(front.transmittance[0]),
                       "at least 0.001 at 0 deg");
   }
 }
@@ -82,24 +105,30 @@ double CellFront::transmitted(double cosine, double wavelength_m) const {
 
 CellFront read_cell_front(const Settings& cover) {
   CellFront front;
-  front.cosine_twice = cover.flag_or("cosine_twice", false);
+  front.cosine_twice = cover.get(cover_key::cosine_twice);
   if (front.cosine_twice) {
-    for (const char* key : {"refractive_index", "coating_index", "coating_thickness_m", "angle_rad",
-                            "transmittance"}) {
+    using namespace cover_key;
+    for (const std::string_view key : {refractive_index.name, coating_index.name,
+                                       coating_thickness.name, angle.name, transmittance.name}) {
       if (cover.has(key)) throw cover.error(key, "a front beside cosine_twice", "one of the two");
     }
     return front;
   }
-  if (cover.has("angle_rad")) {
+  if (cover.has(cover_key::angle)) {
     read_front_table(cover, front);
     return front;
   }
-  front.index = cover.number_or("refractive_index", front.index, {1.0, 10.0});
-  if (cover.has("coating_index") || cover.has("coating_thickness_m")) {
-    front.coating = FilmCoating{cover.number("coating_index", {1.0, 10.0}),
-                                cover.number("coating_thickness_m", Range::positive())};
+  front.index = cover.get(cover_key::refractive_index);
+  if (cover.has(cover_key::coating_index) || cover.has(cover_key::coating_thickness)) {
+    front.coating =
+        FilmCoating{cover.get(cover_key::coating_index), cover.get(cover_key::coating_thickness)};
   }
   return front;
+}
+
+std::vector<Key> cell_front_keys() {
+  using namespace cover_key;
+  return {refractive_index, coating_index, coating_thickness, angle, transmittance, cosine_twice};
 }
 
 }  // namespace photorque

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/settings/settings.h"
+#include "core/settings/typed_keys.h"
 
 namespace photorque {
 
@@ -51,5 +51,6 @@ double film_reflectance(double cosine, const FilmCoating& film, double index, do
 //   transmittance = [1, …]             in any scale: only ratios count
 //   cosine_twice = true                instead of all these
 CellFront read_cell_front(const Settings& cover);
+std::vector<Key> cell_front_keys();
 
 }  // namespace photorque

@@ -1,24 +1,45 @@
 #include "photovoltaics/fit/rated_keys.h"
 
 namespace photorque {
+namespace {
+
+namespace rated_key {
+constexpr NumberKey irradiance("irradiance_W_m2", RatedPoint{}.irradiance_W_m2, Range::positive(),
+                               "of the light");
+constexpr NumberKey temperature("temperature_K", RatedPoint{}.temperature_K, {1.0, 1000.0},
+                                "of the cells");
+constexpr NumberKey short_circuit("short_circuit_A", Range::positive(), "current at 0 V");
+constexpr NumberKey open_circuit("open_circuit_V", Range::positive(), "voltage at 0 A");
+constexpr NumberKey maximum_current("maximum_A", Range::positive(), "current at the maximum power");
+constexpr NumberKey maximum_voltage("maximum_V", Range::positive(), "voltage there");
+constexpr NumberKey short_circuit_slope(
+    "short_circuit_slope_per_K", 5e-4, {},
+    "of the short-circuit current, as a fraction; with a datasheet");
+constexpr NumberKey open_circuit_slope(
+    "open_circuit_slope_per_K", -3e-3, {},
+    "of the open-circuit voltage, as a fraction; with a datasheet");
+}  // namespace rated_key
+
+}  // namespace
+
+RatedPoint read_rated_point(const Settings& point) {
+  using namespace rated_key;
+  return {point.get(irradiance),   point.get(temperature),     point.get(short_circuit),
+          point.get(open_circuit), point.get(maximum_current), point.get(maximum_voltage)};
+}
 
 std::vector<Key> rated_point_keys() {
-  const auto positive = [](const char* name, const char* what) {
-    return Key::number(name, Range::positive(), what);
-  };
-  return {Key::number_or("irradiance_W_m2", 1000.0, Range::positive(), "of the light"),
-          Key::number_or("temperature_K", 298.15, {1.0, 1000.0}, "of the cells"),
-          positive("short_circuit_A", "current at 0 V"),
-          positive("open_circuit_V", "voltage at 0 A"),
-          positive("maximum_A", "current at the maximum power"),
-          positive("maximum_V", "voltage there")};
+  using namespace rated_key;
+  return {irradiance, temperature, short_circuit, open_circuit, maximum_current, maximum_voltage};
+}
+
+TemperatureSlopes read_rated_slopes(const Settings& settings) {
+  return {settings.get(rated_key::short_circuit_slope),
+          settings.get(rated_key::open_circuit_slope)};
 }
 
 std::vector<Key> rated_slope_keys() {
-  return {Key::number_or("short_circuit_slope_per_K", 5e-4, {},
-                         "of the short-circuit current, as a fraction; with a datasheet"),
-          Key::number_or("open_circuit_slope_per_K", -3e-3, {},
-                         "of the open-circuit voltage, as a fraction; with a datasheet")};
+  return {rated_key::short_circuit_slope, rated_key::open_circuit_slope};
 }
 
 }  // namespace photorque

@@ -1,15 +1,18 @@
-// The keys of a maker's figures, for whoever fits a cell or module to them.
+// A maker's figures as an experiment has them, for whoever fits a cell or module to them.
 #pragma once
 
 #include <vector>
 
-#include "core/settings/keys.h"
+#include "core/settings/typed_keys.h"
+#include "photovoltaics/fit/fit.h"
 
 namespace photorque {
 
-// One point of a datasheet.
+// One [[datasheet]], and the keys of it.
+RatedPoint read_rated_point(const Settings& point);
 std::vector<Key> rated_point_keys();
-// How its figures change with the temperature.
+// How its figures change with the temperature, and the keys of that beside it.
+TemperatureSlopes read_rated_slopes(const Settings& settings);
 std::vector<Key> rated_slope_keys();
 
 }  // namespace photorque

@@ -180,11 +180,10 @@ ReceiverKind kind() {
           [](const Settings& settings, const Scene& scene) -> MadeReceiver {
             ReceiverTarget target = read_target_or_all(settings, scene, "platform");
             const auto wrench = std::make_shared<const WrenchReceiver>(
-                target.name, scene, std::move(target.instances),
-                settings.vector3_or("about_m", Vec3::Zero()));
+                target.name, scene, std::move(target.instances), settings.get(torque_point));
             return {.receiver = wrench, .wrench = wrench};
           },
-          joined({target_or_all_keys("platform"), {torque_point_key()}})};
+          joined({target_or_all_keys("platform"), {torque_point}})};
 }
 
 }  // namespace kinds::wrench

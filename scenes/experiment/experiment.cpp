@@ -9,6 +9,7 @@
 #include "core/files.h"
 #include "receivers/kind.h"
 #include "scenes/experiment/doubts.h"
+#include "scenes/experiment/keys.h"
 #include "scenes/gltf/lights.h"
 #include "scenes/gltf/reader.h"
 #include "sources/lamps/kind.h"
@@ -140,16 +141,15 @@ Camera read_camera(const ExperimentFile& file, double scene_radius_m) {
   Camera camera = camera_framing(scene_radius_m);
   if (!file.camera) return camera;
   const Settings& settings = *file.camera;
-  camera.position_m = settings.vector3_or("position_m", camera.position_m);
-  camera.target_m = settings.vector3_or("target_m", camera.target_m);
-  camera.field_of_view_rad =
-      settings.number_or("field_of_view_deg", camera.field_of_view_rad, {0.0, pi, true, true});
-  camera.width = static_cast<int>(settings.integer_or("width", camera.width, 16, 16384));
-  camera.height = static_cast<int>(settings.integer_or("height", camera.height, 16, 16384));
-  camera.lamps = settings.flag_or("lamps", camera.lamps);
-  camera.placed = settings.has("position_m") || settings.has("target_m");
+  camera.position_m = settings.get_or(camera_key::position, camera.position_m);
+  camera.target_m = settings.get_or(camera_key::target, camera.target_m);
+  camera.field_of_view_rad = settings.get_or(camera_key::field_of_view, camera.field_of_view_rad);
+  camera.width = static_cast<int>(settings.get_or(camera_key::width, camera.width));
+  camera.height = static_cast<int>(settings.get_or(camera_key::height, camera.height));
+  camera.lamps = settings.get(camera_key::lamps);
+  camera.placed = settings.has(camera_key::position) || settings.has(camera_key::target);
   if ((camera.position_m - camera.target_m).norm() < 1e-9) {
-    throw settings.error("position_m", "the target itself", "a point away from target_m");
+    throw settings.error(camera_key::position, "the target itself", "a point away from target_m");
   }
   return camera;
 }
@@ -157,12 +157,12 @@ Camera read_camera(const ExperimentFile& file, double scene_radius_m) {
 // The file's name as the user wrote it, where the user wrote it.
 void require_scene_file(const ExperimentFile& file) {
   if (!file.scene_file) {
-    throw file.settings.error("scene", "nothing", "a table [scene] with a file");
+    throw file.settings.error(scene_key::scene, "nothing", "a table [scene] with a file");
   }
   std::error_code unreadable;
   if (std::filesystem::is_regular_file(*file.scene_file, unreadable)) return;
-  const Settings scene = file.settings.table("scene");
-  throw scene.error("file", "\"" + scene.text("file") + "\"",
+  const Settings scene = file.settings.get(scene_key::scene);
+  throw scene.error(scene_key::file, "\"" + scene.get(scene_key::file) + "\"",
                     "a file that exists beside the experiment");
 }
 
@@ -216,8 +216,8 @@ std::vector<const Receiver*> Experiment::receiver_pointers() const {
 Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture) {
   require_scene_file(file);
   if (file.textures && !picture) {
-    throw file.settings.table("scene").error("textures", "true",
-                                             "false: nobody here reads pictures");
+    throw file.settings.get(scene_key::scene)
+        .error(scene_key::textures, "true", "false: nobody here reads pictures");
   }
   GltfModel model = read_model(file, picture);
   require_triangles(model.scene, *file.scene_file);

@@ -7,6 +7,7 @@
 #include "core/files.h"
 #include "core/provenance.h"
 #include "scenes/experiment/experiment.h"
+#include "scenes/experiment/keys.h"
 #include "scenes/experiment/toml.h"
 #include "scenes/experiment/uncertain.h"
 
@@ -32,11 +33,11 @@ void require_ascending(const Settings& settings, std::string_view key,
 
 Bands read_bands(const Settings& scene) {
   Bands bands;
-  if (!scene.has("bands_nm")) return bands;
-  bands.edges_m = scene.numbers("bands_nm", Range::not_negative());
-  require_ascending(scene, "bands_nm", bands.edges_m);
+  if (!scene.has(scene_key::bands)) return bands;
+  bands.edges_m = scene.get(scene_key::bands);
+  require_ascending(scene, scene_key::bands, bands.edges_m);
   if (bands.count() < 1 || bands.count() > max_bands) {
-    throw scene.error("bands_nm", std::to_string(bands.edges_m.size()) + " edges",
+    throw scene.error(scene_key::bands, std::to_string(bands.edges_m.size()) + " edges",
                       "from 2 to " + std::to_string(max_bands + 1) + " edges");
   }
   return bands;
@@ -44,45 +45,42 @@ Bands read_bands(const Settings& scene) {
 
 Attitude read_attitude(const Settings& root) {
   Attitude attitude;
-  if (!root.has("attitude")) return attitude;
-  const Settings table = root.table("attitude");
-  attitude.tilt_rad = table.number_or("tilt_deg", 0.0, {0.0, pi});
-  attitude.heading_rad = table.number_or("heading_deg", 0.0, {-2.0 * pi, 2.0 * pi});
+  if (!root.has(attitude_key::attitude)) return attitude;
+  const Settings table = root.get(attitude_key::attitude);
+  attitude.tilt_rad = table.get(attitude_key::tilt);
+  attitude.heading_rad = table.get(attitude_key::heading);
   return attitude;
 }
 
 TraceOptions read_trace_options(const Settings& root) {
   TraceOptions options;
-  if (!root.has("trace")) return options;
-  const Settings table = root.table("trace");
-  options.rays = static_cast<uint64_t>(
-      table.integer_or("rays", static_cast<int64_t>(options.rays), 1, int64_t{1} << 40));
-  options.replicates =
-      static_cast<int>(table.integer_or("replicates", options.replicates, 8, 1024));
-  options.seed = static_cast<uint64_t>(
-      table.integer_or("seed", static_cast<int64_t>(options.seed), 0, INT64_MAX));
-  options.max_depth = static_cast<int>(table.integer_or("max_depth", options.max_depth, 1, 65535));
-  options.cutoff = table.number_or("cutoff", options.cutoff, {0.0, 1.0, false, true});
+  if (!root.has(trace_key::trace)) return options;
+  const Settings table = root.get(trace_key::trace);
+  const auto count = [&](const IntegerKey& key, auto otherwise) {
+    return static_cast<decltype(otherwise)>(table.get_or(key, static_cast<int64_t>(otherwise)));
+  };
+  options.rays = count(trace_key::rays, options.rays);
+  options.replicates = count(trace_key::replicates, options.replicates);
+  options.seed = count(trace_key::seed, options.seed);
+  options.max_depth = count(trace_key::max_depth, options.max_depth);
+  options.cutoff = table.get_or(trace_key::cutoff, options.cutoff);
   return options;
 }
 
 TraceEffort read_effort(const Settings& root) {
   TraceEffort effort;
-  if (!root.has("trace")) return effort;
-  const Settings table = root.table("trace");
+  if (!root.has(trace_key::trace)) return effort;
+  const Settings table = root.get(trace_key::trace);
   constexpr TraceEffort::Direct ways[] = {TraceEffort::Direct::automatic,
                                           TraceEffort::Direct::gather, TraceEffort::Direct::rays};
-  effort.direct = ways[table.choice_or("direct", {"auto", "gather", "rays"}, 0)];
-  if (table.has("target_error")) {
-    effort.target_error = table.number("target_error", {1e-6, 1.0, false, false});
-  }
-  if (table.has("max_time_s")) effort.max_time_s = table.number("max_time_s", Range::positive());
-  if (table.has("arriving_rays")) {
-    constexpr int64_t max_rays = 10'000'000;  // they are kept in memory
-    effort.arriving_rays = static_cast<uint64_t>(table.integer("arriving_rays", 1, max_rays));
+  effort.direct = ways[table.get(trace_key::direct)];
+  if (table.has(trace_key::target_error)) effort.target_error = table.get(trace_key::target_error);
+  if (table.has(trace_key::max_time)) effort.max_time_s = table.get(trace_key::max_time);
+  if (table.has(trace_key::arriving_rays)) {
+    effort.arriving_rays = static_cast<uint64_t>(table.get(trace_key::arriving_rays));
   }
   if (effort.max_time_s && !effort.target_error) {
-    throw table.error("max_time_s", "a limit without a target",
+    throw table.error(trace_key::max_time, "a limit without a target",
                       "also target_error: only then are rays added");
   }
   return effort;
@@ -99,31 +97,31 @@ AttitudeGrid usual_torque_map() {
 }
 
 AttitudeGrid read_torque_map(const Settings& root, const Attitude& attitude) {
-  if (!root.has("torque_map")) return usual_torque_map();
+  if (!root.has(torque_map_key::torque_map)) return usual_torque_map();
   AttitudeGrid grid{{attitude.tilt_rad}, {attitude.heading_rad}};
-  const Settings table = root.table("torque_map");
-  if (table.has("tilt_deg")) {
-    grid.tilt_rad = table.numbers("tilt_deg", {0.0, pi});
-    require_ascending(table, "tilt_deg", grid.tilt_rad);
-  }
-  if (table.has("heading_deg")) {
-    grid.heading_rad = table.numbers("heading_deg", {-2.0 * pi, 2.0 * pi});
-    require_ascending(table, "heading_deg", grid.heading_rad);
-  }
+  const Settings table = root.get(torque_map_key::torque_map);
+  const auto read = [&](const NumbersKey& key, std::vector<double>& angles_rad) {
+    if (!table.has(key)) return;
+    angles_rad = table.get(key);
+    require_ascending(table, key, angles_rad);
+  };
+  read(torque_map_key::tilt, grid.tilt_rad);
+  read(torque_map_key::heading, grid.heading_rad);
   return grid;
 }
 
 // An axis of directions: its array in degrees, or −half … half in even steps.
-std::vector<double> read_direction_axis(const Settings& table, const std::string& name,
-                                        double half_rad) {
-  const std::string array = name + "_deg", step = name + "_step_deg";
+std::vector<double> read_direction_axis(const Settings& table, const NumbersKey& array,
+                                        const NumberKey& step) {
+  const double half_rad = array.range.high;
   if (table.has(array)) {
-    const std::vector<double> values = table.numbers(array, {-half_rad, half_rad});
+    const std::vector<double> values = table.get(array);
     require_ascending(table, array, values);
-    if (table.has(step)) throw table.error(step, "a step beside " + array, "one of the two");
+    if (table.has(step))
+      throw table.error(step, "a step beside " + std::string(array.name), "one of the two");
     return values;
   }
-  const double step_rad = table.number(step, {0.0, 2.0 * half_rad, true, false});
+  const double step_rad = table.get(step);
   const double steps = 2.0 * half_rad / step_rad;
   const double whole = std::round(steps);
   if (std::abs(steps - whole) > 1e-9 * whole || whole > 3600.0) {
@@ -141,42 +139,42 @@ std::vector<double> read_direction_axis(const Settings& table, const std::string
 }
 
 std::optional<uint64_t> read_torque_map_rays(const Settings& root) {
-  if (!root.has("torque_map")) return std::nullopt;
-  const Settings table = root.table("torque_map");
-  if (!table.has("rays")) return std::nullopt;
-  return static_cast<uint64_t>(table.integer("rays", 1, int64_t{1} << 40));
+  if (!root.has(torque_map_key::torque_map)) return std::nullopt;
+  const Settings table = root.get(torque_map_key::torque_map);
+  if (!table.has(torque_map_key::rays)) return std::nullopt;
+  return static_cast<uint64_t>(table.get(torque_map_key::rays));
 }
 
 std::optional<DirectionGrid> read_light_directions(const Settings& root) {
-  if (!root.has("torque_map")) return std::nullopt;
-  const Settings table = root.table("torque_map");
-  bool any = false;
-  for (const char* key :
-       {"azimuth_deg", "azimuth_step_deg", "elevation_deg", "elevation_step_deg"}) {
-    any = any || table.has(key);
+  if (!root.has(torque_map_key::torque_map)) return std::nullopt;
+  const Settings table = root.get(torque_map_key::torque_map);
+  using namespace torque_map_key;
+  if (!table.has(azimuth) && !table.has(azimuth_step) && !table.has(elevation) &&
+      !table.has(elevation_step)) {
+    return std::nullopt;
   }
-  if (!any) return std::nullopt;
-  for (const char* key : {"tilt_deg", "heading_deg"}) {
+  for (const NumbersKey& key : {tilt, heading}) {
     if (table.has(key)) {
       throw table.error(key, "an attitude beside directions of light",
                         "tilts and headings, or elevations and azimuths");
     }
   }
-  return DirectionGrid{read_direction_axis(table, "elevation", 0.5 * pi),
-                       read_direction_axis(table, "azimuth", pi)};
+  return DirectionGrid{read_direction_axis(table, elevation, elevation_step),
+                       read_direction_axis(table, azimuth, azimuth_step)};
 }
 
 // A mistyped name is told before what would fit another kind of file.
 void require_model(const Settings& scene, const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) {
-    if (!scene.has("unit") && !scene.has("up")) return;  // its reader says so
-    throw scene.error("file", "no file " + file.string(), "a model (glTF, GLB, STL or OBJ)");
+    if (!scene.has("unit") && !scene.has(scene_key::up)) return;  // its reader says so
+    throw scene.error(scene_key::file, "no file " + file.string(),
+                      "a model (glTF, GLB, STL or OBJ)");
   }
   std::string ending = file.extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (ending == ".gltf" || ending == ".glb") return;
-  throw scene.error("file", "\"" + file.filename().string() + "\"",
+  throw scene.error(scene_key::file, "\"" + file.filename().string() + "\"",
                     "a model that ends in .gltf, .glb, .stl or .obj");
 }
 
@@ -193,13 +191,13 @@ std::optional<CadConventions> read_cad_conventions(const Settings& scene,
     }
     return std::nullopt;
   }
-  if (scene.has("metres_per_unit")) {
-    throw scene.error("metres_per_unit", "an STL or OBJ file", "its unit: unit = \"mm\"");
+  if (scene.has(scene_key::metres_per_unit)) {
+    throw scene.error(scene_key::metres_per_unit, "an STL or OBJ file", "its unit: unit = \"mm\"");
   }
   const std::vector<std::string> units = cad_units();
   CadConventions conventions;
   conventions.metres_per_unit = metres_of_unit(units[scene.choice("unit", units)]);
-  conventions.y_is_up = scene.choice_or("up", {"z", "y"}, 0) == 1;
+  conventions.y_is_up = scene.get(scene_key::up) == 1;
   return conventions;
 }
 
@@ -243,15 +241,14 @@ ExperimentFile read_experiment_text(const std::filesystem::path& path, const std
   take_uncertainty(*root);
   file.settings = Settings(std::move(root));
   const Settings& settings = file.settings;
-  if (settings.has("scene")) {
-    const Settings scene = settings.table("scene");
-    file.scene_file = path.parent_path() / scene.text("file");
+  if (settings.has(scene_key::scene)) {
+    const Settings scene = settings.get(scene_key::scene);
+    file.scene_file = path.parent_path() / scene.get(scene_key::file);
     file.cad = read_cad_conventions(scene, *file.scene_file);
-    if (!file.cad)
-      file.metres_per_unit = scene.number_or("metres_per_unit", 1.0, Range::positive());
-    file.centre_of_rotation_m = scene.vector3_or("centre_of_rotation_m", Vec3::Zero());
-    file.textures = scene.flag_or("textures", false);
-    file.may_leave_folder = scene.flag_or("allow_outside", false);
+    if (!file.cad) file.metres_per_unit = scene.get(scene_key::metres_per_unit);
+    file.centre_of_rotation_m = scene.get(scene_key::centre_of_rotation);
+    file.textures = scene.get(scene_key::textures);
+    file.may_leave_folder = scene.get(scene_key::allow_outside);
     file.bands = read_bands(scene);
   }
   file.materials = settings.tables("material");
@@ -265,7 +262,7 @@ ExperimentFile read_experiment_text(const std::filesystem::path& path, const std
   file.torque_map = read_torque_map(settings, file.attitude);
   file.light_directions = read_light_directions(settings);
   file.torque_map_rays = read_torque_map_rays(settings);
-  if (settings.has("camera")) file.camera = settings.table("camera");
+  if (settings.has(camera_key::camera)) file.camera = settings.get(camera_key::camera);
   for (const char* key : tables_of_others) {
     if (settings.has(key)) settings.raw(key);
   }

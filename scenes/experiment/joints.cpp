@@ -13,30 +13,51 @@ namespace {
 constexpr Range joint_angle{-2.0 * pi, 2.0 * pi};
 constexpr int64_t most_positions = 33;
 
-Vec3 read_direction(const Settings& joint, const char* key) {
-  const Vec3 direction = joint.vector3(key);
+namespace joint_key {
+constexpr TextKey node("node", "of the scene: it and all below turns; *or*", {.optional = true});
+constexpr TextsKey nodes("nodes", "several that turn together", {.optional = true});
+constexpr Vec3Key axis("axis", "body axes, any length");
+constexpr Vec3Key point("point_m", {0.0, 0.0, 0.0}, "a point on the axis, body axes");
+constexpr NumberKey angle("angle_deg", 0.0, joint_angle, "from how the model is drawn");
+constexpr Vec3Key towards_sun("towards_sun",
+                              "in a run of the motion: the direction, of the model as "
+                              "drawn, that follows the Sun as near as the axis lets it",
+                              {.optional = true});
+constexpr NumberKey time("time_s", {}, "rising");
+constexpr NumberKey at_angle(
+    "angle_deg", joint_angle,
+    "then; on a straight line to the next, held before the first and after the last");
+constexpr TablesKey at("at", "or the angle over time, in a run of the motion");
+constexpr IntegerKey positions("positions", 5, 2, most_positions,
+                               "angles between the least and the most of `[[joint.at]]` at which "
+                               "the light is traced; between them it is interpolated");
+}  // namespace joint_key
+
+Vec3 read_direction(const Settings& joint, const Vec3Key& key) {
+  const Vec3 direction = joint.get(key);
   if (!(direction.norm() > 0.0)) throw joint.error(key, "a zero vector", "a direction");
   return direction.normalized();
 }
 
 std::vector<std::string> read_nodes(const Settings& joint) {
-  if (joint.has("nodes") == joint.has("node")) {
-    throw joint.error("node", joint.has("node") ? "node beside nodes" : "nothing",
+  if (joint.has(joint_key::nodes) == joint.has(joint_key::node)) {
+    throw joint.error(joint_key::node, joint.has(joint_key::node) ? "node beside nodes" : "nothing",
                       "one of node and nodes");
   }
-  if (joint.has("node")) return {joint.text("node")};
-  const std::vector<std::string> nodes = joint.texts("nodes");
-  if (nodes.empty()) throw joint.error("nodes", "an empty array", "names of nodes");
+  if (joint.has(joint_key::node)) return {joint.get(joint_key::node)};
+  const std::vector<std::string> nodes = joint.get(joint_key::nodes);
+  if (nodes.empty()) throw joint.error(joint_key::nodes, "an empty array", "names of nodes");
   return nodes;
 }
 
 std::vector<Joint::Instant> read_schedule(const Settings& joint) {
   std::vector<Joint::Instant> schedule;
-  for (const Settings& at : joint.tables("at")) {
-    schedule.push_back({at.number("time_s"), at.number("angle_deg", joint_angle)});
+  for (const Settings& at : joint.get(joint_key::at)) {
+    schedule.push_back({at.get(joint_key::time), at.get(joint_key::at_angle)});
     const size_t n = schedule.size();
     if (n > 1 && !(schedule[n - 2].time_s < schedule[n - 1].time_s)) {
-      throw at.error("time_s", std::to_string(schedule[n - 1].time_s), "instants in rising order");
+      throw at.error(joint_key::time, std::to_string(schedule[n - 1].time_s),
+                     "instants in rising order");
     }
   }
   return schedule;
@@ -45,19 +66,20 @@ std::vector<Joint::Instant> read_schedule(const Settings& joint) {
 Joint read_joint(const Settings& table) {
   Joint joint;
   joint.nodes = read_nodes(table);
-  joint.axis = read_direction(table, "axis");
-  joint.point_m = table.vector3_or("point_m", Vec3::Zero());
-  joint.angle_rad = table.number_or("angle_deg", 0.0, joint_angle);
+  joint.axis = read_direction(table, joint_key::axis);
+  joint.point_m = table.get(joint_key::point);
+  joint.angle_rad = table.get(joint_key::angle);
   joint.schedule = read_schedule(table);
-  joint.positions = static_cast<size_t>(table.integer_or("positions", 5, 2, most_positions));
-  if (table.has("towards_sun")) {
-    joint.towards_sun = read_direction(table, "towards_sun");
+  joint.positions = static_cast<size_t>(table.get(joint_key::positions));
+  if (table.has(joint_key::towards_sun)) {
+    joint.towards_sun = read_direction(table, joint_key::towards_sun);
     if (!joint.schedule.empty()) {
-      throw table.error("towards_sun", "a schedule beside it",
+      throw table.error(joint_key::towards_sun, "a schedule beside it",
                         "one of towards_sun and [[joint.at]]");
     }
     if (joint.towards_sun->cross(joint.axis).norm() < 1e-6) {
-      throw table.error("towards_sun", "a direction along the axis", "one that the joint turns");
+      throw table.error(joint_key::towards_sun, "a direction along the axis",
+                        "one that the joint turns");
     }
   }
   table.finish();
@@ -137,13 +159,13 @@ void turn_joints(Scene& scene, const std::vector<Joint>& joints,
     for (const std::string& node : joint.nodes) {
       const std::vector<uint32_t> parts = scene.instances_of(node);
       if (parts.empty()) {
-        throw tables[j].error(tables[j].has("node") ? "node" : "nodes", "\"" + node + "\"",
+        throw tables[j].error(tables[j].has(joint_key::node) ? "node" : "nodes", "\"" + node + "\"",
                               "a node of the scene that holds a mesh: " + nodes_of(scene));
       }
       for (const uint32_t part : parts) {
         if (!turned.insert(part).second) {
-          throw tables[j].error(tables[j].has("node") ? "node" : "nodes", "\"" + node + "\"",
-                                "parts that no joint turns yet");
+          throw tables[j].error(tables[j].has(joint_key::node) ? "node" : "nodes",
+                                "\"" + node + "\"", "parts that no joint turns yet");
         }
         // A joint at rest leaves every bit as it is.
         if (joint.angle_rad == 0.0) continue;
@@ -155,26 +177,8 @@ void turn_joints(Scene& scene, const std::vector<Joint>& joints,
 }
 
 std::vector<Key> joint_keys() {
-  const Joint usual;
-  return {
-      Key::text("node", "of the scene: it and all below turns; *or*").optional(),
-      Key::texts("nodes", "several that turn together").optional(),
-      Key::vector3("axis", "body axes, any length"),
-      Key::vector3_or("point_m", Vec3::Zero(), "a point on the axis, body axes"),
-      Key::number_or("angle_deg", 0.0, joint_angle, "from how the model is drawn"),
-      Key::vector3("towards_sun",
-                   "in a run of the motion: the direction, of the model as drawn, that follows the "
-                   "Sun as near as the axis lets it")
-          .optional(),
-      Key::tables("at",
-                  {Key::number("time_s", {}, "rising"),
-                   Key::number("angle_deg", joint_angle,
-                               "then; on a straight line to the next, held before the first and "
-                               "after the last")},
-                  "or the angle over time, in a run of the motion"),
-      Key::integer_or("positions", static_cast<int64_t>(usual.positions), 2, most_positions,
-                      "angles between the least and the most of `[[joint.at]]` at which the light "
-                      "is traced; between them it is interpolated")};
+  using namespace joint_key;
+  return {node, nodes, axis, point, angle, towards_sun, at.of({time, at_angle}), positions};
 }
 
 }  // namespace photorque

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/settings/keys.h"
-#include "core/settings/settings.h"
+#include "core/settings/typed_keys.h"
 #include "raytrace/scene.h"
 
 namespace photorque {

@@ -4,9 +4,144 @@
 
 #include <vector>
 
-#include "core/settings/keys.h"
+#include "core/constants.h"
+#include "core/settings/typed_keys.h"
 
 namespace photorque {
+
+inline constexpr int64_t most_rays = int64_t{1} << 40;
+
+namespace scene_key {
+inline constexpr TextKey file("file",
+                              "glTF or GLB, beside the experiment; metres, +Y up: glTF (x, y, z) "
+                              "is body (x, −z, y). Or STL or OBJ, with `unit`");
+inline constexpr ChoiceKey up("up", {"z", "y"}, 0,
+                              "of an STL or OBJ file: the axis that is up at zero tilt; z: the "
+                              "file's axes are the body's, y: as in glTF");
+inline constexpr NumberKey metres_per_unit(
+    "metres_per_unit", 1.0, Range::positive(),
+    "scale of a glTF file's lengths: 0.001 for a model in millimetres");
+inline constexpr Vec3Key centre_of_rotation(
+    "centre_of_rotation_m", {0.0, 0.0, 0.0},
+    "where the model has the centre of rotation, in body axes (z up): the model is moved so that "
+    "this point is the origin");
+inline constexpr FlagKey textures(
+    "textures", false,
+    "true: materials that are derived from drawing values take their base colour from its picture "
+    "(PNG, JPEG), as the mean over each triangle");
+inline constexpr FlagKey allow_outside(
+    "allow_outside", false,
+    "true: links and paths of the model out of its folder are followed; also `--allow-outside`");
+inline constexpr NumbersKey bands(
+    "bands_nm", Range::not_negative(),
+    "edges of 1 to 8 wavelength bands, rising; all light must fall inside",
+    {.usually = "one band over everything"});
+inline constexpr TableKey scene("scene", "the model that is lit");
+}  // namespace scene_key
+
+namespace attitude_key {
+inline constexpr NumberKey tilt(
+    "tilt_deg", 0.0, {0.0, pi},
+    "the body's z axis leans by the tilt towards the heading; with heading 0 it turns about +y");
+inline constexpr NumberKey heading("heading_deg", 0.0, {-2.0 * pi, 2.0 * pi},
+                                   "from lab x towards y");
+inline constexpr TableKey attitude("attitude", "how the platform stands");
+}  // namespace attitude_key
+
+namespace trace_key {
+inline constexpr IntegerKey rays(
+    "rays", 1, most_rays,
+    "in total, rounded up per source and replicate to a power of two of at least 256; "
+    "at most 2^31 for each of the replicates. Gathered direct light takes none of them "
+    "(see `direct`): its error goes down by `target_error` alone",
+    {.optional = true});
+inline constexpr IntegerKey replicates(
+    "replicates", 8, 1024, "independent randomisations that the standard errors come from",
+    {.optional = true});
+inline constexpr IntegerKey seed("seed", 0, INT64_MAX, "also `--seed`", {.optional = true});
+inline constexpr IntegerKey max_depth("max_depth", 1, 65535, "interactions of a ray",
+                                      {.optional = true});
+inline constexpr NumberKey cutoff("cutoff", {0.0, 1.0, false, true},
+                                  "rays end below this fraction of their first power (this "
+                                  "and `max_depth` are reported as truncated power)",
+                                  {.optional = true});
+inline constexpr ChoiceKey direct(
+    "direct",
+    {{"auto",
+      "gathered, but with so many pairs of bin and lamp that it would take seconds and more than "
+      "four times as long as the rays (thousands of lamps) by rays, which a note says; on bodies "
+      "in sunlight alone"},
+     {"gather",
+      "direct light on flat flux maps, its torque on flat torque maps of plain surfaces, and its "
+      "force and torque on bodies, from the surface's side, by quadrature where nothing can shade "
+      "and shadow rays where something may"},
+     {"rays", "by rays alone"}},
+    0,
+    "how direct light is found. Gathering takes sources with uniform apertures (`led`, "
+    "`led_array`, `sun`, `ies` when round in aperture and beam); the others, and maps of curved "
+    "surfaces, always go by rays");
+inline constexpr NumberKey target_error(
+    "target_error", {1e-6, 1.0, false, false},
+    "go on with twice the rays until every bin above a tenth of its map's peak has this "
+    "relative standard error; also `--target-error`",
+    {.optional = true});
+inline constexpr NumberKey max_time("max_time_s", Range::positive(),
+                                    "… or until the next round would end later than this; "
+                                    "only with a target; also `--max-time`",
+                                    {.optional = true});
+inline constexpr IntegerKey arriving_rays(
+    "arriving_rays", 1, 10'000'000,
+    "`trace` also writes, for every flux map, the rays that arrive there, of this many "
+    "emitted ones (rounded up as `rays`, with 8 replicates): `rays_NAME.tm25ray`, IES "
+    "TM-25, millimetres in the body frame, with power and, of line sources, wavelength; "
+    "no file for a map that no ray meets; at most 4096 lamps",
+    {.optional = true});
+inline constexpr TableKey trace("trace", "how much work the light is worth");
+}  // namespace trace_key
+
+namespace torque_map_key {
+inline constexpr NumbersKey tilt("tilt_deg", {0.0, pi}, "rising; every tilt with every heading",
+                                 {.usually = "that of `[attitude]`"});
+inline constexpr NumbersKey heading("heading_deg", {-2.0 * pi, 2.0 * pi}, "rising",
+                                    {.usually = "that of `[attitude]`"});
+inline constexpr NumbersKey azimuth(
+    "azimuth_deg", {-pi, pi}, "instead, for one `sun`: directions towards it in body axes, rising",
+    {.optional = true});
+inline constexpr NumbersKey elevation("elevation_deg", {-0.5 * pi, 0.5 * pi}, "with it, rising",
+                                      {.optional = true});
+inline constexpr NumberKey azimuth_step(
+    "azimuth_step_deg", {0.0, 2.0 * pi, true, false},
+    "or the whole sphere, which also writes `EXPERIMENT.spo` (SPAD, as GMAT reads it): a "
+    "whole fraction of 360, at least 0.1",
+    {.optional = true});
+inline constexpr NumberKey elevation_step("elevation_step_deg", {0.0, pi, true, false},
+                                          "with it: a whole fraction of 180, at least 0.1",
+                                          {.optional = true});
+inline constexpr IntegerKey rays(
+    "rays", 1, most_rays,
+    "per attitude or direction. Plain surfaces in sunlight go by quadrature (unless "
+    "`trace.direct` is \"rays\" or `trace.max_depth` below its default; `trace.cutoff` "
+    "does not count there): 64 times as many, at most 2^24, for each of the two "
+    "estimates of what they scatter",
+    {.usually = "`trace.rays`"});
+inline constexpr TableKey torque_map(
+    "torque_map",
+    "the attitudes, or directions of sunlight, of a table of forces and torques; without this "
+    "table tilts of 0, 10, 20 and 30 deg towards eight headings");
+}  // namespace torque_map_key
+
+namespace camera_key {
+inline constexpr Vec3Key position(
+    "position_m", "lab axes, away from `target_m`",
+    {.usually = "south-east of the scene, where `render` also sees the lamps"});
+inline constexpr Vec3Key target("target_m", {0.0, 0.0, 0.0}, "what is in the middle");
+inline constexpr NumberKey field_of_view("field_of_view_deg", {0.0, pi, true, true},
+                                         "across the width", {.usually = "34.4"});
+inline constexpr IntegerKey width("width", 16, 16384, "pixels", {.optional = true});
+inline constexpr IntegerKey height("height", 16, 16384, "pixels", {.optional = true});
+inline constexpr FlagKey lamps("lamps", true, "lamps near the scene and some rays are drawn");
+inline constexpr TableKey camera("camera", "where the picture of the scene is taken from");
+}  // namespace camera_key
 
 // [scene], [[material]], [[source]], [[receiver]], [attitude], [trace], [torque_map], [camera].
 std::vector<Key> scene_tables();

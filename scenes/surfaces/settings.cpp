@@ -17,24 +17,68 @@ namespace {
 
 constexpr double sum_tolerance = 1e-9;
 
+namespace surface_key {
+constexpr NumberKey fraction(std::string_view name, std::string_view what) {
+  return NumberKey(name, Range::fraction(), what, {.optional = true, .several = true});
+}
+constexpr NumberKey absorptance =
+    fraction("absorptance", "fraction of the incident power; a number or one per band");
+constexpr NumberKey specular = fraction("specular", "fraction that is mirrored");
+constexpr NumberKey diffuse = fraction("diffuse", "fraction that is scattered by Lambert's law");
+constexpr NumberKey transmittance =
+    fraction("transmittance",
+             "fraction that goes straight through; of the four one may be left out: they sum "
+             "to 1");
+constexpr NumberKey retroreflectance =
+    fraction("retroreflectance", "a fifth fraction, back where it came from");
+constexpr NumberKey roughness(
+    "roughness", {0.0, 1.0, true},
+    "as in glTF: the specular fraction leaves by GGX microfacets of alpha = roughness², "
+    "Smith masking, with light reflected more than once given back, so that `specular` "
+    "stays the reflectance at every angle",
+    {.optional = true});
+constexpr NumberKey slope_error(
+    "slope_error_mrad", {1e-6, 0.2},
+    "instead: a mirror whose normal leans by Gaussian slopes of this standard deviation "
+    "along each axis; reflected rays stray by twice that",
+    {.optional = true});
+constexpr NumberKey refractive_index(
+    "refractive_index", {1.0, 10.0},
+    "glass in front, by Fresnel's law for unpolarised light; the fractions are those behind it",
+    {.optional = true});
+constexpr TextKey brdf_file("brdf_file", "instead of the fractions: measured scattering",
+                            {.optional = true});
+constexpr NumberKey brdf_scale("brdf_scale", 1.0, Range::positive(),
+                               "a factor on it; a number or one per band", {.several = true});
+constexpr TableKey back("back", "the same for the other side", {.usually = "as the front"});
+constexpr NumberKey reemitted(
+    "reemitted", 0.0, Range::fraction(),
+    "of the sheet: this fraction of the absorbed power leaves at once as heat, by Lambert's law, "
+    "from both sides in proportion to their emissivities. In forces and torques only: the power "
+    "stays booked as absorbed, and no part is lit by another's heat");
+constexpr NumberKey emissivity_front("emissivity_front", 1.0, Range::fraction(), "of that heat");
+constexpr NumberKey emissivity_back("emissivity_back", 1.0, Range::fraction(), "of that heat");
+}  // namespace surface_key
+
 // One of the fractions: its key, and where it goes.
 struct Fraction {
-  const char* key;
+  NumberKey key;
   BandValues OpticalSurface::*values;
 };
-constexpr std::array<Fraction, 4> fractions = {{{"absorptance", &OpticalSurface::absorbed},
-                                                {"specular", &OpticalSurface::specular},
-                                                {"diffuse", &OpticalSurface::diffuse},
-                                                {"transmittance", &OpticalSurface::transmitted}}};
+constexpr std::array<Fraction, 4> fractions = {
+    {{surface_key::absorptance, &OpticalSurface::absorbed},
+     {surface_key::specular, &OpticalSurface::specular},
+     {surface_key::diffuse, &OpticalSurface::diffuse},
+     {surface_key::transmittance, &OpticalSurface::transmitted}}};
 
 // One number for all bands, or an array with one per band.
-BandValues read_band_values(const Settings& table, const char* key, int bands, Range range) {
+BandValues read_band_values(const Settings& table, const NumberKey& key, int bands) {
   BandValues values{};
   if (!table.raw(key).is_array()) {
-    std::fill_n(values.begin(), bands, table.number(key, range));
+    std::fill_n(values.begin(), bands, table.get(key));
     return values;
   }
-  const std::vector<double> numbers = table.numbers(key, range);
+  const std::vector<double> numbers = table.numbers(key, key.range);
   if (numbers.size() != static_cast<size_t>(bands)) {
     throw table.error(key, "an array of " + std::to_string(numbers.size()),
                       "one number, or one for each of " + std::to_string(bands) + " band(s)");
@@ -43,19 +87,15 @@ BandValues read_band_values(const Settings& table, const char* key, int bands, R
   return values;
 }
 
-BandValues read_fraction(const Settings& table, const char* key, int bands) {
-  return read_band_values(table, key, bands, Range::fraction());
-}
-
 // The fraction that goes back where it came from, and the surface for it, if the user has one.
 BandValues read_retroreflected(const Settings& table, int bands) {
-  constexpr const char* key = "retroreflectance";
-  return table.has(key) ? read_fraction(table, key, bands) : BandValues{};
+  const NumberKey& key = surface_key::retroreflectance;
+  return table.has(key) ? read_band_values(table, key, bands) : BandValues{};
 }
 
 // glTF's roughness as the facets' alpha. Below a thousandth it is a mirror.
 double read_alpha(const Settings& table) {
-  const double roughness = table.number("roughness", {0.0, 1.0, true});
+  const double roughness = table.get(surface_key::roughness);
   return std::max(roughness * roughness, 1e-3);
 }
 
@@ -73,7 +113,7 @@ std::string sum_text(double sum, size_t band) {
 std::string list(const std::vector<const Fraction*>& some) {
   std::string text;
   for (const Fraction* fraction : some)
-    text += (text.empty() ? "" : ", ") + std::string(fraction->key);
+    text += (text.empty() ? "" : ", ") + std::string(fraction->key.name);
   return text;
 }
 
@@ -87,18 +127,19 @@ std::string words(const char* what, double number) {
 
 // Glass in front of `base`, whose fractions are read.
 OpticalSurface read_glass(const Settings& table, const OpticalSurface& base) {
-  const double index = table.number("refractive_index", {1.0, 10.0});
+  const double index = table.get(surface_key::refractive_index);
   const int kinds = int{any(base.diffuse)} + int{any(base.specular)} + int{any(base.transmitted)};
   if (kinds > 1) {
-    throw table.error("refractive_index", "more than one of specular, diffuse, transmittance",
+    throw table.error(surface_key::refractive_index,
+                      "more than one of specular, diffuse, transmittance",
                       "at most one of them behind glass");
   }
-  for (const char* key : {"slope_error_mrad", "retroreflectance"}) {
+  for (const NumberKey& key : {surface_key::slope_error, surface_key::retroreflectance}) {
     if (table.has(key)) throw table.error(key, "glass in front too", "no refractive_index beside");
   }
-  if (!table.has("roughness")) return behind_glass(base, index);
+  if (!table.has(surface_key::roughness)) return behind_glass(base, index);
   if (glass_base(base) != GlassBase::matt) {
-    throw table.error("roughness", "specular or transmittance behind glass",
+    throw table.error(surface_key::roughness, "specular or transmittance behind glass",
                       "rough glass over diffuse and absorptance alone");
   }
   return behind_glass(base, index, read_alpha(table));
@@ -106,20 +147,20 @@ OpticalSurface read_glass(const Settings& table, const OpticalSurface& base) {
 
 // The lobe of the specular fraction, if it is none of a mirror.
 void read_lobe(const Settings& table, const OpticalSurface& surface, Bsdf& bsdf) {
-  for (const char* key : {"roughness", "slope_error_mrad"}) {
+  for (const NumberKey& key : {surface_key::roughness, surface_key::slope_error}) {
     if (table.has(key) && !any(surface.specular)) {
       throw table.error(key, "no specular fraction", "specular above 0, or refractive_index");
     }
   }
-  if (table.has("roughness")) {
-    if (table.has("slope_error_mrad")) {
-      throw table.error("slope_error_mrad", "roughness too", "one of the two");
+  if (table.has(surface_key::roughness)) {
+    if (table.has(surface_key::slope_error)) {
+      throw table.error(surface_key::slope_error, "roughness too", "one of the two");
     }
     const double alpha = read_alpha(table);
     bsdf.specular = rough_mirror(alpha);
     bsdf.description = words("roughness", std::sqrt(alpha));
-  } else if (table.has("slope_error_mrad")) {
-    const double slope_rad = table.number("slope_error_mrad", {1e-6, 0.2});
+  } else if (table.has(surface_key::slope_error)) {
+    const double slope_rad = table.get(surface_key::slope_error);
     bsdf.specular = slope_error(slope_rad);
     bsdf.description = words("slope error in mrad", 1e3 * slope_rad);
   }
@@ -127,12 +168,13 @@ void read_lobe(const Settings& table, const OpticalSurface& surface, Bsdf& bsdf)
 
 // Heat radiation of a sheet, on both of its surfaces.
 void read_heat(const Settings& table, SheetOptics& sheet) {
-  const double reemitted = table.number_or("reemitted", 0.0, Range::fraction());
-  const double front = table.number_or("emissivity_front", 1.0, Range::fraction());
-  const double back = table.number_or("emissivity_back", 1.0, Range::fraction());
+  const double reemitted = table.get(surface_key::reemitted);
+  const double front = table.get(surface_key::emissivity_front);
+  const double back = table.get(surface_key::emissivity_back);
   if (reemitted == 0.0) return;
   if (!(front + back > 0.0)) {
-    throw table.error("emissivity_front", "0 on both sides", "a side that heat can leave from");
+    throw table.error(surface_key::emissivity_front, "0 on both sides",
+                      "a side that heat can leave from");
   }
   const auto heat = [&](OpticalSurface& surface) {
     Bsdf bsdf = surface.bsdf ? *surface.bsdf : Bsdf{};
@@ -148,17 +190,18 @@ void read_heat(const Settings& table, SheetOptics& sheet) {
 // Scattering from a table instead of fractions.
 OpticalSurface read_measured(const Settings& table, int bands, const std::string& name,
                              const SurfaceFiles& files, std::vector<std::string>& notices) {
-  for (const char* key : {"absorptance", "specular", "diffuse", "transmittance", "retroreflectance",
-                          "roughness", "slope_error_mrad", "refractive_index"}) {
+  using namespace surface_key;
+  for (const NumberKey& key : {absorptance, specular, diffuse, transmittance, retroreflectance,
+                               roughness, surface_key::slope_error, refractive_index}) {
     if (table.has(key)) throw table.error(key, "brdf_file too", "the table alone");
   }
-  const std::string file = table.text("brdf_file");
+  const std::string file = table.get(brdf_file);
   const std::optional<std::string> text = files ? files(file) : std::nullopt;
-  if (!text) throw table.error("brdf_file", "\"" + file + "\"", "a file that exists");
+  if (!text) throw table.error(brdf_file, "\"" + file + "\"", "a file that exists");
   BandValues scale{};
   std::fill_n(scale.begin(), bands, 1.0);
-  if (table.has("brdf_scale")) {
-    scale = read_band_values(table, "brdf_scale", bands, Range::positive());
+  if (table.has(brdf_scale)) {
+    scale = read_band_values(table, brdf_scale, bands);
   }
   const BrdfTable scattering = read_brdf(*text, file);
   if (const auto notice = coverage_notice(scattering)) notices.push_back(file + ": " + *notice);
@@ -168,7 +211,7 @@ OpticalSurface read_measured(const Settings& table, int bands, const std::string
   if (measured.largest_reflectance > 1.0 + sum_tolerance) {
     words << "a reflectance of " << measured.largest_reflectance << " at "
           << measured.at_incidence_rad / degree_rad << " deg";
-    throw table.error("brdf_file", words.str(), "at most 1 at every angle, or a brdf_scale");
+    throw table.error(brdf_file, words.str(), "at most 1 at every angle, or a brdf_scale");
   }
   constexpr double worth_telling = 0.01;
   if (measured.asymmetry > worth_telling) {
@@ -188,7 +231,7 @@ OpticalSurface read_surface(const Settings& table, int bands, std::string name) 
   std::vector<const Fraction*> missing;
   for (const Fraction& fraction : fractions) {
     if (table.has(fraction.key)) {
-      surface.*fraction.values = read_fraction(table, fraction.key, bands);
+      surface.*fraction.values = read_band_values(table, fraction.key, bands);
     } else {
       missing.push_back(&fraction);
     }
@@ -213,7 +256,7 @@ OpticalSurface read_surface(const Settings& table, int bands, std::string name) 
     for (const Fraction& fraction : fractions) (surface.*fraction.values)[band] /= sum;
     bsdf.retroreflected[band] = retroreflected[band] / sum;
   }
-  if (table.has("refractive_index")) return read_glass(table, surface);
+  if (table.has(surface_key::refractive_index)) return read_glass(table, surface);
   read_lobe(table, surface, bsdf);
   if (any(bsdf.retroreflected)) {
     bsdf.description +=
@@ -229,13 +272,30 @@ SheetOptics read_sheet(const Settings& table, int bands, const std::string& name
                        const SurfaceFiles& files) {
   SheetOptics sheet;
   const auto side = [&](const Settings& settings, const std::string& called) {
-    return settings.has("brdf_file") ? read_measured(settings, bands, called, files, sheet.notices)
-                                     : read_surface(settings, bands, called);
+    return settings.has(surface_key::brdf_file)
+               ? read_measured(settings, bands, called, files, sheet.notices)
+               : read_surface(settings, bands, called);
   };
   sheet.front = side(table, name);
-  if (table.has("back")) sheet.back = side(table.table("back"), name + " (back)");
+  if (table.has(surface_key::back))
+    sheet.back = side(table.get(surface_key::back), name + " (back)");
   read_heat(table, sheet);
   return sheet;
+}
+
+std::vector<Key> sheet_keys() {
+  using namespace surface_key;
+  const std::vector<Key> side = {absorptance,
+                                 specular,
+                                 diffuse,
+                                 transmittance,
+                                 retroreflectance,
+                                 roughness,
+                                 surface_key::slope_error,
+                                 refractive_index,
+                                 brdf_file,
+                                 brdf_scale};
+  return joined({side, {back.of(side), reemitted, emissivity_front, emissivity_back}});
 }
 
 }  // namespace photorque

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/settings/keys.h"
-#include "core/settings/settings.h"
+#include "core/settings/typed_keys.h"
 #include "raytrace/surfaces/bsdf.h"
 
 namespace photorque {

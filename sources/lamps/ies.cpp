@@ -148,24 +148,38 @@ std::optional<std::string> coarseness_notice(const PhotometricLamp& lamp) {
 namespace photorque::kinds::ies {
 namespace {
 
+namespace key {
+constexpr TextKey file(
+    "file", "IES LM-63, IES TM-33 or EULUMDAT; or a table of `polar_deg` and `intensity`",
+    {.optional = true});
+constexpr NumbersKey polar("polar_deg", {0.0, pi},
+                           "instead of `file`: angles from the axis, rising", {.optional = true});
+constexpr NumbersKey azimuth(
+    "azimuth_deg", {0.0, 2.0 * pi, false, true},
+    "with `polar_deg`, of a beam that is not round: angles about the axis, rising",
+    {.optional = true});
+constexpr NumbersKey intensity(
+    "intensity", Range::not_negative(),
+    "one for every angle of `polar_deg`; a row for each of `azimuth_deg`", {.optional = true});
+}  // namespace key
+
 PhotometricFile read_inline(const Settings& settings) {
   StoredPlanes stored;
-  const Range degrees{0.0, pi};
-  const std::vector<double> polar_rad = settings.numbers("polar_deg", degrees);
+  const std::vector<double> polar_rad = settings.get(key::polar);
   for (const double angle_rad : polar_rad) stored.polar_deg.push_back(angle_rad / degree_rad);
   require_ascending(stored.polar_deg, settings.name() + ".polar_deg", settings.where());
   stored.azimuth_deg = {0.0};
-  if (settings.has("azimuth_deg")) {
+  if (settings.has(key::azimuth)) {
     stored.azimuth_deg.clear();
-    for (const double angle_rad : settings.numbers("azimuth_deg", {0.0, 2.0 * pi, false, true})) {
+    for (const double angle_rad : settings.get(key::azimuth)) {
       stored.azimuth_deg.push_back(angle_rad / degree_rad);
     }
     require_ascending(stored.azimuth_deg, settings.name() + ".azimuth_deg", settings.where());
   }
-  stored.intensity = settings.numbers("intensity", Range::not_negative());
+  stored.intensity = settings.get(key::intensity);
   const size_t expected = stored.polar_deg.size() * stored.azimuth_deg.size();
   if (stored.polar_deg.size() < 2 || stored.intensity.size() != expected) {
-    throw settings.error("intensity", std::to_string(stored.intensity.size()) + " numbers",
+    throw settings.error(key::intensity, std::to_string(stored.intensity.size()) + " numbers",
                          "one for every angle of polar_deg (at least two) and azimuth_deg: " +
                              std::to_string(expected));
   }
@@ -176,17 +190,17 @@ PhotometricFile read_inline(const Settings& settings) {
 }
 
 PhotometricFile read_table(const Settings& settings, const SourceContext& context) {
-  if (!settings.has("file")) return read_inline(settings);
+  if (!settings.has(key::file)) return read_inline(settings);
   const SourceFile source = read_source_file(settings, context);
   return read_photometric(source.bytes, source.name);
 }
 
 std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
-  const std::string name = settings.text_or("name", "ies");
-  const double power_W = settings.number("power_W", Range::positive());
+  const std::string name = settings.get(source_key::name.with_default("ies"));
+  const double power_W = settings.get(source_key::power);
   PhotometricFile file = read_table(settings, context);
-  if (settings.has("aperture_diameter_m")) {
-    const double diameter_m = settings.number("aperture_diameter_m", opening_diameter);
+  if (settings.has(source_key::aperture_diameter)) {
+    const double diameter_m = settings.get(source_key::aperture_diameter);
     file.opening = {Opening::Shape::ellipse, diameter_m, diameter_m};
   }
   const auto lamp = std::make_shared<PhotometricLamp>(power_W, file.opening,
@@ -202,36 +216,21 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 }  // namespace
 
 SourceKind kind() {
-  return {
-      "ies",
-      "A lamp with a measured intensity: an IES LM-63, IES TM-33 or EULUMDAT file, or a table",
-      make,
-      {{"polar_deg", {SettingsNode::Array{{0.0}, {5.0}, {10.0}, {20.0}, {40.0}, {90.0}}}},
-       {"intensity", {SettingsNode::Array{{1.0}, {0.9}, {0.6}, {0.2}, {0.05}, {0.0}}}},
-       {"power_W", {2.0}},
-       {"aperture_diameter_m", {0.02}},
-       {"wavelength_nm", {730.0}},
-       {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
-       {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}},
-      joined(
-          {{source_name_key("ies"),
-            Key::text("file",
-                      "IES LM-63, IES TM-33 or EULUMDAT; or a table of `polar_deg` and `intensity`")
-                .optional(),
-            radiant_power_key()},
-           line_spectrum_keys(usual_led_width_m),
-           lamp_place_keys(),
-           {Key::number("aperture_diameter_m", opening_diameter, "of the opening that light leaves")
-                .usually_is("the file's; of a table a point"),
-            Key::numbers("polar_deg", {0.0, pi}, "instead of `file`: angles from the axis, rising")
-                .optional(),
-            Key::numbers(
-                "azimuth_deg", {0.0, 2.0 * pi, false, true},
-                "with `polar_deg`, of a beam that is not round: angles about the axis, rising")
-                .optional(),
-            Key::numbers("intensity", Range::not_negative(),
-                         "one for every angle of `polar_deg`; a row for each of `azimuth_deg`")
-                .optional()}})};
+  return {"ies",
+          "A lamp with a measured intensity: an IES LM-63, IES TM-33 or EULUMDAT file, or a table",
+          make,
+          {{"polar_deg", {SettingsNode::Array{{0.0}, {5.0}, {10.0}, {20.0}, {40.0}, {90.0}}}},
+           {"intensity", {SettingsNode::Array{{1.0}, {0.9}, {0.6}, {0.2}, {0.05}, {0.0}}}},
+           {"power_W", {2.0}},
+           {"aperture_diameter_m", {0.02}},
+           {"wavelength_nm", {730.0}},
+           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
+           {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}},
+          joined({{source_key::name.with_default("ies"), key::file, source_key::power},
+                  {source_key::wavelength, source_key::spectral_fwhm},
+                  lamp_place_keys(),
+                  {source_key::aperture_diameter.usually("the file's; of a table a point"),
+                   key::polar, key::azimuth, key::intensity}})};
 }
 
 }  // namespace photorque::kinds::ies

@@ -1,37 +1,45 @@
-// The keys that several kinds of source share, as they are declared; settings.h and ray_file.h read
-// them.
+// The keys that several kinds of source share; settings.h reads them.
 #pragma once
 
-#include <vector>
-
 #include "core/constants.h"
-#include "core/settings/keys.h"
+#include "core/settings/typed_keys.h"
 
 namespace photorque {
 
-// `name`, with the kind for a default.
-Key source_name_key(const std::string& kind);
-// The radiant power of one lamp.
-Key radiant_power_key();
-Key source_position_key(const std::string& what);
-// read_direction(), and `direction` alone.
-std::vector<Key> direction_keys();
-Key direction_key(const std::string& what);
-// read_line_spectrum().
-std::vector<Key> line_spectrum_keys(double default_fwhm_m);
+// Of what light leaves and how wide it spreads. No optics are smaller; far below, squares of them
+// are no numbers any more, or lie between the roundings of the distances.
+inline constexpr Range opening_diameter{1e-12, 1e308, false, false};
+inline constexpr Range beam_width{1e-12 * degree_rad, pi, false, true};
+inline constexpr Range beam_half_angle{1e-12 * degree_rad, 0.5 * pi, false, false};
+
+inline constexpr double usual_led_width_m = 20e-9;  // spectral_fwhm_nm of LEDs
+
+namespace source_key {
+inline constexpr TextKey name("name", "names results and messages");  // the kind by default
+inline constexpr NumberKey power("power_W", Range::positive(), "radiant power");
+// Each kind says of what.
+inline constexpr Vec3Key position("position_m", "of the lamp, lab axes");
+inline constexpr Vec3Key direction("direction", "where it looks, lab axes, any length; or `aim_m`",
+                                   {.optional = true});
+inline constexpr Vec3Key aim("aim_m", "instead of `direction`: the point that it looks at",
+                             {.optional = true});
+inline constexpr NumberKey wavelength("wavelength_nm", {1e-8, 1e-3}, "middle of the spectrum");
+inline constexpr NumberKey spectral_fwhm(
+    "spectral_fwhm_nm", usual_led_width_m, {0.0, 1e-3},
+    "full width at half maximum of the spectrum, a Gaussian; 0: a line");
+inline constexpr NumberKey aperture_diameter("aperture_diameter_m", opening_diameter,
+                                             "of the opening that light leaves");
+
+// Where light travels that comes from nowhere near.
+inline constexpr Vec3Key light_direction("direction",
+                                         "in which light travels, lab axes, any length");
+}  // namespace source_key
+
 // read_sunlight().
 std::vector<Key> sunlight_keys();
 // read_lamp().
 std::vector<Key> lamp_keys();
 // place_lamps().
 std::vector<Key> lamp_place_keys();
-
-// Of what light leaves and how wide it spreads. No optics are smaller; far below, squares of them
-// are no numbers any more, or lie between the roundings of the distances.
-constexpr Range opening_diameter{1e-12, 1e308, false, false};
-constexpr Range beam_width{1e-12 * degree_rad, pi, false, true};
-constexpr Range beam_half_angle{1e-12 * degree_rad, 0.5 * pi, false, false};
-
-constexpr double usual_led_width_m = 20e-9;  // spectral_fwhm_nm of LEDs
 
 }  // namespace photorque

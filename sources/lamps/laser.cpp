@@ -28,6 +28,17 @@
 namespace photorque::kinds::laser {
 namespace {
 
+// Beyond 30 deg a paraxial beam has lost its meaning.
+constexpr Range paraxial{0.0, 30.0 * degree_rad, false, false};
+
+namespace key {
+constexpr NumberKey waist_radius("waist_radius_m", Range::positive(),
+                                 "1/e² radius of the irradiance");
+constexpr NumberKey divergence_half_angle("divergence_half_angle_deg", paraxial,
+                                          "1/e² half angle of the far field",
+                                          {.usually = "diffraction"});
+}  // namespace key
+
 class GaussianBeam : public Emitter {
  public:
   GaussianBeam(double power_W, double waist_radius_m, double divergence_slope)
@@ -72,22 +83,18 @@ class GaussianBeam : public Emitter {
   double slope_;
 };
 
-// Beyond 30 deg a paraxial beam has lost its meaning.
-constexpr Range paraxial{0.0, 30.0 * degree_rad, false, false};
-
 std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
-  const std::string name = settings.text_or("name", "laser");
-  const Vec3 position_m = settings.vector3("position_m");
+  const std::string name = settings.get(source_key::name.with_default("laser"));
+  const Vec3 position_m = settings.get(source_key::position);
   const Vec3 direction = read_direction(settings, position_m);
   const Spectrum spectrum = read_line_spectrum(settings, 0.0);
-  const double waist_radius_m = settings.number("waist_radius_m", Range::positive());
-  const double power_W = settings.number("power_W", Range::positive());
+  const double waist_radius_m = settings.get(key::waist_radius);
+  const double power_W = settings.get(source_key::power);
 
   const double limit_rad = std::atan(spectrum.centre_m / (pi * waist_radius_m));
-  const double half_angle_rad =
-      settings.number_or("divergence_half_angle_deg", limit_rad, paraxial);
+  const double half_angle_rad = settings.get_or(key::divergence_half_angle, limit_rad);
   if (half_angle_rad > paraxial.high) {
-    throw settings.error("waist_radius_m", "a waist that diffraction spreads by over 30 deg",
+    throw settings.error(key::waist_radius, "a waist that diffraction spreads by over 30 deg",
                          "a wider waist");
   }
   if (half_angle_rad < limit_rad * (1.0 - 1e-6) && context.notice) {
@@ -105,24 +112,20 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 }  // namespace
 
 SourceKind kind() {
-  return {
-      "laser",
-      "A laser beam, Gaussian in position and angle",
-      make,
-      {{"power_W", {0.005}},
-       {"wavelength_nm", {633.0}},
-       {"waist_radius_m", {0.0005}},
-       {"divergence_half_angle_deg", {0.1}},
-       {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
-       {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}},
-      joined(
-          {{source_name_key("laser"), radiant_power_key(),
-            source_position_key("of the waist, lab axes")},
-           direction_keys(),
-           line_spectrum_keys(0.0),
-           {Key::number("waist_radius_m", Range::positive(), "1/e² radius of the irradiance"),
-            Key::number("divergence_half_angle_deg", paraxial, "1/e² half angle of the far field")
-                .usually_is("diffraction")}})};
+  return {"laser",
+          "A laser beam, Gaussian in position and angle",
+          make,
+          {{"power_W", {0.005}},
+           {"wavelength_nm", {633.0}},
+           {"waist_radius_m", {0.0005}},
+           {"divergence_half_angle_deg", {0.1}},
+           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
+           {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}},
+          joined({{source_key::name.with_default("laser"), source_key::power,
+                   source_key::position.meaning("of the waist, lab axes")},
+                  {source_key::direction, source_key::aim},
+                  {source_key::wavelength, source_key::spectral_fwhm.with_default(0.0)},
+                  {key::waist_radius, key::divergence_half_angle}})};
 }
 
 }  // namespace photorque::kinds::laser

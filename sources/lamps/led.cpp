@@ -19,10 +19,10 @@ namespace photorque::kinds::led {
 namespace {
 
 std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
-  const std::string name = settings.text_or("name", "led");
-  const Vec3 position_m = settings.vector3("position_m");
+  const std::string name = settings.get(source_key::name.with_default("led"));
+  const Vec3 position_m = settings.get(source_key::position);
   const Vec3 direction = read_direction(settings, position_m);
-  const double power_W = settings.number("power_W", Range::positive());
+  const double power_W = settings.get(source_key::power);
   const Lamp lamp = read_lamp(settings, context, name, power_W);
   return {{name, lamp.emitter, frame_looking_along(direction, position_m), lamp.spectrum,
            lamp.aperture}};
@@ -43,9 +43,9 @@ SourceKind kind() {
            {"wavelength_nm", {730.0}},
            {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
            {"aim_m", {SettingsNode::Array{{0.0}, {0.0}, {0.0}}}}},
-          joined({{source_name_key("led"), radiant_power_key(),
-                   source_position_key("of the aperture, lab axes")},
-                  direction_keys(),
+          joined({{source_key::name.with_default("led"), source_key::power,
+                   source_key::position.meaning("of the aperture, lab axes")},
+                  {source_key::direction, source_key::aim},
                   lamp_keys()})};
 }
 

@@ -42,6 +42,40 @@ constexpr int64_t max_leds = 100000;
 
 enum class Layout : size_t { grid, ring, hexagonal, positions };
 
+namespace key {
+constexpr ChoiceKey layout("layout",
+                           {{"grid", "columns and rows"},
+                            {"ring", "evenly on a circle, from +x on"},
+                            {"hexagonal", "close packed, the ring around the centre first"},
+                            {"positions", "at given points"}},
+                           "how the LEDs stand");
+constexpr NumbersKey grid_count("count", {1.0, max_leds, false, false},
+                                "of LEDs, [along x, along y]", {.size = 2});
+constexpr NumberKey grid_pitch("pitch_m", Range::positive(),
+                               "from one LED to the next; or [along x, along y]",
+                               {.several = true});
+constexpr IntegerKey count("count", 1, max_leds, "of LEDs");
+constexpr NumberKey ring_radius("ring_radius_m", Range::positive(), "of the circle");
+constexpr NumberKey pitch("pitch_m", Range::positive(), "from one LED to the next");
+constexpr Vec3sKey positions("positions_m", "of the LEDs, lab axes");
+constexpr ChoiceKey aim("aim",
+                        {{"parallel", "all along `direction`"}, {"converging", "all at one point"}},
+                        0, "where the LEDs look");
+constexpr NumberKey focus(
+    "focus_m", Range::positive(),
+    "instead of `aim_m`: the point lies so far along `direction` from the centre",
+    {.optional = true});
+constexpr NumberKey total_power("total_power_W", Range::positive(),
+                                "of all LEDs, instead of `power_W` of each", {.optional = true});
+constexpr NumberKey power_spread("power_spread", 0.0, {0.0, 0.5},
+                                 "relative standard deviation of the LEDs' powers");
+constexpr NumberKey aim_spread(
+    "aim_spread_deg", 0.0, {0.0, 0.5},
+    "standard deviation of their axes, about each of two directions across");
+constexpr IntegerKey spread_seed("spread_seed", 1, 0, INT64_MAX,
+                                 "which panel of all that could be built so; 0: none differs");
+}  // namespace key
+
 std::vector<Vec3> grid(int columns, int rows, const Vec2& pitch_m) {
   std::vector<Vec3> all;
   for (int iy = 0; iy < rows; ++iy) {
@@ -93,23 +127,24 @@ std::vector<Vec3> hexagonal(int64_t count, double pitch_m) {
 }
 
 std::vector<Vec3> read_grid(const Settings& settings) {
-  const std::vector<double> count = settings.numbers("count", {1.0, max_leds, false, false});
+  const std::vector<double> count = settings.get(key::grid_count);
   const bool whole =
       std::all_of(count.begin(), count.end(), [](double n) { return n == std::floor(n); });
   if (count.size() != 2 || !whole || count[0] * count[1] > max_leds) {
     throw settings.error(
-        "count", describe(settings.raw("count")),
+        key::grid_count, describe(settings.raw(key::grid_count)),
         "two whole numbers [columns, rows], at most " + std::to_string(max_leds) + " LEDs");
   }
   Vec2 pitch_m;
-  if (settings.raw("pitch_m").is_array()) {
-    const std::vector<double> both_m = settings.numbers("pitch_m", Range::positive());
+  if (settings.raw(key::grid_pitch).is_array()) {
+    const std::vector<double> both_m = settings.numbers(key::grid_pitch, Range::positive());
     if (both_m.size() != 2) {
-      throw settings.error("pitch_m", describe(settings.raw("pitch_m")), "one or two numbers > 0");
+      throw settings.error(key::grid_pitch, describe(settings.raw(key::grid_pitch)),
+                           "one or two numbers > 0");
     }
     pitch_m = {both_m[0], both_m[1]};
   } else {
-    pitch_m.setConstant(settings.number("pitch_m", Range::positive()));
+    pitch_m.setConstant(settings.get(key::grid_pitch));
   }
   return grid(static_cast<int>(count[0]), static_cast<int>(count[1]), pitch_m);
 }
@@ -117,11 +152,11 @@ std::vector<Vec3> read_grid(const Settings& settings) {
 // Where the LEDs stand in the array's frame (its plane is z = 0), for every layout but `positions`.
 std::vector<Vec3> read_layout(const Settings& settings, Layout layout) {
   if (layout == Layout::grid) return read_grid(settings);
-  const int64_t count = settings.integer("count", 1, max_leds);
+  const int64_t count = settings.get(key::count);
   if (layout == Layout::ring) {
-    return ring(count, settings.number("ring_radius_m", Range::positive()));
+    return ring(count, settings.get(key::ring_radius));
   }
-  return hexagonal(count, settings.number("pitch_m", Range::positive()));
+  return hexagonal(count, settings.get(key::pitch));
 }
 
 // Straight down it is the half turn about x. Near there the axes follow the direction evenly, as
@@ -138,36 +173,37 @@ struct Placement {
 };
 
 Placement read_placement(const Settings& settings) {
-  const auto layout =
-      static_cast<Layout>(settings.choice("layout", {"grid", "ring", "hexagonal", "positions"}));
-  const bool converging = settings.choice_or("aim", {"parallel", "converging"}, 0) == 1;
+  const auto layout = static_cast<Layout>(settings.get(key::layout));
+  const bool converging = settings.get(key::aim) == 1;
 
   Placement placement;
   Vec3 centre_m;
   if (layout == Layout::positions) {
-    placement.positions_m = settings.vectors3("positions_m");
+    placement.positions_m = settings.get(key::positions);
     centre_m = std::accumulate(placement.positions_m.begin(), placement.positions_m.end(),
                                Vec3(Vec3::Zero())) /
                static_cast<double>(placement.positions_m.size());
   } else {
-    centre_m = settings.vector3("position_m");
+    centre_m = settings.get(source_key::position);
   }
 
   // A converging array may have both: a plane of its own and a point that its LEDs look at.
   std::optional<Vec3> aim_m;
   if (converging) {
     // Said here, because Settings would take the key `aim` for an `aim_m` without its unit.
-    if (settings.has("aim_m") == settings.has("focus_m")) {
-      throw settings.error("aim_m", settings.has("aim_m") ? "focus_m too" : "nothing",
+    if (settings.has(source_key::aim) == settings.has(key::focus)) {
+      throw settings.error(source_key::aim,
+                           settings.has(source_key::aim) ? "focus_m too" : "nothing",
                            "a point to converge on, or focus_m");
     }
-    aim_m = settings.has("aim_m")
-                ? settings.vector3("aim_m")
-                : Vec3(centre_m + settings.number("focus_m", Range::positive()) *
-                                      read_direction_vector(settings).normalized());
+    aim_m = settings.has(source_key::aim)
+                ? settings.get(source_key::aim)
+                : Vec3(centre_m +
+                       settings.get(key::focus) * read_direction_vector(settings).normalized());
   }
-  const Vec3 normal = converging && settings.has("direction") ? read_direction_vector(settings)
-                                                              : read_direction(settings, centre_m);
+  const Vec3 normal = converging && settings.has(source_key::direction)
+                          ? read_direction_vector(settings)
+                          : read_direction(settings, centre_m);
   if (layout != Layout::positions) {
     const RigidTransform lab_from_array = panel_frame(normal, centre_m);
     // Every layout is its own mirror image, so LEDs are counted as the lab sees them: rows by
@@ -178,18 +214,19 @@ Placement read_placement(const Settings& settings) {
     }
   }
   for (const Vec3& at_m : placement.positions_m) {
-    placement.directions.push_back(aim_m ? direction_to(settings, "aim_m", at_m, *aim_m) : normal);
+    placement.directions.push_back(aim_m ? direction_to(settings, source_key::aim, at_m, *aim_m)
+                                         : normal);
   }
   return placement;
 }
 
 double read_power_of_each(const Settings& settings, size_t count) {
-  const bool total = settings.has("total_power_W");
-  if (total && settings.has("power_W")) {
-    throw settings.error("total_power_W", "also power_W", "only one of the two");
+  const bool total = settings.has(key::total_power);
+  if (total && settings.has(source_key::power)) {
+    throw settings.error(key::total_power, "also power_W", "only one of the two");
   }
-  if (!total) return settings.number("power_W", Range::positive());
-  return settings.number("total_power_W", Range::positive()) / static_cast<double>(count);
+  if (!total) return settings.get(source_key::power);
+  return settings.get(key::total_power) / static_cast<double>(count);
 }
 
 // An emitter that gives another power.
@@ -210,16 +247,14 @@ class ScaledEmitter final : public Emitter {
   double factor_;
 };
 
-constexpr double max_power_spread = 0.5, max_aim_spread_rad = 0.5;
-
 // How the LEDs of one panel differ from what they are said to be. Normal draws, by Box and Muller,
 // that belong to seed and LED: panels of different layouts are built from the same LEDs.
 class Spread {
  public:
   explicit Spread(const Settings& settings)
-      : power_(settings.number_or("power_spread", 0.0, {0.0, max_power_spread})),
-        aim_rad_(settings.number_or("aim_spread_deg", 0.0, {0.0, max_aim_spread_rad})),
-        seed_(static_cast<uint64_t>(settings.integer_or("spread_seed", 1, 0, INT64_MAX))) {}
+      : power_(settings.get(key::power_spread)),
+        aim_rad_(settings.get(key::aim_spread)),
+        seed_(static_cast<uint64_t>(settings.get(key::spread_seed))) {}
 
   void apply(size_t led, Beam& beam) const {
     if (seed_ == 0) return;
@@ -251,7 +286,7 @@ class Spread {
 };
 
 std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
-  const std::string name = settings.text_or("name", "led_array");
+  const std::string name = settings.get(source_key::name.with_default("led_array"));
   const Placement placement = read_placement(settings);
   const double power_W = read_power_of_each(settings, placement.positions_m.size());
   const Lamp lamp = read_lamp(settings, context, name, power_W);
@@ -267,54 +302,20 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 }
 
 std::vector<Key> led_array_keys() {
-  const Key centre = source_position_key("centre of the panel, lab axes");
-  const auto count = [] { return Key::integer("count", 1, max_leds, "of LEDs"); };
-  const auto pitch = [] {
-    return Key::number("pitch_m", Range::positive(), "from one LED to the next");
-  };
-  std::vector<Key> keys = {
-      source_name_key("led_array"),
-      Key::choice(
-          "layout",
-          {{"grid",
-            "columns and rows",
-            {Key::numbers("count", {1.0, max_leds, false, false}, "of LEDs, [along x, along y]")
-                 .of_size(2),
-             Key::number("pitch_m", Range::positive(),
-                         "from one LED to the next; or [along x, along y]")
-                 .one_or_several(),
-             centre}},
-           {"ring",
-            "evenly on a circle, from +x on",
-            {count(), Key::number("ring_radius_m", Range::positive(), "of the circle"), centre}},
-           {"hexagonal",
-            "close packed, the ring around the centre first",
-            {count(), pitch(), centre}},
-           {"positions",
-            "at given points",
-            {Key::vectors3("positions_m", "of the LEDs, lab axes")}}},
-          "how the LEDs stand"),
-      direction_key("normal of the panel, lab axes, any length; or `aim_m`").optional(),
-      Key::choice_or("aim",
-                     {{"parallel", "all along `direction`"},
-                      {"converging",
-                       "all at one point",
-                       {Key::number("focus_m", Range::positive(),
-                                    "instead of `aim_m`: the point lies so far along `direction` "
-                                    "from the centre")
-                            .optional()}}},
-                     0, "where the LEDs look"),
-      Key::vector3("aim_m", "the point that they, or the panel, look at").optional(),
-      radiant_power_key().usually_is("from `total_power_W`"),
-      Key::number("total_power_W", Range::positive(), "of all LEDs, instead of `power_W` of each")
-          .optional(),
-      Key::number_or("power_spread", 0.0, {0.0, max_power_spread},
-                     "relative standard deviation of the LEDs' powers"),
-      Key::number_or("aim_spread_deg", 0.0, {0.0, max_aim_spread_rad},
-                     "standard deviation of their axes, about each of two directions across"),
-      Key::integer_or("spread_seed", 1, 0, INT64_MAX,
-                      "which panel of all that could be built so; 0: none differs")};
-  return joined({keys, lamp_keys()});
+  using namespace key;
+  const Key centre = source_key::position.meaning("centre of the panel, lab axes");
+  return joined(
+      {{source_key::name.with_default("led_array"),
+        layout.bringing({{grid_count, grid_pitch, centre},
+                         {count, ring_radius, centre},
+                         {count, pitch, centre},
+                         {positions}}),
+        source_key::direction.meaning("normal of the panel, lab axes, any length; or `aim_m`"),
+        aim.bringing({{}, {focus}}),
+        source_key::aim.meaning("the point that they, or the panel, look at"),
+        source_key::power.usually("from `total_power_W`"), total_power, power_spread, aim_spread,
+        spread_seed},
+       lamp_keys()});
 }
 
 }  // namespace

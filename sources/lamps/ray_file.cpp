@@ -161,6 +161,10 @@ double RayLamp::relative_intensity(double angle_rad) const {
 namespace photorque::kinds::ray_file {
 namespace {
 
+namespace key {
+constexpr TextKey file("file", "IES TM-25, Zemax binary or LightTools text");
+}  // namespace key
+
 std::string sum_notice(const RaySet& set) {
   const bool watts = set.flux_unit == RaySet::FluxUnit::watt;
   const std::optional<double>& stated =
@@ -177,13 +181,14 @@ std::string sum_notice(const RaySet& set) {
 }
 
 double read_power(const Settings& settings, const RaySet& set) {
-  if (settings.has("power_W")) return settings.number("power_W", Range::positive());
+  if (settings.has(source_key::power)) return settings.get(source_key::power);
   if (set.stated_radiant_flux_W) return *set.stated_radiant_flux_W;
-  throw settings.error("power_W", "nothing, and a file without radiant flux", "a power in watts");
+  throw settings.error(source_key::power, "nothing, and a file without radiant flux",
+                       "a power in watts");
 }
 
 Spectrum read_spectrum(const Settings& settings, const RaySet& set, std::string& notice) {
-  if (settings.has("wavelength_nm")) return read_line_spectrum(settings, usual_led_width_m);
+  if (settings.has(source_key::wavelength)) return read_line_spectrum(settings, usual_led_width_m);
   double flux = 0.0, moment = 0.0;
   for (const RaySet::Ray& ray : set.rays) {
     if (!(ray.wavelength_m > 0.0)) continue;
@@ -192,16 +197,17 @@ Spectrum read_spectrum(const Settings& settings, const RaySet& set, std::string&
   }
   if (flux > 0.0) notice = "wavelengths of single rays are replaced by their mean";
   if (!(flux > 0.0) && !set.wavelength_m) {
-    throw settings.error("wavelength_nm", "nothing, and a file without wavelength", "a wavelength");
+    throw settings.error(source_key::wavelength, "nothing, and a file without wavelength",
+                         "a wavelength");
   }
   Spectrum spectrum;
   spectrum.centre_m = flux > 0.0 ? moment / flux : *set.wavelength_m;
-  spectrum.fwhm_m = settings.number_or("spectral_fwhm_nm", usual_led_width_m, {0.0, 1e-3});
+  spectrum.fwhm_m = settings.get(source_key::spectral_fwhm);
   return spectrum;
 }
 
 std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
-  const std::string name = settings.text_or("name", "ray_file");
+  const std::string name = settings.get(source_key::name.with_default("ray_file"));
   const SourceFile source = read_source_file(settings, context);
   const RaySet set = read_rays(source.bytes, source.name);
   const double power_W = read_power(settings, set);
@@ -218,23 +224,18 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 }  // namespace
 
 SourceKind kind() {
-  return {
-      "ray_file",
-      "A lamp as a file of rays: IES TM-25, Zemax binary or LightTools text",
-      make,
-      {{"file", {"lamp.tm25ray"}},
-       {"power_W", {2.0}},
-       {"wavelength_nm", {730.0}},
-       {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
-       {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}},
-      joined({{source_name_key("ray_file"),
-               Key::text("file", "IES TM-25, Zemax binary or LightTools text"),
-               radiant_power_key().usually_is("the file's")},
-              {Key::number("wavelength_nm", {1e-8, 1e-3}, "middle of the spectrum")
-                   .usually_is("the file's"),
-               Key::number_or("spectral_fwhm_nm", usual_led_width_m, {0.0, 1e-3},
-                              "full width at half maximum of the spectrum, a Gaussian; 0: a line")},
-              lamp_place_keys()})};
+  return {"ray_file",
+          "A lamp as a file of rays: IES TM-25, Zemax binary or LightTools text",
+          make,
+          {{"file", {"lamp.tm25ray"}},
+           {"power_W", {2.0}},
+           {"wavelength_nm", {730.0}},
+           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
+           {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}},
+          joined({{source_key::name.with_default("ray_file"), key::file,
+                   source_key::power.usually("the file's")},
+                  {source_key::wavelength.usually("the file's"), source_key::spectral_fwhm},
+                  lamp_place_keys()})};
 }
 
 }  // namespace photorque::kinds::ray_file

@@ -13,38 +13,82 @@
 namespace photorque {
 namespace {
 
+namespace lamp_key {
+constexpr NumberKey fwhm("fwhm_deg", beam_width, "full width at half of the maximum intensity");
+constexpr NumberKey order("order", {2.0, 100.0, false, false},
+                          "2 is a Gaussian, 100 nearly a disc");
+constexpr NumberKey half_angle("half_angle_deg", beam_half_angle, "from axis to edge");
+constexpr ChoiceKey pillbox_measure("pillbox_measure", {"angle", "solid_angle", "projected"},
+                                    "over what the flux is even");
+constexpr NumberKey exponent("exponent", {0.0, 1e9, false, false}, "m; 1 is Lambert's law");
+constexpr ChoiceKey profile(
+    "profile",
+    {{"gaussian", "exp(−4 ln 2 θ²/fwhm²)"},
+     {"super_gaussian", "exp(−ln 2 (2θ/fwhm)^order)"},
+     {"pillbox", "constant to the edge"},
+     {"cosine_power", "cosᵐ θ"}},
+    "how the radiant intensity, per solid angle, falls with the angle θ from the axis");
+constexpr NumberKey halo_fraction("halo_fraction", {0.0, 1.0, false, true},
+                                  "part of the flux in a wider Gaussian; with `halo_fwhm_deg`",
+                                  {.usually = "no halo"});
+constexpr NumberKey halo_fwhm("halo_fwhm_deg", beam_width, "of that Gaussian", {.optional = true});
+constexpr NumberKey die_size(
+    "die_size_m", Range::positive(),
+    "edge of the square that emits: warns of a beam that no optics can make", {.optional = true});
+constexpr NumberKey die_diameter("die_diameter_m", Range::positive(), "the same of a round one",
+                                 {.optional = true});
+constexpr NumberKey lens_index("lens_index", 1.0, {1.0, 5.0, false, false},
+                               "refractive index around the die");
+}  // namespace lamp_key
+
+namespace place_key {
+constexpr Vec3sKey positions("positions_m", "one lamp at each, instead of `position_m`",
+                             {.optional = true});
+constexpr NumberKey turn("turn_deg", 0.0, {}, "about the beam, right-handed about its direction");
+}  // namespace place_key
+
+namespace sunlight_key {
+constexpr ChoiceKey spectrum("spectrum",
+                             {{"blackbody", "Planck's law"},
+                              {"AM0", "above the atmosphere, ASTM G173-03, 280 to 4000 nm"},
+                              {"AM1.5G", "on the ground, ASTM G173-03, 280 to 4000 nm"}},
+                             0, "what it shines with");
+constexpr NumberKey temperature("temperature_K", solar_temperature_K, {100.0, 1e6, false, false},
+                                "of the black body");
+constexpr NumberKey irradiance("irradiance_W_m2", solar_irradiance_W_m2, Range::positive(),
+                               "on a plane normal to the light",
+                               {.usually = "1361; with `AM1.5G` 1000"});
+}  // namespace sunlight_key
+
 AngularProfile read_core(const Settings& settings) {
+  using namespace lamp_key;
   enum Shape : size_t { gaussian, super_gaussian, pillbox, cosine_power };
-  switch (settings.choice("profile", {"gaussian", "super_gaussian", "pillbox", "cosine_power"})) {
+  switch (settings.get(profile)) {
     case super_gaussian:
-      return super_gaussian_profile(settings.number("fwhm_deg", beam_width),
-                                    settings.number("order", {2.0, 100.0, false, false}));
+      return super_gaussian_profile(settings.get(fwhm), settings.get(order));
     case pillbox: {
       constexpr PillboxMeasure measures[] = {PillboxMeasure::angle, PillboxMeasure::solid_angle,
                                              PillboxMeasure::projected};
-      const double half_angle_rad = settings.number("half_angle_deg", beam_half_angle);
-      return pillbox_profile(
-          half_angle_rad,
-          measures[settings.choice("pillbox_measure", {"angle", "solid_angle", "projected"})]);
+      const double half_angle_rad = settings.get(half_angle);
+      return pillbox_profile(half_angle_rad, measures[settings.get(pillbox_measure)]);
     }
     case cosine_power:
-      return cosine_power_profile(settings.number("exponent", {0.0, 1e9, false, false}));
+      return cosine_power_profile(settings.get(exponent));
     default:
-      return gaussian_profile(settings.number("fwhm_deg", beam_width));
+      return gaussian_profile(settings.get(fwhm));
   }
 }
 
 std::optional<Die> read_die(const Settings& settings) {
-  const bool square = settings.has("die_size_m");
-  const bool round = settings.has("die_diameter_m");
+  using namespace lamp_key;
+  const bool square = settings.has(die_size);
+  const bool round = settings.has(die_diameter);
   if (square && round) {
-    throw settings.error("die_diameter_m", "also die_size_m", "only one of the two");
+    throw settings.error(die_diameter, "also die_size_m", "only one of the two");
   }
   if (!square && !round) return std::nullopt;
-  const double size_m =
-      settings.number(square ? "die_size_m" : "die_diameter_m", Range::positive());
-  return Die{(square ? 1.0 : 0.25 * pi) * size_m * size_m,
-             settings.number_or("lens_index", 1.0, {1.0, 5.0, false, false})};
+  const double size_m = settings.get(square ? die_size : die_diameter);
+  return Die{(square ? 1.0 : 0.25 * pi) * size_m * size_m, settings.get(lens_index)};
 }
 
 std::string describe(const Vec3& v) {
@@ -56,14 +100,14 @@ std::string describe(const Vec3& v) {
 }  // namespace
 
 Vec3 read_direction_vector(const Settings& settings) {
-  const Vec3 direction = settings.vector3("direction");
+  const Vec3 direction = settings.get(source_key::direction);
   if (!(direction.stableNorm() > 0.0)) {
-    throw settings.error("direction", describe(direction), "a vector of some length");
+    throw settings.error(source_key::direction, describe(direction), "a vector of some length");
   }
   return direction.stableNormalized();
 }
 
-Vec3 direction_to(const Settings& settings, const std::string& key, const Vec3& from_m,
+Vec3 direction_to(const Settings& settings, std::string_view key, const Vec3& from_m,
                   const Vec3& to_m) {
   const Vec3 direction = to_m - from_m;
   if (!(direction.stableNorm() > 0.0)) {
@@ -74,57 +118,54 @@ Vec3 direction_to(const Settings& settings, const std::string& key, const Vec3& 
 }
 
 Vec3 read_direction(const Settings& settings, const Vec3& position_m) {
-  const bool aimed = settings.has("aim_m");
-  const bool directed = settings.has("direction");
-  if (aimed && directed) throw settings.error("direction", "also aim_m", "only one of the two");
+  const bool aimed = settings.has(source_key::aim);
+  const bool directed = settings.has(source_key::direction);
+  if (aimed && directed)
+    throw settings.error(source_key::direction, "also aim_m", "only one of the two");
   if (!aimed && !directed) {
-    throw settings.error("direction", "neither direction nor aim_m",
+    throw settings.error(source_key::direction, "neither direction nor aim_m",
                          "a direction or a point to aim at");
   }
   if (directed) return read_direction_vector(settings);
-  return direction_to(settings, "aim_m", position_m, settings.vector3("aim_m"));
+  return direction_to(settings, source_key::aim, position_m, settings.get(source_key::aim));
 }
 
 AngularDistribution read_angular_distribution(const Settings& settings) {
   AngularProfile core = read_core(settings);
-  if (!settings.has("halo_fraction") && !settings.has("halo_fwhm_deg")) {
+  if (!settings.has(lamp_key::halo_fraction) && !settings.has(lamp_key::halo_fwhm)) {
     return AngularDistribution(std::move(core));
   }
-  const double fraction = settings.number("halo_fraction", {0.0, 1.0, false, true});
-  return AngularDistribution(
-      std::move(core),
-      Halo{gaussian_profile(settings.number("halo_fwhm_deg", beam_width)), fraction});
+  const double fraction = settings.get(lamp_key::halo_fraction);
+  return AngularDistribution(std::move(core),
+                             Halo{gaussian_profile(settings.get(lamp_key::halo_fwhm)), fraction});
 }
 
 Spectrum read_line_spectrum(const Settings& settings, double default_fwhm_m) {
   Spectrum spectrum;
   spectrum.shape = Spectrum::Shape::gaussian;
-  spectrum.centre_m = settings.number("wavelength_nm", {1e-8, 1e-3});
-  spectrum.fwhm_m = settings.number_or("spectral_fwhm_nm", default_fwhm_m, {0.0, 1e-3});
+  spectrum.centre_m = settings.get(source_key::wavelength);
+  spectrum.fwhm_m = settings.get(source_key::spectral_fwhm.with_default(default_fwhm_m));
   return spectrum;
 }
 
 Sunlight read_sunlight(const Settings& settings) {
   constexpr double ground_irradiance_W_m2 = 1000.0;  // IEC 60904-3
   enum : size_t { blackbody, am0, am15g };
-  const size_t choice = settings.choice_or("spectrum", {"blackbody", "AM0", "AM1.5G"}, blackbody);
+  const size_t choice = settings.get(sunlight_key::spectrum);
   Spectrum spectrum;
   spectrum.shape = choice == am0     ? Spectrum::Shape::am0
                    : choice == am15g ? Spectrum::Shape::am15g
                                      : Spectrum::Shape::blackbody;
   if (choice == blackbody) {
-    spectrum.temperature_K =
-        settings.number_or("temperature_K", solar_temperature_K, {100.0, 1e6, false, false});
+    spectrum.temperature_K = settings.get(sunlight_key::temperature);
   }
-  return {spectrum,
-          settings.number_or("irradiance_W_m2",
-                             choice == am15g ? ground_irradiance_W_m2 : solar_irradiance_W_m2,
-                             Range::positive())};
+  return {spectrum, settings.get(sunlight_key::irradiance.with_default(
+                        choice == am15g ? ground_irradiance_W_m2 : solar_irradiance_W_m2))};
 }
 
 Lamp read_lamp(const Settings& settings, const SourceContext& context, const std::string& name,
                double power_W) {
-  const double diameter_m = settings.number("aperture_diameter_m", opening_diameter);
+  const double diameter_m = settings.get(source_key::aperture_diameter);
   AngularDistribution directions = read_angular_distribution(settings);
   if (const auto die = read_die(settings)) {
     const auto notice =
@@ -159,13 +200,14 @@ SourceFile read_source_file(const Settings& settings, const SourceContext& conte
 std::vector<Beam> place_lamps(const Settings& settings, const std::string& name,
                               const std::shared_ptr<const Emitter>& lamp, const Spectrum& spectrum,
                               const std::optional<UniformAperture>& aperture) {
-  const bool several = settings.has("positions_m");
-  if (several && settings.has("position_m")) {
-    throw settings.error("positions_m", "also position_m", "only one of the two");
+  const bool several = settings.has(place_key::positions);
+  if (several && settings.has(source_key::position)) {
+    throw settings.error(place_key::positions, "also position_m", "only one of the two");
   }
-  const std::vector<Vec3> positions_m = several ? settings.vectors3("positions_m")
-                                                : std::vector<Vec3>{settings.vector3("position_m")};
-  const double turn_rad = settings.number_or("turn_deg", 0.0);
+  const std::vector<Vec3> positions_m = several
+                                            ? settings.get(place_key::positions)
+                                            : std::vector<Vec3>{settings.get(source_key::position)};
+  const double turn_rad = settings.get(place_key::turn);
   const RigidTransform turn{Quat(Eigen::AngleAxisd(turn_rad, Vec3::UnitZ())), Vec3::Zero()};
   std::vector<Beam> beams;
   for (size_t i = 0; i < positions_m.size(); ++i) {
@@ -174,6 +216,31 @@ std::vector<Beam> place_lamps(const Settings& settings, const std::string& name,
                      frame_looking_along(direction, positions_m[i]) * turn, spectrum, aperture});
   }
   return beams;
+}
+
+std::vector<Key> sunlight_keys() {
+  using namespace sunlight_key;
+  return {spectrum.bringing({{temperature}}), irradiance};
+}
+
+std::vector<Key> lamp_keys() {
+  using namespace lamp_key;
+  using namespace source_key;
+  return {aperture_diameter,
+          profile.bringing({{fwhm}, {fwhm, order}, {half_angle, pillbox_measure}, {exponent}}),
+          halo_fraction,
+          halo_fwhm,
+          wavelength,
+          spectral_fwhm,
+          die_size,
+          die_diameter,
+          lens_index};
+}
+
+std::vector<Key> lamp_place_keys() {
+  using namespace source_key;
+  return {position.optional().meaning("of the lamp, lab axes; or `positions_m`"),
+          place_key::positions, direction, aim, place_key::turn};
 }
 
 }  // namespace photorque

@@ -22,7 +22,7 @@ Vec3 read_direction(const Settings& settings, const Vec3& position_m);
 Vec3 read_direction_vector(const Settings& settings);
 
 // A vector from one point to another that `key` names; InputError if they coincide.
-Vec3 direction_to(const Settings& settings, const std::string& key, const Vec3& from_m,
+Vec3 direction_to(const Settings& settings, std::string_view key, const Vec3& from_m,
                   const Vec3& to_m);
 
 // The directions of a lamp. What an angle means is in its key:

@@ -28,6 +28,15 @@
 namespace photorque::kinds::solar_simulator {
 namespace {
 
+namespace key {
+constexpr NumberKey footprint_diameter("footprint_diameter_m", Range::positive(),
+                                       "of the lit field");
+constexpr NumberKey collimation_half_angle("collimation_half_angle_deg", solar_angular_radius_rad,
+                                           {0.0, 0.25 * pi}, "of the light on every point");
+constexpr NumberKey nonuniformity("nonuniformity", 0.0, {0.0, 1.0, false, true},
+                                  "(max − min)/(max + min) of the irradiance on the field");
+}  // namespace key
+
 class SolarSimulator : public Emitter {
  public:
   struct Field {
@@ -73,19 +82,18 @@ class SolarSimulator : public Emitter {
 };
 
 std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
-  const std::string name = settings.text_or("name", "solar_simulator");
-  const Vec3 position_m = settings.vector3("position_m");
+  const std::string name = settings.get(source_key::name.with_default("solar_simulator"));
+  const Vec3 position_m = settings.get(source_key::position);
   const Vec3 direction = read_direction_vector(settings);
   // The rays start before the sphere that holds the scene.
   constexpr double margin = 1.001;
   const double distance_m = margin * (context.scene_radius_m + position_m.norm());
-  const double nonuniformity = settings.number_or("nonuniformity", 0.0, {0.0, 1.0, false, true});
+  const double nonuniformity = settings.get(key::nonuniformity);
   const Sunlight light = read_sunlight(settings);
-  const SolarSimulator::Field field{
-      light.irradiance_W_m2, 0.5 * settings.number("footprint_diameter_m", Range::positive()),
-      2.0 * nonuniformity / (1.0 + nonuniformity),
-      settings.number_or("collimation_half_angle_deg", solar_angular_radius_rad, {0.0, 0.25 * pi}),
-      distance_m};
+  const SolarSimulator::Field field{light.irradiance_W_m2,
+                                    0.5 * settings.get(key::footprint_diameter),
+                                    2.0 * nonuniformity / (1.0 + nonuniformity),
+                                    settings.get(key::collimation_half_angle), distance_m};
   return {{name, std::make_shared<SolarSimulator>(field),
            frame_looking_along(direction, position_m - distance_m * direction), light.spectrum}};
 }
@@ -101,15 +109,11 @@ SourceKind kind() {
            {"nonuniformity", {0.05}},
            {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {0.0}}}},
            {"direction", {SettingsNode::Array{{0.3}, {0.0}, {-1.0}}}}},
-          joined({{source_name_key("solar_simulator"),
-                   source_position_key("middle of the field, lab axes"),
-                   direction_key("in which light travels, lab axes, any length")},
+          joined({{source_key::name.with_default("solar_simulator"),
+                   source_key::position.meaning("middle of the field, lab axes"),
+                   source_key::light_direction},
                   sunlight_keys(),
-                  {Key::number("footprint_diameter_m", Range::positive(), "of the lit field"),
-                   Key::number_or("collimation_half_angle_deg", solar_angular_radius_rad,
-                                  {0.0, 0.25 * pi}, "of the light on every point"),
-                   Key::number_or("nonuniformity", 0.0, {0.0, 1.0, false, true},
-                                  "(max − min)/(max + min) of the irradiance on the field")}})};
+                  {key::footprint_diameter, key::collimation_half_angle, key::nonuniformity}})};
 }
 
 }  // namespace photorque::kinds::solar_simulator

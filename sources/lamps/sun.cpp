@@ -30,6 +30,17 @@
 namespace photorque::kinds::sun {
 namespace {
 
+namespace key {
+constexpr NumberKey angular_radius("angular_radius_deg", solar_angular_radius_rad,
+                                   {0.0, 0.25 * pi, false, false},
+                                   "of the disc in the sky; 0 is parallel light");
+constexpr NumbersKey limb_darkening(
+    "limb_darkening", {-1.0, 1.0},
+    "[u1, u2]: radiance 1 − u1 (1 − μ) − u2 (1 − μ)², μ = √(1 − r²) at r radii from the "
+    "middle; [0.47, 0.23] in visible light",
+    {.usually = "none", .size = 2});
+}  // namespace key
+
 // A disc in the sky that is brighter in its middle than at its edge, as stars are.
 //
 // Radiance L(μ)/L(1) = 1 − u₁ (1 − μ) − u₂ (1 − μ)², μ the cosine between the line of sight and the
@@ -179,18 +190,18 @@ class Sun : public Emitter {
 
 std::optional<LimbDarkening> read_limb_darkening(const Settings& settings,
                                                  double angular_radius_rad) {
-  if (!settings.has("limb_darkening")) return std::nullopt;
-  const std::vector<double> u = settings.numbers("limb_darkening", {-1.0, 1.0});
+  if (!settings.has(key::limb_darkening)) return std::nullopt;
+  const std::vector<double> u = settings.get(key::limb_darkening);
   const bool two = u.size() == 2;
   // The edge shines with 1 − u₁ − u₂, the slope at the middle is −(u₁ + 2 u₂ (1 − μ)) ≤ 0.
   if (!two || u[0] < 0.0 || u[0] + u[1] > 1.0 || u[0] + 2.0 * u[1] < 0.0) {
-    throw settings.error("limb_darkening",
+    throw settings.error(key::limb_darkening,
                          two ? "coefficients of a disc that does not darken towards its edge"
                              : std::to_string(u.size()) + " numbers",
                          "[u1, u2] with u1 >= 0, u1 + 2 u2 >= 0 and u1 + u2 <= 1");
   }
   if (!(angular_radius_rad > 0.0)) {
-    throw settings.error("limb_darkening", "a Sun without a disc", "angular_radius_deg above 0");
+    throw settings.error(key::limb_darkening, "a Sun without a disc", "angular_radius_deg above 0");
   }
   return LimbDarkening(angular_radius_rad, u[0], u[1]);
 }
@@ -198,11 +209,10 @@ std::optional<LimbDarkening> read_limb_darkening(const Settings& settings,
 std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
   // The sphere that holds the scene may only just hold it.
   constexpr double margin = 1.001;
-  const std::string name = settings.text_or("name", "sun");
+  const std::string name = settings.get(source_key::name.with_default("sun"));
   const Vec3 direction = read_direction_vector(settings);
   const Sunlight light = read_sunlight(settings);
-  const double angular_radius_rad = settings.number_or(
-      "angular_radius_deg", solar_angular_radius_rad, {0.0, 0.25 * pi, false, false});
+  const double angular_radius_rad = settings.get(key::angular_radius);
   if (!(context.scene_radius_m > 0.0)) {
     throw settings.error("kind", "\"sun\" over a scene without extent", "a scene to shine on");
   }
@@ -219,22 +229,13 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 }  // namespace
 
 SourceKind kind() {
-  return {
-      "sun",
-      "Parallel light from a disc in the sky, of a given irradiance",
-      make,
-      {{"direction", {SettingsNode::Array{{0.3}, {0.0}, {-1.0}}}}},
-      joined(
-          {{source_name_key("sun"), direction_key("in which light travels, lab axes, any length")},
-           sunlight_keys(),
-           {Key::number_or("angular_radius_deg", solar_angular_radius_rad,
-                           {0.0, 0.25 * pi, false, false},
-                           "of the disc in the sky; 0 is parallel light"),
-            Key::numbers("limb_darkening", {-1.0, 1.0},
-                         "[u1, u2]: radiance 1 − u1 (1 − μ) − u2 (1 − μ)², μ = √(1 − r²) at r "
-                         "radii from the middle; [0.47, 0.23] in visible light")
-                .of_size(2)
-                .usually_is("none")}})};
+  return {"sun",
+          "Parallel light from a disc in the sky, of a given irradiance",
+          make,
+          {{"direction", {SettingsNode::Array{{0.3}, {0.0}, {-1.0}}}}},
+          joined({{source_key::name.with_default("sun"), source_key::light_direction},
+                  sunlight_keys(),
+                  {key::angular_radius, key::limb_darkening}})};
 }
 
 }  // namespace photorque::kinds::sun

@@ -39,7 +39,6 @@ const std::map<std::string, std::set<std::string>> allowed = {
     // The trade compares ways by the disturbances that they are.
     {"tools/supply/onboard.cpp", {"battery_discharge", "tether"}},
     // A key of [environment.sun]: the path about the Sun.
-    {"attitude/environment/keys.cpp", {"orbit"}},
     {"attitude/environment/sun.cpp", {"orbit"}},
 };
 

@@ -21,13 +21,6 @@ namespace photorque {
 inline const std::filesystem::path examples =
     std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "tests/data/keys";
 
-// A key that a reader asked for, in a table as it was written.
-struct Asked {
-  std::string table, key;
-  SettingsNode::Table written;
-  std::optional<SettingsNode> otherwise_SI;
-};
-
 inline std::vector<std::filesystem::path> example_files() {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(examples)) {
@@ -55,111 +48,10 @@ inline std::string all_of(const CheckReport& report) {
   return lines;
 }
 
-// "source[0].back" → {"source", "back"}.
-inline std::vector<std::string> parts_of(const std::string& name) {
-  std::vector<std::string> parts = {""};
-  bool in_brackets = false;
-  for (const char c : name) {
-    if (c == '[') in_brackets = true;
-    if (c == '.') {
-      parts.emplace_back();
-    } else if (!in_brackets) {
-      parts.back() += c;
-    }
-    if (c == ']') in_brackets = false;
-  }
-  return parts;
-}
-
 inline bool is_same_quantity(const std::string& a, const std::string& b) {
   if (a == b) return true;
   const KeyUnit x = unit_of_key(a), y = unit_of_key(b);
   return !x.unit.empty() && x.stem == y.stem && x.dimension == y.dimension;
-}
-
-inline const Key* among(const std::vector<const Key*>& keys, const std::string& name) {
-  const auto exact = std::ranges::find_if(keys, [&](const Key* k) { return k->name == name; });
-  if (exact != keys.end()) return *exact;
-  const auto it =
-      std::ranges::find_if(keys, [&](const Key* k) { return is_same_quantity(k->name, name); });
-  return it == keys.end() ? nullptr : *it;
-}
-
-// Every key of a list, whatever choice brings it.
-inline void flatten(const std::vector<Key>& keys, std::vector<const Key*>& all) {
-  for (const Key& key : keys) {
-    all.push_back(&key);
-    for (const Key::Choice& choice : key.choices) flatten(choice.keys, all);
-  }
-}
-
-// Where in the declarations a table of that name is; null where it is none that is declared (a
-// copy of a reader's own, the parts of a value with its error).
-inline const std::vector<Key>* keys_at(const std::vector<Key>& tables, const std::string& name) {
-  const std::vector<Key>* keys = &tables;
-  if (name.empty()) return keys;
-  for (const std::string& part : parts_of(name)) {
-    std::vector<const Key*> all;
-    flatten(*keys, all);
-    const Key* inner = nullptr;
-    for (const Key* key : all) {
-      if (key->name == part && !key->keys.empty()) inner = key;
-    }
-    if (inner == nullptr) return nullptr;
-    keys = &inner->keys;
-  }
-  return keys;
-}
-
-inline double in_SI(const SettingsNode& number, double to_SI) {
-  const auto* whole = std::get_if<int64_t>(&number.value);
-  return (whole != nullptr ? static_cast<double>(*whole) : std::get<double>(number.value)) * to_SI;
-}
-
-inline bool is_same_default(const SettingsNode& declared, double to_SI,
-                            const SettingsNode& otherwise_SI) {
-  if (declared.is_number() && otherwise_SI.is_number()) {
-    const double a = in_SI(declared, to_SI), b = in_SI(otherwise_SI, 1.0);
-    return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b));
-  }
-  const auto* a = std::get_if<SettingsNode::Array>(&declared.value);
-  const auto* b = std::get_if<SettingsNode::Array>(&otherwise_SI.value);
-  if (a != nullptr && b != nullptr) {
-    bool same = a->size() == b->size();
-    for (size_t i = 0; same && i < a->size(); ++i) same = is_same_default((*a)[i], to_SI, (*b)[i]);
-    return same;
-  }
-  return toml_value(declared) == toml_value(otherwise_SI);
-}
-
-// Who asks with an empty text for a default wants to know whether the key is there.
-inline bool is_empty(const SettingsNode& otherwise) {
-  const auto* text = std::get_if<std::string>(&otherwise.value);
-  return text != nullptr && text->empty();
-}
-
-// What the readers ask for and the declarations do not know, or know with another default.
-inline std::set<std::string> asked_amiss(const std::vector<Key>& tables,
-                                         const std::vector<Asked>& all) {
-  std::set<std::string> amiss;
-  for (const Asked& asked : all) {
-    const std::vector<Key>* keys = keys_at(tables, asked.table);
-    if (keys == nullptr) continue;
-    std::string table;
-    for (const std::string& part : parts_of(asked.table)) table += part + ".";
-    const Key* key = among(keys_in(asked.written, *keys), asked.key);
-    // `budget` looks for bodies in the air in every disturbance.
-    const bool is_part = asked.table.starts_with("disturbance[") && asked.key == "part";
-    if (key == nullptr && is_part) continue;
-    if (key == nullptr) {
-      amiss.insert(table + asked.key + " is asked for");
-    } else if (asked.otherwise_SI && !is_empty(*asked.otherwise_SI) && key->usually.empty() &&
-               (!key->otherwise || !is_same_default(*key->otherwise, unit_of_key(key->name).to_SI,
-                                                    *asked.otherwise_SI))) {
-      amiss.insert(table + key->name + " has the default " + toml_value(*asked.otherwise_SI));
-    }
-  }
-  return amiss;
 }
 
 inline SettingsNode of_wrong_type(const Key& key) {

@@ -1,16 +1,16 @@
-// The declared keys against the readers: what they ask for, expect and take by default.
+// The declared keys against the readers.
 //
 // tests/data/keys uses every key. With one key at a time set to a value of the wrong type the
-// readers' own message must be what the declaration says: so type, unit, range and words agree.
-// note_asked() hears what they ask for besides.
+// readers' own message must be what the declaration says: every declared key is read, with its
+// type, unit and range.
 #include "tools/keys/registry.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
 
-#include "core/settings/read_log.h"
 #include "tests/tools/key_agreement.h"
 
 namespace photorque {
@@ -20,20 +20,9 @@ namespace fs = std::filesystem;
 using testing::IsEmpty;
 using testing::Not;
 
-std::vector<Asked>* listener = nullptr;  // while someone listens
-
 const std::vector<Key>& declared() {
   static const std::vector<Key> tables = experiment_keys();
   return tables;
-}
-
-std::vector<Asked> asked_by_readers(const fs::path& file) {
-  std::vector<Asked> all;
-  listener = &all;
-  const CheckReport report = checked(file, parsed(file), KeyCheck::by_readers);
-  listener = nullptr;
-  EXPECT_EQ(all_of(report), "") << file;
-  return all;
 }
 
 TEST(Keys, AreTakenByTheReadersWithTheirTypesUnitsAndRanges) {
@@ -50,26 +39,11 @@ TEST(Keys, AreTakenByTheReadersWithTheirTypesUnitsAndRanges) {
   EXPECT_GT(all.size(), 700u);
 }
 
-TEST(Keys, AreAllThatTheReadersAskForWithTheirDefaults) {
-  std::vector<fs::path> files = example_files();
-  for (const auto& entry :
-       fs::recursive_directory_iterator(fs::path(PHOTORQUE_SOURCE_DIR) / "scenes")) {
-    if (entry.path().extension() == ".toml" && entry.path().stem() != "parameters") {
-      files.push_back(entry.path());
-    }
-  }
-  size_t asked = 0;
-  for (const fs::path& file : files) {
-    const std::vector<Asked> all = asked_by_readers(file);
-    asked += all.size();
-    EXPECT_THAT(asked_amiss(declared(), all), IsEmpty()) << file;
-  }
-  EXPECT_GT(asked, 5000u);
-}
-
-TEST(Keys, OfTheExamplesAreDeclared) {
+TEST(Keys, OfTheExamplesAreDeclaredAndRead) {
   for (const fs::path& file : example_files()) {
-    EXPECT_EQ(all_of(checked(file, parsed(file), KeyCheck::by_declaration)), "") << file;
+    for (const KeyCheck check : {KeyCheck::by_declaration, KeyCheck::by_readers}) {
+      EXPECT_EQ(all_of(checked(file, parsed(file), check)), "") << file;
+    }
   }
 }
 
@@ -113,7 +87,6 @@ TEST(Keys, ThatAreDeclaredWronglyAreFound) {
     Readers readers(tables);
     readers.try_all(file);
     std::set<std::string> all = readers.amiss();
-    all.merge(asked_amiss(tables, asked_by_readers(file)));
     // The file has this table alone as it is meant.
     std::erase_if(all, [](const std::string& one) {
       return !one.starts_with("platform.") && !one.starts_with(".platform");
@@ -130,38 +103,23 @@ TEST(Keys, ThatAreDeclaredWronglyAreFound) {
               Not(IsEmpty()));
   EXPECT_THAT(disagreements(changed(name, [](Key& k) { k.type = Key::Type::text; })),
               Not(IsEmpty()));
-  EXPECT_THAT(disagreements(changed(name, [](Key& k) { k.otherwise = SettingsNode{12.0}; })),
-              Not(IsEmpty()));
   EXPECT_THAT(disagreements(changed("topology", [](Key& k) { k.choices.pop_back(); })),
               Not(IsEmpty()));
 }
 
 TEST(Keys, AreEachExplained) {
-  std::vector<const Key*> all;
-  const std::function<void(const std::vector<Key>&)> collect = [&](const std::vector<Key>& keys) {
-    std::vector<const Key*> here;
-    flatten(keys, here);
-    for (const Key* key : here) {
-      all.push_back(key);
-      collect(key->keys);
+  const std::function<void(const std::vector<Key>&)> explained = [&](const std::vector<Key>& keys) {
+    for (const Key& key : keys) {
+      EXPECT_FALSE(key.what.empty()) << key.name;
+      EXPECT_FALSE(key.what.ends_with('.')) << key.name << ": " << key.what;
+      EXPECT_FALSE(key.required && (key.otherwise || !key.usually.empty())) << key.name;
+      explained(key.keys);
+      for (const Key::Choice& choice : key.choices) explained(choice.keys);
     }
   };
-  collect(declared());
-  for (const Key* key : all) {
-    EXPECT_FALSE(key->what.empty()) << key->name;
-    EXPECT_FALSE(key->what.ends_with('.')) << key->name << ": " << key->what;
-    EXPECT_FALSE(key->required && (key->otherwise || !key->usually.empty())) << key->name;
-  }
+  explained(declared());
 }
 
 }  // namespace
-
-// In the place of core's.
-void note_asked(const SettingsNode& table, const std::string& name, std::string_view key,
-                const SettingsNode* otherwise_SI) {
-  if (listener == nullptr) return;
-  listener->push_back({name, std::string(key), std::get<SettingsNode::Table>(table.value),
-                       otherwise_SI == nullptr ? std::nullopt : std::optional(*otherwise_SI)});
-}
 
 }  // namespace photorque

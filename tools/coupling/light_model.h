@@ -49,6 +49,7 @@ bool has_light(const ExperimentFile& file);
 // user's cache folder; "" for none); [[light.switch]] with time_s, on and source (all). InputError
 // as usual, and for switches out of order.
 LightSettings read_light(const ExperimentFile& file);
+Key light_table();
 
 // What light does to the platform and its array at any attitude: traced, or from a table of traces.
 

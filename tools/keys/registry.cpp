@@ -6,16 +6,21 @@
 
 #include "attitude/camera/keys.h"
 #include "attitude/disturbances/kind.h"
-#include "attitude/environment/keys.h"
+#include "attitude/environment/environment.h"
 #include "attitude/filtering/keys.h"
-#include "attitude/model/keys.h"
-#include "attitude/propagation/keys.h"
+#include "attitude/model/platform.h"
+#include "attitude/propagation/run.h"
 #include "attitude/recordings/keys.h"
 #include "attitude/studies/keys.h"
 #include "diagnosis/light/keys.h"
 #include "diagnosis/light/module/design.h"
 #include "scenes/experiment/keys.h"
-#include "tools/keys/tables.h"
+#include "tools/coupling/light_model.h"
+#include "tools/keys/fit.h"
+#include "tools/realtime/session.h"
+#include "tools/runs/array_report.h"
+#include "tools/supply/options.h"
+#include "tools/sweeps/keys.h"
 
 namespace photorque {
 namespace {

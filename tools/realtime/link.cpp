@@ -10,17 +10,39 @@
 namespace photorque {
 namespace {
 
+namespace link_key {
+constexpr Range up_to_an_hour{0.0, 3600.0};
+constexpr NumberKey delay("delay_s", 0.0, up_to_an_hour, "the least that a packet takes");
+constexpr NumberKey jitter("jitter_s", 0.0, up_to_an_hour, "beyond it, as `jitter` says");
+constexpr ChoiceKey jitter_law("jitter",
+                               {{"exponential", "of this mean"},
+                                {"uniform", "up to this"},
+                                {"gaussian", "the absolute value of one of this scale"}},
+                               0, "how the delay is spread");
+constexpr NumberKey loss("loss", 0.0, Range::fraction(), "fraction of packets, each by itself");
+constexpr NumberKey burst_begin(
+    "burst_begin", 0.0, Range::fraction(),
+    "Gilbert and Elliott's two states: probability per packet that a burst begins");
+constexpr NumberKey burst_end("burst_end", 1.0, {0.0, 1.0, true, false}, "that it ends");
+constexpr NumberKey burst_loss("burst_loss", 1.0, Range::fraction(), "that a packet is lost in it");
+constexpr FlagKey reorder("reorder", true, "packets may overtake each other");
+constexpr TextKey trace("trace",
+                        "a CSV with `delay_s`, measured delays taken in turn instead (−1: lost)",
+                        {.usually = "none"});
+}  // namespace link_key
+
 enum LinkDraw : uint64_t { lost_alone, burst_changes, lost_in_burst, jitter_u, jitter_v };
 
 std::vector<double> read_trace(const Settings& settings, const std::filesystem::path& folder) {
-  const std::string name = settings.text("trace");
+  const std::string name = settings.get(link_key::trace);
   const std::filesystem::path path = folder / name;
   if (!std::filesystem::is_regular_file(path)) {
-    throw settings.error("trace", "\"" + name + "\"", "a file beside the experiment");
+    throw settings.error(link_key::trace, "\"" + name + "\"", "a file beside the experiment");
   }
   const NumberColumns file = read_number_columns(path, {"delay_s"});
   if (std::ranges::all_of(file.columns[0], [](double d) { return d < 0.0; })) {
-    throw settings.error("trace", "no packet that arrives", "delays in seconds, -1 where lost");
+    throw settings.error(link_key::trace, "no packet that arrives",
+                         "delays in seconds, -1 where lost");
   }
   return file.columns[0];
 }
@@ -29,17 +51,15 @@ std::vector<double> read_trace(const Settings& settings, const std::filesystem::
 
 LinkSettings read_link(const Settings& settings, const std::filesystem::path& folder) {
   LinkSettings link;
-  constexpr Range up_to_an_hour = {0.0, 3600.0};
-  link.delay_s = settings.number_or("delay_s", 0.0, up_to_an_hour);
-  link.jitter_s = settings.number_or("jitter_s", 0.0, up_to_an_hour);
-  link.jitter = static_cast<LinkSettings::Jitter>(
-      settings.choice_or("jitter", {"exponential", "uniform", "gaussian"}, 0));
-  link.loss = settings.number_or("loss", 0.0, Range::fraction());
-  link.burst_begin = settings.number_or("burst_begin", 0.0, Range::fraction());
-  link.burst_end = settings.number_or("burst_end", 1.0, {0.0, 1.0, true, false});
-  link.burst_loss = settings.number_or("burst_loss", 1.0, Range::fraction());
-  link.reorder = settings.flag_or("reorder", true);
-  if (settings.has("trace")) link.trace_s = read_trace(settings, folder);
+  link.delay_s = settings.get(link_key::delay);
+  link.jitter_s = settings.get(link_key::jitter);
+  link.jitter = static_cast<LinkSettings::Jitter>(settings.get(link_key::jitter_law));
+  link.loss = settings.get(link_key::loss);
+  link.burst_begin = settings.get(link_key::burst_begin);
+  link.burst_end = settings.get(link_key::burst_end);
+  link.burst_loss = settings.get(link_key::burst_loss);
+  link.reorder = settings.get(link_key::reorder);
+  if (settings.has(link_key::trace)) link.trace_s = read_trace(settings, folder);
   return link;
 }
 
@@ -82,6 +102,11 @@ std::optional<double> LinkFate::next() {
   ++sent_;
   if (!delay_s) ++lost_;
   return delay_s;
+}
+
+std::vector<Key> link_keys() {
+  using namespace link_key;
+  return {delay, jitter, jitter_law, loss, burst_begin, burst_end, burst_loss, reorder, trace};
 }
 
 }  // namespace photorque

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/settings/settings.h"
+#include "core/settings/typed_keys.h"
 
 namespace photorque {
 
@@ -35,6 +35,7 @@ struct LinkSettings {
 // burst_begin, burst_end, burst_loss, reorder, trace: a CSV in `folder` with a column delay_s, −1
 // where the packet was lost.
 LinkSettings read_link(const Settings& settings, const std::filesystem::path& folder);
+std::vector<Key> link_keys();
 
 // What happens to one packet after the other.
 class LinkFate {

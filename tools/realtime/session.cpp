@@ -12,26 +12,71 @@
 #include "tools/realtime/photorque_serve.h"
 
 namespace photorque {
+namespace {
+
+namespace serve_key {
+constexpr ServeSettings usual;
+constexpr ChoiceKey mode("mode",
+                         {{"paced", "by the clock"},
+                          {"lockstep", "every tick waits for the client's answer"}},
+                         0, "what the ticks follow");
+constexpr NumberKey rate("rate_Hz", usual.rate_Hz, {0.1, 1e5},
+                         "ticks; also the rows of `recording.csv`");
+constexpr TextKey address("address", usual.address, "where UDP listens, IPv4");
+constexpr IntegerKey port("port", PHOTORQUE_PORT, 0, 65535,
+                          "of UDP; 0: any that is free, which the first line says");
+constexpr FlagKey wait_for_client("wait_for_client", true, "before the first tick");
+constexpr NumberKey client_timeout(
+    "client_timeout_s", usual.client_timeout_s, {1e-3, 1e6},
+    "for the first hello and, in lockstep, for every answer; then the run ends with status 3");
+constexpr NumberKey max_torque("max_torque_N_m", usual.max_torque_N_m, Range::positive(),
+                               "commands beyond are refused");
+constexpr NumberKey hold("hold_s", Range::positive(),
+                         "a command that is not renewed for so long becomes zero",
+                         {.usually = "never"});
+constexpr NumberKey deadline("deadline_s", Range::positive(),
+                             "a tick that is served later than this counts as missed",
+                             {.usually = "a step"});
+constexpr ChoiceKey on_miss("on_miss",
+                            {{"catch_up", "the next ticks follow at once"},
+                             {"slip", "the clock is set back"},
+                             {"stop", "the run ends"}},
+                            0, "what follows a missed tick");
+constexpr NumberKey spin("spin_s", usual.spin_s, {0.0, 1.0},
+                         "before a tick it looks again and again instead of sleeping; costs "
+                         "processor time, saves the time of waking up");
+constexpr IntegerKey realtime_priority(
+    "realtime_priority", 0, 0, 99,
+    "above 0: SCHED_FIFO and locked memory, where the system permits it");
+constexpr FlagKey send_truth("send_truth", false,
+                             "the true attitude and rate in every measurement");
+constexpr TableKey to_client("to_client", "a simulated link for measurements");
+constexpr TableKey from_client("from_client", "a simulated link for commands");
+constexpr TableKey serve("serve", "a run in real time");
+}  // namespace serve_key
+
+}  // namespace
 
 ServeSettings read_serve(const Settings& root) {
   const Settings s = own_table(root, "serve", false);
   ServeSettings serve;
-  serve.mode = static_cast<ServeSettings::Mode>(s.choice_or("mode", {"paced", "lockstep"}, 0));
-  serve.rate_Hz = s.number_or("rate_Hz", serve.rate_Hz, {0.1, 1e5});
-  serve.address = s.text_or("address", serve.address);
-  serve.port = static_cast<int>(s.integer_or("port", PHOTORQUE_PORT, 0, 65535));
-  serve.wait_for_client = s.flag_or("wait_for_client", true);
-  serve.client_timeout_s = s.number_or("client_timeout_s", serve.client_timeout_s, {1e-3, 1e6});
-  serve.max_torque_N_m = s.number_or("max_torque_N_m", serve.max_torque_N_m, Range::positive());
-  serve.hold_s = s.number_or("hold_s", std::numeric_limits<double>::infinity(), Range::positive());
-  serve.deadline_s = s.number_or("deadline_s", 1.0 / serve.rate_Hz, Range::positive());
-  serve.on_miss = static_cast<OnMiss>(s.choice_or("on_miss", {"catch_up", "slip", "stop"}, 0));
-  serve.spin_s = s.number_or("spin_s", serve.spin_s, {0.0, 1.0});
-  serve.realtime_priority = static_cast<int>(s.integer_or("realtime_priority", 0, 0, 99));
-  serve.send_truth = s.flag_or("send_truth", false);
+  serve.mode = static_cast<ServeSettings::Mode>(s.get(serve_key::mode));
+  serve.rate_Hz = s.get(serve_key::rate);
+  serve.address = s.get(serve_key::address);
+  serve.port = static_cast<int>(s.get(serve_key::port));
+  serve.wait_for_client = s.get(serve_key::wait_for_client);
+  serve.client_timeout_s = s.get(serve_key::client_timeout);
+  serve.max_torque_N_m = s.get(serve_key::max_torque);
+  serve.hold_s = s.get_or(serve_key::hold, std::numeric_limits<double>::infinity());
+  serve.deadline_s = s.get_or(serve_key::deadline, 1.0 / serve.rate_Hz);
+  serve.on_miss = static_cast<OnMiss>(s.get(serve_key::on_miss));
+  serve.spin_s = s.get(serve_key::spin);
+  serve.realtime_priority = static_cast<int>(s.get(serve_key::realtime_priority));
+  serve.send_truth = s.get(serve_key::send_truth);
   const auto folder = std::filesystem::path(root.where().file).parent_path();
-  if (s.has("to_client")) serve.to_client = read_link(s.table("to_client"), folder);
-  if (s.has("from_client")) serve.from_client = read_link(s.table("from_client"), folder);
+  if (s.has(serve_key::to_client)) serve.to_client = read_link(s.get(serve_key::to_client), folder);
+  if (s.has(serve_key::from_client))
+    serve.from_client = read_link(s.get(serve_key::from_client), folder);
   s.finish();
   return serve;
 }
@@ -272,6 +317,13 @@ Product Session::product() const {
   }
   product.tables.push_back(std::move(table));
   return product;
+}
+
+Key serve_table() {
+  using namespace serve_key;
+  return serve.of({mode, rate, address, port, wait_for_client, client_timeout, max_torque, hold,
+                   deadline, on_miss, spin, realtime_priority, send_truth,
+                   to_client.of(link_keys()), from_client.of(link_keys())});
 }
 
 }  // namespace photorque

@@ -6,7 +6,7 @@
 
 #include "attitude/propagation/live.h"
 #include "core/product.h"
-#include "core/settings/settings.h"
+#include "core/settings/typed_keys.h"
 #include "tools/realtime/clock.h"
 #include "tools/realtime/gate.h"
 #include "tools/realtime/link.h"
@@ -43,6 +43,7 @@ struct ServeSettings {
 // realtime_priority (0), send_truth (false), and the links [serve.to_client] and
 // [serve.from_client].
 ServeSettings read_serve(const Settings& root);
+Key serve_table();
 
 // A run in real time with its client: at every tick a measurement goes out and commands come in.
 class Session {

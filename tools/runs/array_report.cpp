@@ -14,21 +14,6 @@ namespace {
 
 // ---- What a published power and efficiency require of an array, by physics.
 
-constexpr double same_tilt_rad = 1e-6;
-
-std::optional<double> published_upright(const std::vector<PublishedFigure>& figures,
-                                        const std::string& quantity) {
-  for (const PublishedFigure& figure : figures) {
-    if (figure.quantity == quantity && figure.tilt_rad < same_tilt_rad) return figure.value;
-  }
-  return std::nullopt;
-}
-
-double given_or_published(const Settings& target, const char* key, Range range,
-                          const std::optional<double>& published) {
-  return published ? target.number_or(key, *published, range) : target.number(key, range);
-}
-
 // Ours for a published power of the array; nothing for other figures.
 std::optional<double> power_of(const ArrayResult& result, const std::string& quantity) {
   if (quantity == "array_power_W") return result.power_W.value;
@@ -124,14 +109,6 @@ Table sensitivity_table(const Console& console, const ArrayDesign& design,
 }
 
 // InputError for a figure that is neither given nor published.
-ArrayTarget read_array_target(const Settings& target,
-                              const std::vector<PublishedFigure>& published) {
-  return {given_or_published(target, "power_W", Range::positive(),
-                             published_upright(published, "array_power_W")),
-          given_or_published(target, "efficiency", {0.0, 1.0, true, false},
-                             published_upright(published, "array_efficiency"))};
-}
-
 // What the target requires: EQE V_oc FF, light on the cells; what remains of it at the tilts that
 // powers were published for; what known cells reach; what changes the power of this array. Tables
 // "target", "known_cells", "sensitivities".
@@ -149,34 +126,6 @@ Product target_report(const Console& console, const ArrayTarget& target,
 }
 
 // ---- Trackers, losses, a day, a wiring.
-
-std::optional<double> efficiency(const Settings& chain, const char* key) {
-  if (!chain.has(key)) return {};
-  return chain.number(key, {0.0, 1.0, true, false});
-}
-
-ArrayReport::Motion read_motion(const Settings& s) {
-  ArrayReport::Motion motion;
-  motion.trackers = read_trackers(s);
-  // Without instants it is for `propagate`, where the platform moves by itself.
-  if (!s.has("time_s") && !s.has("tilt_deg")) return motion;
-  motion.time_s = s.numbers("time_s");
-  motion.tilt_rad = s.numbers("tilt_deg", {-pi, pi});
-  motion.heading_rad = s.has("heading_deg") ? s.numbers("heading_deg", {-2 * pi, 2 * pi})
-                                            : std::vector<double>(motion.time_s.size(), 0.0);
-  const bool rises =
-      std::ranges::adjacent_find(motion.time_s, std::greater_equal<>()) == motion.time_s.end();
-  if (motion.time_s.size() < 2 || !rises) {
-    throw s.error("time_s", std::to_string(motion.time_s.size()) + " instants",
-                  "at least two, ascending");
-  }
-  if (motion.tilt_rad.size() != motion.time_s.size() ||
-      motion.heading_rad.size() != motion.time_s.size()) {
-    throw s.error("tilt_deg", std::to_string(motion.tilt_rad.size()) + " angles",
-                  std::to_string(motion.time_s.size()) + ", one per instant");
-  }
-  return motion;
-}
 
 CellTables tables_for(const ArrayPower& array, const ArrayResult& result,
                       const std::vector<std::vector<double>>& lights) {
@@ -348,25 +297,6 @@ Product layout_report(const Console& console, const ArrayPower& array, const Cel
 }
 
 }  // namespace
-
-ArrayReport read_array_report(const Settings& array, std::vector<PublishedFigure> published) {
-  ArrayReport report;
-  report.published = std::move(published);
-  if (array.has("chain")) {
-    const Settings chain = array.table("chain");
-    report.chain = {efficiency(chain, "wall_plug_efficiency"),
-                    efficiency(chain, "collimator_efficiency"),
-                    efficiency(chain, "converter_efficiency")};
-  }
-  if (array.has("target"))
-    report.target = read_array_target(array.table("target"), report.published);
-  if (array.has("tracker")) report.motion = read_motion(array.table("tracker"));
-  if (array.has("day")) report.day = read_day(array.table("day"));
-  if (array.has("layout")) {
-    report.layout_most_tried = array.table("layout").integer_or("most_tried", 2000, 1, 10000000);
-  }
-  return report;
-}
 
 Product report_array(const Console& console, const OpticalRun& run, const ArrayPower& array,
                      const TraceResult& traced, const ArrayResult& result) {

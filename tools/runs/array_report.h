@@ -42,6 +42,8 @@ struct ArrayReport {
 };
 
 ArrayReport read_array_report(const Settings& array, std::vector<PublishedFigure> published);
+// [array] with the keys of its design.
+Key array_table();
 
 // Traces, computes and prints all that was asked for; the losses always.
 Product report_array(const Console& console, const OpticalRun& run, const ArrayPower& array,

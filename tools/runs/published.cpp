@@ -5,17 +5,37 @@
 #include "core/constants.h"
 
 namespace photorque {
+namespace {
+
+namespace published_key {
+constexpr TextKey quantity("quantity", "a name in `summary.json`");
+constexpr NumberKey value("value", {}, "in its unit");
+constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi}, "at which it holds");
+constexpr NumberKey rounded_to(
+    "rounded_to", Range::positive(),
+    "one unit of its last printed digit (38 %: 0.01): ours is held against it, and "
+    "`published_misfit` of the summary is the sum of ((ours − `value`)/(½ "
+    "`rounded_to`))²: for `optimise`, at most 1 for each figure that agrees",
+    {.optional = true});
+constexpr TextKey source("source", "who printed it");
+constexpr TextKey why("why", "", "ours differs");
+constexpr TablesKey published("published",
+                              "a figure that somebody printed, compared at the same tilt");
+}  // namespace published_key
+
+}  // namespace
 
 std::vector<PublishedFigure> read_published(const std::vector<Settings>& tables) {
   std::vector<PublishedFigure> figures;
   for (const Settings& table : tables) {
     PublishedFigure figure;
-    figure.quantity = table.text("quantity");
-    figure.value = table.number("value");
-    figure.tilt_rad = table.number_or("tilt_deg", 0.0, {0.0, pi});
-    if (table.has("rounded_to")) figure.rounded_to = table.number("rounded_to", Range::positive());
-    figure.source = table.text("source");
-    figure.why = table.text_or("why", "");
+    figure.quantity = table.get(published_key::quantity);
+    figure.value = table.get(published_key::value);
+    figure.tilt_rad = table.get(published_key::tilt);
+    if (table.has(published_key::rounded_to))
+      figure.rounded_to = table.get(published_key::rounded_to);
+    figure.source = table.get(published_key::source);
+    figure.why = table.get(published_key::why);
     figures.push_back(std::move(figure));
     table.finish();
   }
@@ -62,6 +82,11 @@ Product compare_published(const std::vector<PublishedFigure>& figures, double ti
   if (!table.column("quantity").texts.empty()) compared.tables.push_back(std::move(table));
   if (misfit) compared.quantities.push_back({"published_misfit", {*misfit, 0.0}});
   return compared;
+}
+
+Key published_table() {
+  using namespace published_key;
+  return published.of({quantity, value, tilt, rounded_to, source, why});
 }
 
 }  // namespace photorque

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/product.h"
-#include "core/settings/settings.h"
+#include "core/settings/typed_keys.h"
 #include "tools/runs/console.h"
 
 namespace photorque {
@@ -26,7 +26,10 @@ struct PublishedFigure {
   std::string source;
   std::string why;
 };
+// Figures at tilts closer than this belong to one attitude.
+inline constexpr double same_tilt_rad = 1e-6;
 std::vector<PublishedFigure> read_published(const std::vector<Settings>& tables);
+Key published_table();
 
 // The table "published" of those figures that hold at this tilt and that `product` has, with the
 // ratio ours/published; prints it. Where any of them says what it is rounded to, also the quantity

@@ -8,19 +8,31 @@
 namespace photorque {
 namespace {
 
+namespace beam_key {
+constexpr TextKey name("name", "of the way");
+constexpr TextKey experiment("experiment",
+                             "beside this one; with `[scene]`, sources and `[array]`");
+constexpr NumberKey lamp_efficiency("lamp_efficiency", 0.5, conversion_range, "light over mains");
+constexpr NumberKey converter_efficiency("converter_efficiency", 0.97, conversion_range,
+                                         "after the array");
+constexpr NumberKey array_mass("array_mass_kg", 0.25, Range::not_negative(), "carried");
+constexpr IntegerKey rays("rays", 256, int64_t{1} << 40, "of the trace",
+                          {.usually = "those of that experiment"});
+constexpr TablesKey beam("beam", "light on an array");
+}  // namespace beam_key
+
 RunOptions options_of_beam(const Settings& s, const RunOptions& options) {
-  const std::string name = s.text("experiment");
+  const std::string name = s.get(beam_key::experiment);
   RunOptions beam;
   beam.experiment = options.experiment.parent_path() / name;
   if (!std::filesystem::is_regular_file(beam.experiment)) {
-    throw s.error("experiment", "\"" + name + "\"", "an experiment beside this one");
+    throw s.error(beam_key::experiment, "\"" + name + "\"", "an experiment beside this one");
   }
   beam.threads = options.threads;
   beam.seed = options.seed;
   beam.max_memory_GB = options.max_memory_GB;
-  if (s.has("rays")) {
-    beam.overrides.push_back("trace.rays=" +
-                             std::to_string(s.integer("rays", 256, int64_t{1} << 40)));
+  if (s.has(beam_key::rays)) {
+    beam.overrides.push_back("trace.rays=" + std::to_string(s.get(beam_key::rays)));
   }
   return beam;
 }
@@ -36,15 +48,13 @@ Estimate ratio(const Estimate& a, double b) {
 }  // namespace
 
 BeamSettings read_beam(const Settings& s, const RunOptions& options) {
-  const Range fraction = {0.0, 1.0, true, false};
   BeamSettings beam;
-  beam.name = s.text("name");
-  beam.experiment = s.text("experiment");
+  beam.name = s.get(beam_key::name);
+  beam.experiment = s.get(beam_key::experiment);
   beam.run = options_of_beam(s, options);
-  beam.lamp_efficiency = s.number_or("lamp_efficiency", beam.lamp_efficiency, fraction);
-  beam.converter_efficiency =
-      s.number_or("converter_efficiency", beam.converter_efficiency, fraction);
-  beam.array_mass_kg = s.number_or("array_mass_kg", beam.array_mass_kg, Range::not_negative());
+  beam.lamp_efficiency = s.get(beam_key::lamp_efficiency);
+  beam.converter_efficiency = s.get(beam_key::converter_efficiency);
+  beam.array_mass_kg = s.get(beam_key::array_mass);
   return beam;
 }
 
@@ -81,6 +91,11 @@ SupplyOption beam_option(const BeamSettings& beam, const SupplyTask& task, const
   console.done();
   option.remarks = {"as traced: " + beam.experiment};
   return option;
+}
+
+Key beam_table() {
+  using namespace beam_key;
+  return beam.of({name, experiment, lamp_efficiency, converter_efficiency, array_mass, rays});
 }
 
 }  // namespace photorque

@@ -13,6 +13,58 @@
 namespace photorque {
 namespace {
 
+namespace coil_key {
+constexpr SpiralCoil usual{0.06, 0.10, 12, 3e-6, 1.5};
+
+constexpr NumberKey inner_radius("inner_radius_m", usual.inner_radius_m, Range::positive(),
+                                 "of the spiral");
+constexpr NumberKey outer_radius("outer_radius_m", usual.outer_radius_m, Range::positive(),
+                                 "of it, beyond the inner");
+constexpr IntegerKey turns("turns", usual.turns, 1, 200, "of it");
+constexpr NumberKey copper_area("copper_area_mm2", usual.copper_area_m2, Range::positive(),
+                                "of the wire");
+constexpr NumberKey ac_factor("ac_factor", usual.ac_factor, {1.0, 1e3},
+                              "resistance over that of direct current");
+}  // namespace coil_key
+
+namespace induction_key {
+constexpr NumberKey transmitter_height("transmitter_height_m", -0.085, {}, "lab");
+constexpr NumberKey receiver_height("receiver_height_m", -0.02, {}, "body");
+constexpr NumberKey frequency("frequency_kHz", 1e5, Range::positive(), "of the current");
+constexpr UncertainNumberKey detuning("detuning", {0.0, 0.005}, {},
+                                      "of the frequency; the default is ± 0.005");
+constexpr UncertainNumberKey inverter_efficiency("inverter_efficiency", {0.93, 0.02},
+                                                 conversion_range, "the default is ± 0.02");
+constexpr UncertainNumberKey rectifier_efficiency("rectifier_efficiency", {0.95, 0.02},
+                                                  conversion_range, "the default is ± 0.02");
+constexpr NumberKey ball_radius("ball_radius_m", 0.03175, Range::positive(), "of the bearing");
+constexpr NumberKey ball_conductivity("ball_conductivity_S_m", 2.5e7, Range::positive(),
+                                      "of its metal");
+constexpr TableKey transmitter("transmitter", "the coil in the lab");
+constexpr TableKey receiver("receiver", "that on the platform");
+constexpr TableKey induction("induction", "two coils");
+}  // namespace induction_key
+
+namespace microwave_key {
+constexpr NumberKey frequency("frequency_GHz", Range::positive(), "of the beam");
+constexpr ChoiceKey plane("plane", {"E", "H"}, 0, "in which it tilts");
+constexpr UncertainNumberKey transmitter_diameter("transmitter_diameter_m", {0.4, 0.0},
+                                                  Range::positive(), "of the aperture");
+constexpr UncertainNumberKey rectenna_side("rectenna_side_m", {0.322, 0.0}, Range::positive(),
+                                           "of the square on the platform");
+constexpr UncertainNumberKey distance("distance_m", {1.0, 0.0}, Range::positive(), "between them");
+constexpr UncertainNumberKey height("height_m", {0.0238, 0.0}, {},
+                                    "of the rectenna over the centre of rotation");
+constexpr UncertainNumberKey rectifier_efficiency("rectifier_efficiency", {0.82, 0.0},
+                                                  conversion_range, "of its elements");
+constexpr UncertainNumberKey transmitter_efficiency("transmitter_efficiency", {0.6, 0.1},
+                                                    conversion_range,
+                                                    "of mains to beam; the default is ± 0.1");
+constexpr UncertainNumberKey mass("mass_kg_m2", {2.0, 0.5}, Range::not_negative(),
+                                  "of the rectenna per area; the default is ± 0.5");
+constexpr TablesKey microwave("microwave", "a microwave beam");
+}  // namespace microwave_key
+
 // Fraction of what arrives at the rectenna that its elements take, and of what misses them that is
 // mirrored.
 struct RectennaTakes {
@@ -34,15 +86,15 @@ std::string in_GHz(double frequency_Hz) {
 
 SupplyOption microwave_option(const Settings& s, const SupplyTask& task) {
   UncertainInputs in;
-  const double frequency_Hz = s.number("frequency_Hz", Range::positive());
-  const bool in_e_plane = s.choice_or("plane", {"E", "H"}, 0) == 0;
-  const size_t diameter = in.add(s, "transmitter_diameter_m", {0.4, 0.0}, Range::positive());
-  const size_t side = in.add(s, "rectenna_side_m", {0.322, 0.0}, Range::positive());
-  const size_t distance = in.add(s, "distance_m", {1.0, 0.0}, Range::positive());
-  const size_t height = in.add(s, "height_m", {0.0238, 0.0}, Range{});
-  const size_t rectifier = in.add(s, "rectifier_efficiency", {0.82, 0.0}, {0.0, 1.0, true, false});
-  const size_t source = in.add(s, "transmitter_efficiency", {0.6, 0.1}, {0.0, 1.0, true, false});
-  const size_t areal = in.add(s, "mass_kg_m2", {2.0, 0.5});
+  const double frequency_Hz = s.get(microwave_key::frequency);
+  const bool in_e_plane = s.get(microwave_key::plane) == 0;
+  const size_t diameter = in.add(s, microwave_key::transmitter_diameter);
+  const size_t side = in.add(s, microwave_key::rectenna_side);
+  const size_t distance = in.add(s, microwave_key::distance);
+  const size_t height = in.add(s, microwave_key::height);
+  const size_t rectifier = in.add(s, microwave_key::rectifier_efficiency);
+  const size_t source = in.add(s, microwave_key::transmitter_efficiency);
+  const size_t areal = in.add(s, microwave_key::mass);
   SupplyOption option = option_from(
       in, task,
       [&](const std::vector<double>& at) {
@@ -77,16 +129,19 @@ SupplyOption microwave_option(const Settings& s, const SupplyTask& task) {
 
 namespace {
 
-SpiralCoil read_coil(const Settings& s, const SpiralCoil& usual) {
-  SpiralCoil coil = usual;
-  coil.inner_radius_m = s.number_or("inner_radius_m", usual.inner_radius_m, Range::positive());
-  coil.outer_radius_m = s.number_or("outer_radius_m", usual.outer_radius_m, Range::positive());
+SpiralCoil read_coil(const Settings& table, const TableKey& key) {
+  SpiralCoil coil = coil_key::usual;
+  if (!table.has(key)) return coil;
+  const Settings s = table.get(key);
+  coil.inner_radius_m = s.get(coil_key::inner_radius);
+  coil.outer_radius_m = s.get(coil_key::outer_radius);
   if (coil.outer_radius_m <= coil.inner_radius_m) {
-    throw s.error("outer_radius_m", shortest(coil.outer_radius_m), "more than inner_radius_m");
+    throw s.error(coil_key::outer_radius, shortest(coil.outer_radius_m),
+                  "more than inner_radius_m");
   }
-  coil.turns = static_cast<int>(s.integer_or("turns", usual.turns, 1, 200));
-  coil.copper_area_m2 = s.number_or("copper_area_m2", usual.copper_area_m2, Range::positive());
-  coil.ac_factor = s.number_or("ac_factor", usual.ac_factor, {1.0, 1e3});
+  coil.turns = static_cast<int>(s.get(coil_key::turns));
+  coil.copper_area_m2 = s.get(coil_key::copper_area);
+  coil.ac_factor = s.get(coil_key::ac_factor);
   return coil;
 }
 
@@ -159,25 +214,23 @@ double field_on_ball_T_A(const SpiralCoil& coil, double height_m) {
 
 SupplyOption induction_option(const Settings& s, const SupplyTask& task) {
   UncertainInputs in;
-  const SpiralCoil usual{0.06, 0.10, 12, 3e-6, 1.5};
-  const SpiralCoil transmitter =
-      s.has("transmitter") ? read_coil(s.table("transmitter"), usual) : usual;
-  const SpiralCoil receiver = s.has("receiver") ? read_coil(s.table("receiver"), usual) : usual;
-  const double transmitter_m = s.number_or("transmitter_height_m", -0.085);
-  const double receiver_m = s.number_or("receiver_height_m", -0.02);
+  const SpiralCoil transmitter = read_coil(s, induction_key::transmitter);
+  const SpiralCoil receiver = read_coil(s, induction_key::receiver);
+  const double transmitter_m = s.get(induction_key::transmitter_height);
+  const double receiver_m = s.get(induction_key::receiver_height);
   const std::optional<double> clearance_m =
       coil_clearance_m(transmitter, receiver, transmitter_m, receiver_m, task);
   if (!clearance_m) {
     throw s.error(
-        "transmitter_height_m", shortest(transmitter_m),
+        induction_key::transmitter_height, shortest(transmitter_m),
         "room for the receiver to tilt by " + shortest(task.tilt_rad.back() / degree_rad) + " deg");
   }
-  const double omega = 2.0 * pi * s.number_or("frequency_Hz", 1e5, Range::positive());
-  const size_t detuning = in.add(s, "detuning", {0.0, 0.005}, Range{});
-  const size_t inverter = in.add(s, "inverter_efficiency", {0.93, 0.02}, {0.0, 1.0, true, false});
-  const size_t rectifier = in.add(s, "rectifier_efficiency", {0.95, 0.02}, {0.0, 1.0, true, false});
-  const double ball_m = s.number_or("ball_radius_m", 0.03175, Range::positive());
-  const double ball_S_m = s.number_or("ball_conductivity_S_m", 2.5e7, Range::positive());
+  const double omega = 2.0 * pi * s.get(induction_key::frequency);
+  const size_t detuning = in.add(s, induction_key::detuning);
+  const size_t inverter = in.add(s, induction_key::inverter_efficiency);
+  const size_t rectifier = in.add(s, induction_key::rectifier_efficiency);
+  const double ball_m = s.get(induction_key::ball_radius);
+  const double ball_S_m = s.get(induction_key::ball_conductivity);
   const std::vector<CoilPose> poses =
       coil_poses(transmitter, receiver, transmitter_m, receiver_m, task);
   CoilCircuit level;
@@ -225,6 +278,21 @@ SupplyOption induction_option(const Settings& s, const SupplyTask& task) {
   option.name = option.symbol = "induction";
   option.remarks = {"the mean torque is nothing at resonance; its error is that of the tuning"};
   return option;
+}
+
+Key microwave_table() {
+  using namespace microwave_key;
+  return microwave.of({frequency, plane, transmitter_diameter, rectenna_side, distance, height,
+                       rectifier_efficiency, transmitter_efficiency, mass});
+}
+
+Key induction_table() {
+  using namespace induction_key;
+  using namespace coil_key;
+  const std::vector<Key> coil_keys = {inner_radius, outer_radius, turns, copper_area, ac_factor};
+  return induction.of({transmitter.of(coil_keys), receiver.of(coil_keys), transmitter_height,
+                       receiver_height, frequency, detuning, inverter_efficiency,
+                       rectifier_efficiency, ball_radius, ball_conductivity});
 }
 
 }  // namespace photorque

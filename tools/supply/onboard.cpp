@@ -10,6 +10,36 @@
 namespace photorque {
 namespace {
 
+namespace cable_key {
+constexpr PowerCable usual;
+constexpr UncertainNumberKey voltage("voltage_V", {24.0, 0.0}, Range::positive(), "at the source");
+constexpr UncertainNumberKey length("length_m", {usual.length_m, 0.0}, Range::positive(),
+                                    "of the loop");
+constexpr IntegerKey strands("strands", usual.strands, 1, 10000, "of each wire");
+constexpr UncertainNumberKey strand_diameter("strand_diameter_m", {usual.strand_diameter_m, 0.0},
+                                             Range::positive(), "of one");
+constexpr UncertainNumberKey insulation_diameter("insulation_diameter_m",
+                                                 {usual.insulation_diameter_m, 0.0},
+                                                 Range::positive(), "outside, of a wire");
+constexpr UncertainNumberKey insulation_modulus(
+    "insulation_modulus_Pa", {usual.insulation_modulus_Pa, 0.3 * usual.insulation_modulus_Pa},
+    Range::not_negative(), "Young's; the default is ± 3e5");
+constexpr UncertainNumberKey attached_below("attached_below_m", {0.0, 0.005}, {},
+                                            "of the centre of rotation; the default is ± 0.005");
+constexpr TableKey cable("cable", "tethered");
+}  // namespace cable_key
+
+namespace battery_key {
+constexpr UncertainNumberKey specific_energy("specific_energy_Wh_kg",
+                                             {150.0 * 3600.0, 50.0 * 3600.0}, Range::positive(),
+                                             "of the pack; the default is ± 50");
+constexpr UncertainNumberKey usable_fraction("usable_fraction", {0.9, 0.0},
+                                             Range{0.0, 1.0, true, false}, "of its energy");
+constexpr UncertainNumberKey electrodes("electrodes_m", {3.2e-4, 0.0}, {},
+                                        "how far the lithium migrates along body x");
+constexpr TableKey battery("battery", "carried");
+}  // namespace battery_key
+
 struct BatteryInputs {
   UncertainInputs inputs;
   size_t specific_energy_J_kg = 0, usable = 0, electrodes_m = 0;
@@ -18,10 +48,9 @@ struct BatteryInputs {
 BatteryInputs read_battery(const Settings& s) {
   BatteryInputs battery;
   UncertainInputs& in = battery.inputs;
-  battery.specific_energy_J_kg =
-      in.add(s, "specific_energy_Wh_kg", {150.0 * 3600.0, 50.0 * 3600.0}, Range::positive());
-  battery.usable = in.add(s, "usable_fraction", {0.9, 0.0}, {0.0, 1.0, true, false});
-  battery.electrodes_m = in.add(s, "electrodes_m", {3.2e-4, 0.0}, Range{});
+  battery.specific_energy_J_kg = in.add(s, battery_key::specific_energy);
+  battery.usable = in.add(s, battery_key::usable_fraction);
+  battery.electrodes_m = in.add(s, battery_key::electrodes);
   return battery;
 }
 
@@ -77,16 +106,13 @@ double battery_torque_N_m(const Settings& settings, const SupplyTask& task, doub
 SupplyOption cable_option(const Settings& s, const SupplyTask& task) {
   UncertainInputs in;
   PowerCable fixed;
-  fixed.strands = static_cast<int>(s.integer_or("strands", fixed.strands, 1, 10000));
-  const size_t volts = in.add(s, "voltage_V", {24.0, 0.0}, Range::positive());
-  const size_t length = in.add(s, "length_m", {fixed.length_m, 0.0}, Range::positive());
-  const size_t strand =
-      in.add(s, "strand_diameter_m", {fixed.strand_diameter_m, 0.0}, Range::positive());
-  const size_t outer =
-      in.add(s, "insulation_diameter_m", {fixed.insulation_diameter_m, 0.0}, Range::positive());
-  const size_t modulus = in.add(s, "insulation_modulus_Pa",
-                                {fixed.insulation_modulus_Pa, 0.3 * fixed.insulation_modulus_Pa});
-  const size_t below = in.add(s, "attached_below_m", {0.0, 0.005}, Range{});
+  fixed.strands = static_cast<int>(s.get(cable_key::strands));
+  const size_t volts = in.add(s, cable_key::voltage);
+  const size_t length = in.add(s, cable_key::length);
+  const size_t strand = in.add(s, cable_key::strand_diameter);
+  const size_t outer = in.add(s, cable_key::insulation_diameter);
+  const size_t modulus = in.add(s, cable_key::insulation_modulus);
+  const size_t below = in.add(s, cable_key::attached_below);
   SupplyOption option = option_from(
       in, task,
       [&](const std::vector<double>& at) {
@@ -101,7 +127,7 @@ SupplyOption cable_option(const Settings& s, const SupplyTask& task) {
         const double ohm = loop_resistance_ohm(cable);
         const double square_V2 = at[volts] * at[volts] - 4.0 * ohm * task.load_W;
         if (square_V2 < 0.0) {
-          throw s.error("voltage_V", shortest(at[volts]) + " V",
+          throw s.error(cable_key::voltage, shortest(at[volts]) + " V",
                         "at least " + readable_number(2.0 * std::sqrt(ohm * task.load_W)) +
                             " V for this load through this cable");
         }
@@ -125,6 +151,17 @@ SupplyOption cable_option(const Settings& s, const SupplyTask& task) {
   option.name = option.symbol = "cable";
   option.remarks = {"tethered: pulls back as it tilts and winds up as it turns"};
   return option;
+}
+
+Key cable_table() {
+  using namespace cable_key;
+  return cable.of({voltage, cable_key::length, strands, strand_diameter, insulation_diameter,
+                   insulation_modulus, attached_below});
+}
+
+Key battery_table() {
+  using namespace battery_key;
+  return battery.of({specific_energy, usable_fraction, electrodes});
 }
 
 }  // namespace photorque

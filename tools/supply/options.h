@@ -9,6 +9,9 @@
 
 namespace photorque {
 
+// Of an efficiency.
+inline constexpr Range conversion_range{0.0, 1.0, true, false};
+
 // [supply_trade.battery]: specific_energy_Wh_kg (150 ± 50, of the pack), usable_fraction (0.9),
 // electrodes_m (how far the lithium moves along body x, 3.2e-4).
 SupplyOption battery_option(const Settings& settings, const SupplyTask& task);
@@ -36,9 +39,20 @@ SupplyOption induction_option(const Settings& settings, const SupplyTask& task);
 struct BeamSettings {
   std::string name, experiment;
   RunOptions run;
-  double lamp_efficiency = 0.5, converter_efficiency = 0.97, array_mass_kg = 0.25;
+  double lamp_efficiency = 0.0, converter_efficiency = 0.0, array_mass_kg = 0.0;
 };
 BeamSettings read_beam(const Settings& settings, const RunOptions& options);
 SupplyOption beam_option(const BeamSettings& beam, const SupplyTask& task, const Console& console);
+
+// Their tables, as they are declared, and [supply_trade] with all of them.
+Key battery_table();
+Key cable_table();
+Key microwave_table();
+Key induction_table();
+Key beam_table();
+Key supply_table();
+
+// What [supply_trade] says of the task.
+SupplyTask read_supply_task(const Settings& root, const Settings& supply_trade);
 
 }  // namespace photorque

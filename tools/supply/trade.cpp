@@ -4,17 +4,49 @@
 #include <cmath>
 
 #include "attitude/disturbances/kind.h"
+#include "attitude/propagation/run.h"
+#include "core/constants.h"
 #include "core/transform.h"
+#include "tools/supply/options.h"
 
 namespace photorque {
+
+namespace {
+
+namespace supply_key {
+constexpr NumberKey load("load_W", 25.0, Range::positive(), "what is delivered");
+constexpr NumberKey duration("duration_h", 86400.0, Range::positive(), "of the task");
+constexpr NumberKey tilt_max("tilt_max_deg", {0.0, 80.0 * degree_rad, true, false},
+                             "the largest tilt", {.usually = "the platform's stop, else 30"});
+constexpr IntegerKey tilts("tilts", 7, 2, 181, "from zero to it");
+constexpr TableKey supply("supply_trade",
+                          "the ways to feed a platform side by side: battery, cable and induction "
+                          "are compared always, with the defaults where they have no table");
+}  // namespace supply_key
+
+}  // namespace
+
+SupplyTask read_supply_task(const Settings& root, const Settings& s) {
+  SupplyTask task;
+  task.model = read_attitude_model(root).model;
+  task.model.disturbances.clear();
+  task.load_W = s.get(supply_key::load);
+  task.duration_s = s.get(supply_key::duration);
+  const double usual_rad = task.model.platform.tilt_limit_rad.value_or(30.0 * degree_rad);
+  const double most_rad = s.get_or(supply_key::tilt_max, usual_rad);
+  const int64_t tilts = s.get(supply_key::tilts);
+  for (int64_t i = 0; i < tilts; ++i) {
+    task.tilt_rad.push_back(most_rad * static_cast<double>(i) / static_cast<double>(tilts - 1));
+  }
+  return task;
+}
 
 double SupplyTask::weight_N() const {
   return model.platform.mass_kg * model.environment.gravity_lab_m_s2.norm();
 }
 
-size_t UncertainInputs::add(const Settings& settings, const std::string& key, Uncertain otherwise,
-                            Range range) {
-  inputs_.push_back(settings.has(key) ? settings.uncertain(key, range) : otherwise);
+size_t UncertainInputs::add(const Settings& settings, const UncertainNumberKey& key) {
+  inputs_.push_back(settings.get(key));
   return inputs_.size() - 1;
 }
 
@@ -98,6 +130,12 @@ SupplyDisturbance disturbance_of(const SupplyOption& option, const SupplyTask& t
   worst.angle_rad_W = {angle_rad_N_m * worst.torque_N_m_W.value,
                        angle_rad_N_m * worst.torque_N_m_W.standard_error};
   return worst;
+}
+
+Key supply_table() {
+  using namespace supply_key;
+  return supply.of({load, duration, tilt_max, tilts, battery_table(), cable_table(),
+                    microwave_table(), induction_table(), beam_table()});
 }
 
 }  // namespace photorque

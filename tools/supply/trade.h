@@ -8,14 +8,14 @@
 
 #include "attitude/model/dynamics.h"
 #include "core/product.h"
-#include "core/settings/settings.h"
+#include "core/settings/typed_keys.h"
 
 namespace photorque {
 
 // What every way is asked for.
 struct SupplyTask {
-  double load_W = 25.0;
-  double duration_s = 86400.0;
+  double load_W = 0.0;
+  double duration_s = 0.0;
   std::vector<double> tilt_rad;  // from 0, rising
   AttitudeModel model;           // [platform] and [environment], no disturbances
 
@@ -47,8 +47,7 @@ struct SupplyOption {
 class UncertainInputs {
  public:
   // Reads a key that may be { value, sigma }; gives its index.
-  size_t add(const Settings& settings, const std::string& key, Uncertain otherwise,
-             Range range = Range::not_negative());
+  size_t add(const Settings& settings, const UncertainNumberKey& key);
   std::vector<Estimate> evaluate(
       const std::function<std::vector<double>(const std::vector<double>& at)>& f) const;
 

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 
+#include "tools/sweeps/keys.h"
 #include "tools/sweeps/values.h"
 
 namespace photorque {
 namespace {
 
 std::string outside_sweep(const Settings& axis) {
-  std::string key = axis.text("key");
-  if (key.starts_with("sweep")) throw axis.error("key", key, "a key outside [sweep]");
+  std::string key = axis.get(axis_key::key);
+  if (key.starts_with("sweep")) throw axis.error(axis_key::key, key, "a key outside [sweep]");
   return key;
 }
 
@@ -32,7 +33,7 @@ std::vector<std::string> texts_or_text(const Settings& table, std::string_view k
 std::vector<Objective> read_objectives(const Settings& sweep) {
   std::vector<Objective> all;
   for (const bool maximise : {true, false}) {
-    const char* const key = maximise ? "maximise" : "minimise";
+    const OtherKey& key = maximise ? sweep_key::maximise : sweep_key::minimise;
     for (const std::string& text : texts_or_text(sweep, key)) {
       all.push_back({read_figure(sweep, key, text), maximise});
     }
@@ -40,7 +41,8 @@ std::vector<Objective> read_objectives(const Settings& sweep) {
   for (size_t i = 0; i < all.size(); ++i) {
     for (size_t k = 0; k < i; ++k) {
       if (all[i].figure.column() != all[k].figure.column()) continue;
-      throw sweep.error("minimise", '"' + all[i].figure.name + "\" twice", "every figure once");
+      throw sweep.error(sweep_key::minimise, '"' + all[i].figure.name + "\" twice",
+                        "every figure once");
     }
   }
   return all;
@@ -48,16 +50,17 @@ std::vector<Objective> read_objectives(const Settings& sweep) {
 
 std::vector<Constraint> read_constraints(const Settings& sweep) {
   std::vector<Constraint> all;
-  for (const Settings& table : sweep.tables("constraint")) {
-    Constraint one{read_figure(table, "figure", table.text("figure"))};
+  for (const Settings& table : sweep.get(sweep_key::constraint)) {
+    Constraint one{read_figure(table, constraint_key::figure, table.get(constraint_key::figure))};
     // As they stand: a figure's unit is in its name.
-    if (!table.has("at_least") && !table.has("at_most")) {
-      throw table.error("at_least", "neither at_least nor at_most", "one of them, or both");
+    if (!table.has(constraint_key::at_least) && !table.has(constraint_key::at_most)) {
+      throw table.error(constraint_key::at_least, "neither at_least nor at_most",
+                        "one of them, or both");
     }
-    one.at_least = table.number_or("at_least", one.at_least);
-    one.at_most = table.number_or("at_most", one.at_most);
+    one.at_least = table.get_or(constraint_key::at_least, one.at_least);
+    one.at_most = table.get_or(constraint_key::at_most, one.at_most);
     if (one.at_least > one.at_most) {
-      throw table.error("at_most", toml_number(one.at_most),
+      throw table.error(constraint_key::at_most, toml_number(one.at_most),
                         "at least at_least, " + toml_number(one.at_least));
     }
     all.push_back(std::move(one));
@@ -66,17 +69,17 @@ std::vector<Constraint> read_constraints(const Settings& sweep) {
 }
 
 SweepAxis read_axis(const Settings& table, const SweepPlan& plan, uint64_t seed, size_t designs) {
-  SweepAxis axis{table.text("key")};
-  const bool range_alone =
-      plan.grid && !table.has("values") && !table.has("count") && table.has("from");
+  SweepAxis axis{table.get(axis_key::key)};
+  const bool range_alone = plan.grid && !table.has(axis_key::values) &&
+                           !table.has(axis_key::count) && table.has(axis_key::from);
   if (!range_alone) {
     axis.values =
         plan.grid ? grid_values(table) : random_values(table, seed, plan.axes.size(), designs);
   }
-  axis.name = table.text_or("name", "");
-  if (table.has("from") && table.has("to")) {
-    axis.low = std::min(table.number("from"), table.number("to"));
-    axis.high = std::max(table.number("from"), table.number("to"));
+  axis.name = table.get(axis_key::name);
+  if (table.has(axis_key::from) && table.has(axis_key::to)) {
+    axis.low = std::min(table.get(axis_key::from), table.get(axis_key::to));
+    axis.high = std::max(table.get(axis_key::from), table.get(axis_key::to));
   }
   outside_sweep(table);
   return axis;
@@ -98,31 +101,31 @@ void require_distinct_keys(const Settings& sweep, const SweepPlan& plan) {
   const auto twice = std::ranges::adjacent_find(keys, {}, quantity_of);
   if (twice == keys.end()) return;
   const std::string& other = *(twice + 1);
-  throw sweep.error("axis",
+  throw sweep.error(sweep_key::axis,
                     '"' + *twice + (*twice == other ? "\" twice" : "\" and \"" + other + '"'),
                     "every quantity once");
 }
 
 void read_within(const Settings& sweep, SweepPlan& plan) {
-  for (const Settings& table : sweep.tables("mean_over")) {
+  for (const Settings& table : sweep.get(sweep_key::mean_over)) {
     WeightedValues all = mean_values(table);
     plan.mean_over.push_back({outside_sweep(table), std::move(all.values), std::move(all.weights)});
   }
-  for (const Settings& table : sweep.tables("worst_over")) {
+  for (const Settings& table : sweep.get(sweep_key::worst_over)) {
     plan.worst_over.push_back({outside_sweep(table), grid_values(table)});
   }
   if (!plan.worst_over.empty() && plan.objectives.empty() && plan.constraints.empty()) {
-    throw sweep.error("worst_over", "nothing that says which is worse",
+    throw sweep.error(sweep_key::worst_over, "nothing that says which is worse",
                       "maximise, minimise or a [[sweep.constraint]]");
   }
 }
 
 Tolerance read_tolerance(const Settings& table) {
   Tolerance one{outside_sweep(table)};
-  const bool normal = table.has("sigma"), uniform = table.has("half_width");
-  const bool seed = table.flag_or("seed", false);
+  const bool normal = table.has(axis_key::sigma), uniform = table.has(axis_key::half_width);
+  const bool seed = table.get(axis_key::seed);
   if (normal + uniform + seed != 1) {
-    throw table.error("sigma",
+    throw table.error(axis_key::sigma,
                       std::to_string(normal + uniform + seed) +
                           " of sigma, half_width, "
                           "seed",
@@ -133,33 +136,29 @@ Tolerance read_tolerance(const Settings& table) {
     return one;
   }
   one.law = normal ? Tolerance::Law::normal : Tolerance::Law::uniform;
-  one.width = table.number(normal ? "sigma" : "half_width", Range::positive());
-  one.relative = table.flag_or("relative", false);
+  one.width = table.get(normal ? axis_key::sigma : axis_key::half_width);
+  one.relative = table.get(axis_key::relative);
   return one;
 }
 
 BuiltCopies read_built(const Settings& sweep) {
   BuiltCopies built;
-  for (const Settings& table : sweep.tables("tolerance")) {
+  for (const Settings& table : sweep.get(sweep_key::tolerance)) {
     built.tolerances.push_back(read_tolerance(table));
   }
   if (built.tolerances.empty()) return built;
-  constexpr int64_t usual_copies = 100, most_copies = 100000;
-  built.copies =
-      static_cast<size_t>(sweep.integer_or("built_copies", usual_copies, 2, most_copies));
-  built.fraction = sweep.number_or("built_fraction", built.fraction, {0.5, 1.0, false, true});
-  built.of_every = sweep.choice_or("built_of", {"best", "every"}, 0) == 1;
-  built.seed = static_cast<uint64_t>(
-      sweep.integer_or("built_seed", 1, 0, std::numeric_limits<int64_t>::max()));
+  built.copies = static_cast<size_t>(sweep.get(sweep_key::built_copies));
+  built.fraction = sweep.get_or(sweep_key::built_fraction, built.fraction);
+  built.of_every = sweep.get(sweep_key::built_of) == 1;
+  built.seed = static_cast<uint64_t>(sweep.get(sweep_key::built_seed));
   return built;
 }
 
 SearchPlan read_search(const Settings& sweep) {
   SearchPlan search;
-  constexpr int64_t usual = 100, most = 100000;
-  search.global = static_cast<size_t>(sweep.integer_or("global", usual, 0, most));
-  search.local = static_cast<size_t>(sweep.integer_or("local", usual, 0, most));
-  search.precision = sweep.number_or("precision", search.precision, {1e-8, 0.1});
+  search.global = static_cast<size_t>(sweep.get(sweep_key::global));
+  search.local = static_cast<size_t>(sweep.get(sweep_key::local));
+  search.precision = sweep.get_or(sweep_key::precision, search.precision);
   return search;
 }
 
@@ -239,20 +238,18 @@ std::string SweepPlan::judged_column(const Objective& objective) const {
 
 SweepPlan read_sweep_plan(const Settings& sweep) {
   SweepPlan plan;
-  plan.verb = sweep.text_or("verb", "power");
-  if (sweep.has("figures")) plan.figures = sweep.texts("figures");
-  plan.grid = !sweep.has("designs");
-  const auto random =
-      plan.grid ? 0 : sweep.integer("designs", 2, static_cast<int64_t>(max_designs));
-  const auto seed =
-      plan.grid ? 0 : sweep.integer_or("seed", 1, 0, std::numeric_limits<int64_t>::max());
+  plan.verb = sweep.get(sweep_key::verb);
+  if (sweep.has(sweep_key::figures)) plan.figures = sweep.get(sweep_key::figures);
+  plan.grid = !sweep.has(sweep_key::designs);
+  const auto random = plan.grid ? 0 : sweep.get(sweep_key::designs);
+  const auto seed = plan.grid ? 0 : sweep.get(sweep_key::seed);
   double runs = 1.0;
-  for (const Settings& table : sweep.tables("axis")) {
+  for (const Settings& table : sweep.get(sweep_key::axis)) {
     plan.axes.push_back(
         read_axis(table, plan, static_cast<uint64_t>(seed), static_cast<size_t>(random)));
     if (plan.grid) runs *= static_cast<double>(std::max<size_t>(1, plan.axes.back().values.size()));
   }
-  if (plan.axes.empty()) throw sweep.error("axis", "none", "at least one [[sweep.axis]]");
+  if (plan.axes.empty()) throw sweep.error(sweep_key::axis, "none", "at least one [[sweep.axis]]");
   plan.objectives = read_objectives(sweep);
   plan.constraints = read_constraints(sweep);
   read_within(sweep, plan);
@@ -267,7 +264,7 @@ SweepPlan read_sweep_plan(const Settings& sweep) {
   runs *= static_cast<double>(plan.mean_points() * plan.worst_points());
   if (plan.built.of_every) runs *= static_cast<double>(plan.built.copies + 1);
   if (runs > static_cast<double>(max_designs)) {
-    throw sweep.error("axis", toml_number(runs) + " runs",
+    throw sweep.error(sweep_key::axis, toml_number(runs) + " runs",
                       "at most " + std::to_string(max_designs));
   }
   sweep.finish();

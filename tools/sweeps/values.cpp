@@ -9,6 +9,7 @@
 #include "core/numerics/quadrature.h"
 #include "core/numerics/random.h"
 #include "core/numerics/root.h"
+#include "tools/sweeps/keys.h"
 
 namespace photorque {
 namespace {
@@ -21,25 +22,27 @@ bool is_finite(const SettingsNode& node) {
 }
 
 std::vector<std::string> listed_values(const Settings& axis) {
-  const auto* items = std::get_if<SettingsNode::Array>(&axis.raw("values").value);
+  const auto* items = std::get_if<SettingsNode::Array>(&axis.raw(axis_key::values).value);
   if (items == nullptr || items->empty()) {
-    throw axis.error("values", describe(axis.raw("values")), "an array of at least one value");
+    throw axis.error(axis_key::values, describe(axis.raw(axis_key::values)),
+                     "an array of at least one value");
   }
   std::vector<std::string> values;
   for (const SettingsNode& item : *items) {
-    if (item.is_table()) throw axis.error("values", describe(item), "a number, a text, an array");
-    if (!is_finite(item)) throw axis.error("values", toml_text(item), "finite numbers");
+    if (item.is_table())
+      throw axis.error(axis_key::values, describe(item), "a number, a text, an array");
+    if (!is_finite(item)) throw axis.error(axis_key::values, toml_text(item), "finite numbers");
     values.push_back(toml_text(item));
   }
   return values;
 }
 
 std::vector<std::string> stepped_values(const Settings& axis) {
-  const double from = axis.number("from"), to = axis.number("to");
-  const auto count = axis.integer("count", 2, static_cast<int64_t>(max_designs));
-  const bool logarithmic = axis.choice_or("spacing", {"linear", "logarithmic"}, 0) == 1;
+  const double from = axis.get(axis_key::from), to = axis.get(axis_key::to);
+  const auto count = axis.get(axis_key::count);
+  const bool logarithmic = axis.get(axis_key::spacing) == 1;
   if (logarithmic && !(from > 0.0 && to > 0.0)) {
-    throw axis.error("spacing",
+    throw axis.error(axis_key::spacing,
                      "\"logarithmic\" from " + toml_number(from) + " to " + toml_number(to),
                      "ends above zero");
   }
@@ -54,15 +57,16 @@ std::vector<std::string> stepped_values(const Settings& axis) {
 
 WeightedValues weighted_list(const Settings& axis) {
   WeightedValues all{listed_values(axis), {}};
-  if (axis.has("weights")) {
-    all.weights = axis.numbers("weights", Range::not_negative());
+  if (axis.has(axis_key::weights)) {
+    all.weights = axis.get(axis_key::weights);
   } else {
     all.weights.assign(all.values.size(), 1.0);
   }
   const double sum = std::accumulate(all.weights.begin(), all.weights.end(), 0.0);
   if (all.weights.size() != all.values.size() || !(sum > 0.0)) {
     throw axis.error(
-        "weights", std::to_string(all.weights.size()) + " numbers of sum " + toml_number(sum),
+        axis_key::weights,
+        std::to_string(all.weights.size()) + " numbers of sum " + toml_number(sum),
         "a number for each of " + std::to_string(all.values.size()) + " values, not all zero");
   }
   for (double& weight : all.weights) weight /= sum;
@@ -97,7 +101,7 @@ std::string toml_text(const SettingsNode& node) {
 }
 
 std::vector<std::string> grid_values(const Settings& axis) {
-  return axis.has("values") ? listed_values(axis) : stepped_values(axis);
+  return axis.has(axis_key::values) ? listed_values(axis) : stepped_values(axis);
 }
 
 // By bisection, to rounding.
@@ -121,22 +125,22 @@ std::vector<std::string> random_values(const Settings& axis, uint64_t seed, size
                                        size_t designs) {
   const std::vector<double> fractions = sobol_column(seed, number, designs);
   std::vector<std::string> values;
-  if (axis.has("mean")) {
-    const double mean = axis.number("mean"), sigma = axis.number("sigma", Range::positive());
+  if (axis.has(axis_key::mean)) {
+    const double mean = axis.get(axis_key::mean), sigma = axis.get(axis_key::sigma);
     for (const double u : fractions) {
       values.push_back(toml_number(mean + sigma * normal_quantile(u)));
     }
   } else {
-    const double from = axis.number("from"), to = axis.number("to");
+    const double from = axis.get(axis_key::from), to = axis.get(axis_key::to);
     for (const double u : fractions) values.push_back(toml_number(from + u * (to - from)));
   }
   return values;
 }
 
 WeightedValues mean_values(const Settings& axis) {
-  if (axis.has("values")) return weighted_list(axis);
-  const double from = axis.number("from"), to = axis.number("to");
-  const auto count = axis.integer("count", 1, static_cast<int64_t>(max_gauss_nodes));
+  if (axis.has(axis_key::values)) return weighted_list(axis);
+  const double from = axis.get(axis_key::from), to = axis.get(axis_key::to);
+  const auto count = axis.get(axis_key::nodes);
   WeightedValues all;
   for (const QuadratureNode& node : gauss_legendre(static_cast<size_t>(count))) {
     all.values.push_back(toml_number(0.5 * (from + to) + 0.5 * (to - from) * node.x));

@@ -12,7 +12,9 @@
 #include "core/text/parse.h"
 #include "diagnosis/light/model/recording.h"
 #include "photovoltaics/fit/fit.h"
+#include "photovoltaics/fit/rated_keys.h"
 #include "scenes/experiment/toml.h"
+#include "tools/keys/fit.h"
 #include "tools/verbs/fitted_cell.h"
 #include "tools/verbs/verb.h"
 
@@ -42,15 +44,6 @@ IvSweep read_sweep(const fs::path& file) {
   return {numbers.columns[0], numbers.columns[1]};
 }
 
-RatedPoint read_point(const Settings& s) {
-  return {s.number_or("irradiance_W_m2", 1000.0, Range::positive()),
-          s.number_or("temperature_K", 298.15, {1.0, 1000.0}),
-          s.number("short_circuit_A", Range::positive()),
-          s.number("open_circuit_V", Range::positive()),
-          s.number("maximum_A", Range::positive()),
-          s.number("maximum_V", Range::positive())};
-}
-
 // The open-circuit voltage of one cell: 0.3 V in moonlight, 4.5 V of the best stacks of junctions.
 void check_cells(const Settings& s, const FitTask& task) {
   if (task.substrings > 0 && task.cells_in_series == 1) return;  // not stated
@@ -64,7 +57,7 @@ void check_cells(const Settings& s, const FitTask& task) {
   constexpr double lowest_V = 0.1, highest_V = 5.0;
   const double one_V = open_V / task.cells_in_series;
   if (open_V == 0.0 || (one_V >= lowest_V && one_V <= highest_V)) return;
-  throw s.error("cells_in_series",
+  throw s.error(fit_key::cells_in_series,
                 std::to_string(task.cells_in_series) + " cells, of " + readable_number(one_V, 3) +
                     " V each at open circuit",
                 "cells that give 0.1 to 5 V each of these " + readable_number(open_V, 3) + " V");
@@ -73,45 +66,45 @@ void check_cells(const Settings& s, const FitTask& task) {
 // Reads the curves too, relative to `folder`. InputError for what is missing or contradicts itself,
 // and for cells in series that no cell's voltage goes with.
 FitTask read_fit_task(const Settings& root, const fs::path& folder) {
-  const Settings s = root.table("fit");
+  const Settings s = root.get(fit_key::fit);
   FitTask task;
-  task.cells_in_series = static_cast<int>(s.integer_or("cells_in_series", 1, 1, 2000));
-  task.temperature_K = s.number_or("temperature_K", 298.15, {1.0, 1000.0});
-  if (s.has("curves") == s.has("datasheet")) {
-    throw s.error("curves", s.has("curves") ? "curves and a datasheet" : "neither",
+  task.cells_in_series = static_cast<int>(s.get(fit_key::cells_in_series));
+  task.temperature_K = s.get(fit_key::temperature);
+  if (s.has(fit_key::curves) == s.has(fit_key::datasheet)) {
+    throw s.error(fit_key::curves, s.has(fit_key::curves) ? "curves and a datasheet" : "neither",
                   "either curves = [\"sweep.csv\"] or [[fit.datasheet]]");
   }
-  if (s.has("datasheet")) {
-    if (s.has("temperature_K")) {
-      throw s.error("temperature_K", "a temperature beside a datasheet",
+  if (s.has(fit_key::datasheet)) {
+    if (s.has(fit_key::temperature)) {
+      throw s.error(fit_key::temperature, "a temperature beside a datasheet",
                     "temperature_K in [[fit.datasheet]]");
     }
-    for (const Settings& point : s.tables("datasheet")) task.datasheet.push_back(read_point(point));
-    task.slopes.short_circuit_1_K = s.number_or("short_circuit_slope_per_K", 5e-4);
-    task.slopes.open_circuit_1_K = s.number_or("open_circuit_slope_per_K", -3e-3);
+    for (const Settings& point : s.get(fit_key::datasheet))
+      task.datasheet.push_back(read_rated_point(point));
+    task.slopes = read_rated_slopes(s);
     const RatedTolerance written = written_steps(task.datasheet);
-    task.tolerance = {s.number_or("rounding_A", written.step_A, Range::not_negative()),
-                      s.number_or("rounding_V", written.step_V, Range::not_negative()),
-                      s.number_or("tolerance", 0.0, {0.0, 0.5})};
+    task.tolerance = {s.get_or(fit_key::rounding_current, written.step_A),
+                      s.get_or(fit_key::rounding_voltage, written.step_V),
+                      s.get(fit_key::tolerance)};
   } else {
-    for (const std::string& name : s.texts("curves")) {
+    for (const std::string& name : s.get(fit_key::curves)) {
       task.files.push_back(folder / name);
       task.sweeps.push_back(read_sweep(task.files.back()));
     }
-    task.noise.current_fraction = s.number_or("current_noise", 1e-3, {1e-12, 1.0});
-    task.noise.voltage_fraction = s.number_or("voltage_noise", 5e-4, {1e-12, 1.0});
-    task.noise.correlation_points = s.number_or("correlation_points", 0.0, Range::not_negative());
-    task.substrings = static_cast<int>(s.integer_or("substrings", 0, 0, 100));
+    task.noise.current_fraction = s.get(fit_key::current_noise);
+    task.noise.voltage_fraction = s.get(fit_key::voltage_noise);
+    task.noise.correlation_points = s.get(fit_key::correlation_points);
+    task.substrings = static_cast<int>(s.get(fit_key::substrings));
     if (task.substrings > 0 && task.cells_in_series > 1 &&
         task.cells_in_series % task.substrings != 0) {
-      throw s.error("cells_in_series", std::to_string(task.cells_in_series),
+      throw s.error(fit_key::cells_in_series, std::to_string(task.cells_in_series),
                     "a multiple of substrings, " + std::to_string(task.substrings));
     }
-    if (task.substrings > 0 && s.has("correlation_points")) {
-      throw s.error("correlation_points", "a correlation for a partly shaded string",
+    if (task.substrings > 0 && s.has(fit_key::correlation_points)) {
+      throw s.error(fit_key::correlation_points, "a correlation for a partly shaded string",
                     "none: there every point has an error of its own");
     }
-    if (s.flag_or("even_voltage_steps", false)) {
+    if (s.get(fit_key::even_voltage_steps)) {
       const EvenSweeps even = with_even_steps(task.sweeps, task.noise);
       task.sweeps = even.sweeps;
       task.noise = even.noise;

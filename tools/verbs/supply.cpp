@@ -2,7 +2,6 @@
 #include "tools/verbs/supply.h"
 
 #include "attitude/propagation/run.h"
-#include "core/constants.h"
 #include "tools/runs/attitude_run.h"
 #include "tools/supply/options.h"
 #include "tools/supply/report.h"
@@ -10,22 +9,6 @@
 
 namespace photorque {
 namespace {
-
-SupplyTask read_task(const Settings& root, const Settings& s) {
-  SupplyTask task;
-  task.model = read_attitude_model(root).model;
-  task.model.disturbances.clear();
-  task.load_W = s.number_or("load_W", task.load_W, Range::positive());
-  task.duration_s = s.number_or("duration_s", task.duration_s, Range::positive());
-  const double usual_rad = task.model.platform.tilt_limit_rad.value_or(30.0 * degree_rad);
-  const double most_rad =
-      s.number_or("tilt_max_deg", usual_rad, {0.0, 80.0 * degree_rad, true, false});
-  const int64_t tilts = s.integer_or("tilts", 7, 2, 181);
-  for (int64_t i = 0; i < tilts; ++i) {
-    task.tilt_rad.push_back(most_rad * static_cast<double>(i) / static_cast<double>(tilts - 1));
-  }
-  return task;
-}
 
 // A table that may be absent, with its own defaults.
 Settings table_or_empty(const Settings& s, const std::string& key) {
@@ -42,7 +25,7 @@ struct TradeWithoutLight {
 TradeWithoutLight read_trade(const Settings& root, const Settings& s) {
   TradeWithoutLight read;
   read.beams = s.tables("beam");
-  read.trade.task = read_task(root, s);
+  read.trade.task = read_supply_task(root, s);
   SupplyTrade& trade = read.trade;
   const Settings battery = table_or_empty(s, "battery");
   trade.options.push_back(battery_option(battery, trade.task));

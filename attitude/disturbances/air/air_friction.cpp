@@ -10,7 +10,9 @@
 namespace photorque::kinds::air_friction {
 namespace {
 
-constexpr ScalarKey braking{"coefficient"};
+constexpr auto braking = ScalarKey("coefficient", Range::not_negative(),
+                                   "k in T = −k |ω|^½ ω, N m s^1.5; *or* `[[disturbance.part]]`")
+                             .optional();
 
 struct AirFriction final : TorqueLaw<AirFriction> {
   template <class T>
@@ -20,7 +22,7 @@ struct AirFriction final : TorqueLaw<AirFriction> {
 };
 
 PlacedParameters coefficient(const Settings& settings, const Environment& environment) {
-  if (!settings.has("part")) return scalar_parameter(settings, braking, Range::not_negative());
+  if (!settings.has("part")) return scalar_parameter(settings, braking);
   const Air air{environment.air_density_kg_m3, environment.air_viscosity_Pa_s};
   const double k = air_coefficients(read_air_parts(settings.tables("part")), air).friction_N_m_s1_5;
   return fixed_parameter(braking.name, {&k, 1});
@@ -40,10 +42,7 @@ DisturbanceKind kind() {
                                               "brake with the power 1.5 of the rate",
                                               {EffectKey::not_negative(braking.name, 5e-5)}}}},
           .budget = {.paper_figure = "lumped_drag_at_1_rpm_N_m"},
-          .keys = {Key::uncertain("coefficient", Range::not_negative(),
-                                  "k in T = −k |ω|^½ ω, N m s^1.5; *or* `[[disturbance.part]]`")
-                       .optional(),
-                   air_parts_key()}};
+          .keys = {braking, air_parts_key()}};
 }
 
 }  // namespace photorque::kinds::air_friction

@@ -10,7 +10,10 @@
 namespace photorque::kinds::air_pressure_drag {
 namespace {
 
-constexpr ScalarKey braking{"coefficient_N_m_s2"};
+constexpr auto braking =
+    ScalarKey("coefficient_N_m_s2", Range::not_negative(),
+              "k in T = −k |ω| ω, or three, for body x, y and z; *or* `[[disturbance.part]]`")
+        .optional();
 
 struct AirPressureDrag final : TorqueLaw<AirPressureDrag> {
   template <class T>
@@ -30,7 +33,7 @@ struct AxisDrag final : TorqueLaw<AxisDrag> {
 };
 
 PlacedParameters coefficient(const Settings& settings, const Environment& environment) {
-  if (!settings.has("part")) return scalar_parameter(settings, braking, Range::not_negative());
+  if (!settings.has("part")) return scalar_parameter(settings, braking);
   const Air air{environment.air_density_kg_m3, environment.air_viscosity_Pa_s};
   const double k = air_coefficients(read_air_parts(settings.tables("part")), air).form_N_m_s2;
   return fixed_parameter(braking.name, {&k, 1});
@@ -57,13 +60,7 @@ DisturbanceKind kind() {
                           {EffectKey::vector_not_negative(braking.name, 1e-3)},
                           true}}},
       .budget = {.paper_figure = "cfd_drag_at_1_rpm_N_m"},
-      .keys = {Key::uncertain(
-                   "coefficient_N_m_s2", Range::not_negative(),
-                   "k in T = −k |ω| ω, or three, for body x, y and z; *or* `[[disturbance.part]]`")
-                   .one_or_several()
-                   .of_size(3)
-                   .optional(),
-               air_parts_key()}};
+      .keys = {Key(braking).one_or_several().of_size(3), air_parts_key()}};
 }
 
 }  // namespace photorque::kinds::air_pressure_drag

@@ -7,6 +7,33 @@
 namespace photorque {
 namespace {
 
+namespace part_key {
+constexpr NumberKey radius("radius_m", Range::positive(), "of the disc");
+constexpr NumberKey length("length_m", Range::positive(), "along the flow");
+constexpr NumberKey area("area_m2", Range::positive(), "of a face");
+constexpr NumberKey distance("distance_m", Range::not_negative(), "of its centre from the axis");
+constexpr NumberKey inner("inner_m", 0.0, Range::not_negative(), "where it begins, from the axis");
+constexpr NumberKey outer("outer_m", Range::positive(), "where it ends, beyond `inner_m`",
+                          {.varies = true});
+constexpr IntegerKey faces("faces", 2, 1, 2, "of it that are wetted");
+constexpr NumberKey drag("drag_coefficient", Range::not_negative(),
+                         "on the area that meets the flow");
+constexpr NumberKey moment("moment_coefficient", sphere_moment_howarth, Range::positive(),
+                           "3.27 is also quoted");
+constexpr ChoiceKey shape("shape",
+                          {{"disc", "friction: spins in its plane"},
+                           {"plate", "friction: moves edgewise"},
+                           {"swept_plate", "friction: a radial strip"},
+                           {"sphere", "friction"},
+                           {"radial_cylinder", "pressure: its axis points outwards"},
+                           {"upright_cylinder", "pressure"},
+                           {"blunt_face", "pressure: a stiffener, a box"}},
+                          "what it is like; a shape that counts in the other law adds nothing");
+constexpr TextKey name("name", "of the part", {.usually = "the shape"});
+constexpr NumberKey count("count", 1.0, Range::not_negative(), "of such parts, fractions too");
+constexpr TablesKey part("part", "what stands in the air of `[environment]`");
+}  // namespace part_key
+
 // Von Kármán's disc: the slope G'(0) = −0.6159 of the similarity solution at the wall (White,
 // Viscous Fluid Flow, 3rd ed., table 3-5). One face feels ½ π 0.6159 ρ R⁴ √(ν ω³).
 constexpr double disc_wall_slope = 0.6159;
@@ -105,34 +132,32 @@ std::vector<AirPart> read_air_parts(const std::vector<Settings>& parts) {
   std::vector<AirPart> all;
   for (const Settings& s : parts) {
     AirPart part;
-    part.shape = static_cast<AirShape>(
-        s.choice("shape", {"disc", "plate", "swept_plate", "sphere", "radial_cylinder",
-                           "upright_cylinder", "blunt_face"}));
-    part.name = s.text_or("name", s.text("shape"));
-    part.count = s.number_or("count", 1.0, Range::not_negative());
+    part.shape = static_cast<AirShape>(s.get(part_key::shape));
+    part.name = s.get_or(part_key::name, s.text(part_key::shape));
+    part.count = s.get(part_key::count);
     const auto is = [&](auto... shapes) { return ((part.shape == shapes) || ...); };
     using enum AirShape;
-    if (is(disc, plate, swept_plate)) part.faces = static_cast<int>(s.integer_or("faces", 2, 1, 2));
+    if (is(disc, plate, swept_plate)) part.faces = static_cast<int>(s.get(part_key::faces));
     if (is(disc, sphere, radial_cylinder, upright_cylinder)) {
-      part.radius_m = s.number("radius_m", Range::positive());
+      part.radius_m = s.get(part_key::radius);
     }
     if (is(plate, swept_plate, radial_cylinder, upright_cylinder)) {
-      part.length_m = s.number("length_m", Range::positive());
+      part.length_m = s.get(part_key::length);
     }
-    if (is(plate, blunt_face)) part.area_m2 = s.number("area_m2", Range::positive());
+    if (is(plate, blunt_face)) part.area_m2 = s.get(part_key::area);
     if (is(plate, upright_cylinder, blunt_face)) {
-      part.distance_m = s.number("distance_m", Range::not_negative());
+      part.distance_m = s.get(part_key::distance);
     }
     if (is(swept_plate, radial_cylinder)) {
-      part.inner_m = s.number_or("inner_m", 0.0, Range::not_negative());
+      part.inner_m = s.get(part_key::inner);
     }
-    if (is(swept_plate)) part.outer_m = s.number("outer_m", {part.inner_m, 1e308, true, false});
+    if (is(swept_plate))
+      part.outer_m = s.get(part_key::outer.within({part.inner_m, 1e308, true, false}));
     if (is(radial_cylinder, upright_cylinder, blunt_face)) {
-      part.drag_coefficient = s.number("drag_coefficient", Range::not_negative());
+      part.drag_coefficient = s.get(part_key::drag);
     }
     if (is(sphere)) {
-      part.moment_coefficient =
-          s.number_or("moment_coefficient", sphere_moment_howarth, Range::positive());
+      part.moment_coefficient = s.get(part_key::moment);
     }
     all.push_back(part);
   }
@@ -159,6 +184,20 @@ Table air_table(const std::vector<AirPart>& parts, const Air& air, double rate_r
         .set("transition_reynolds", flow.transition_reynolds);
   }
   return table;
+}
+
+Key air_parts_key() {
+  using namespace part_key;
+  return part.of(
+      {shape.bringing(
+           {{radius, faces},
+            {part_key::length, area, distance, faces},
+            {part_key::length, inner, outer, faces},
+            {radius.meaning("of the sphere"), moment},
+            {radius.meaning("of the cylinder"), part_key::length.meaning("of it"), inner, drag},
+            {radius.meaning("of the cylinder"), part_key::length.meaning("of it"), distance, drag},
+            {area.meaning("that meets the flow"), distance, drag}}),
+       name, count});
 }
 
 }  // namespace photorque

@@ -12,8 +12,7 @@
 
 #include "attitude/model/platform.h"
 #include "core/product.h"
-#include "core/settings/keys.h"
-#include "core/settings/settings.h"
+#include "core/settings/typed_keys.h"
 
 namespace photorque {
 

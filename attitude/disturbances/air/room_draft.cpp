@@ -7,7 +7,7 @@
 namespace photorque::kinds::room_draft {
 namespace {
 
-constexpr VectorKey torque_lab{"torque_lab_N_m"};
+constexpr VectorKey torque_lab("torque_lab_N_m", "lab axes");
 
 struct RoomDraft final : TorqueLaw<RoomDraft> {
   template <class T>
@@ -31,7 +31,7 @@ DisturbanceKind kind() {
                               {EffectKey::vector(torque_lab.name, 5e-6)}}},
                         .needs = Requirement::laboratory,
                         .steady = true},
-          .keys = {Key::uncertain_vector("torque_lab_N_m", "lab axes")}};
+          .keys = {torque_lab}};
 }
 
 }  // namespace photorque::kinds::room_draft

@@ -17,9 +17,42 @@ namespace {
 // of it that cancel it round to more than this.
 constexpr double min_sum_N_m_s = -1e-6;
 
-constexpr ScalarKey coefficient{"coefficient_N_m_s"};
-constexpr ScalarKey about_axis{"axial_N_m_s"};
-constexpr ScalarKey across_axis{"transverse_N_m_s", about_axis.end()};
+constexpr auto coefficient =
+    ScalarKey("coefficient_N_m_s", Range::not_negative(), "c in T = −c ω, about every axis; *or*")
+        .optional();
+constexpr auto about_axis =
+    ScalarKey("axial_N_m_s", Range::not_negative(), "about the vertical; with the next").optional();
+constexpr auto across_axis =
+    ScalarKey("transverse_N_m_s", Range::not_negative(), "across it; *or*", about_axis.end())
+        .optional();
+
+namespace key {
+constexpr NumberKey radius("radius_m", Range::positive(), "of the ball");
+constexpr NumberKey half_angle("half_angle_deg", {0.0, pi, true, false},
+                               "polar angle of the socket's rim");
+constexpr NumberKey recess_half_angle("recess_half_angle_deg", 0.0, {0.0, pi, false, true},
+                                      "of the central recess, below `half_angle_deg`",
+                                      {.varies = true});
+constexpr NumberKey sheared_share("sheared_share", 1.0, Range::fraction(),
+                                  "fraction of the film that is thin (grooves take from it)");
+constexpr NumberKey gap(
+    "gap_m", Range::positive(),
+    "of the film under the platform's weight, *or* with the next two at the rated load",
+    {.optional = true});
+constexpr NumberKey rated_load("rated_load_N", Range::positive(), "of a spring",
+                               {.optional = true});
+constexpr NumberKey stiffness("stiffness_N_m", Range::positive(), "of a spring, newton per metre",
+                              {.optional = true});
+constexpr NumberKey supply("supply_Pa", Range::positive(),
+                           "instead of `gap_m`, absolute, above the ambient pressure: the "
+                           "gap follows from supply and feeding holes; needs a recess",
+                           {.optional = true, .varies = true});
+constexpr NumberKey hole_area("hole_area_mm2", Range::positive(), "of the feeding holes",
+                              {.optional = true});
+constexpr NumberKey discharge_coefficient("discharge_coefficient", 0.8, {0.0, 1.0, true, false},
+                                          "of the holes");
+constexpr TableKey socket("socket", "both from the film of the ball");
+}  // namespace key
 
 struct IsotropicDrag final : TorqueLaw<IsotropicDrag> {
   template <class T>
@@ -40,76 +73,55 @@ struct SocketDrag final : TorqueLaw<SocketDrag> {
 
 double read_gap_m(const Settings& s, SphericalSocket socket, const DisturbanceContext& context) {
   const double load_N = context.platform.mass_kg * context.environment.gravity_lab_m_s2.norm();
-  if (s.has("supply_Pa")) {
+  if (s.has(key::supply)) {
     const FilmAir air{context.environment.air_pressure_Pa, context.environment.air_temperature_K,
                       context.environment.air_viscosity_Pa_s};
-    const OrificeFeed feed{s.number("supply_Pa", {air.pressure_Pa, 1e308, true, false}),
-                           s.number("hole_area_mm2", Range::positive()),
-                           s.number_or("discharge_coefficient", 0.8, {0.0, 1.0, true, false})};
+    const OrificeFeed feed{s.get(key::supply.within({air.pressure_Pa, 1e308, true, false})),
+                           s.get(key::hole_area), s.get(key::discharge_coefficient)};
     if (!(socket.recess_half_angle_rad > 0.0)) {
-      throw s.error("recess_half_angle_deg", "none", "a recess that the holes feed");
+      throw s.error(key::recess_half_angle, "none", "a recess that the holes feed");
     }
     return gap_under_load_m(socket, feed, air, load_N);
   }
-  const double gap_m = s.number("gap_m", Range::positive());
-  if (!s.has("stiffness_N_m")) return gap_m;
-  const double loaded_m = spring_gap_m(gap_m, s.number("rated_load_N", Range::positive()),
-                                       s.number("stiffness_N_m", Range::positive()), load_N);
+  const double gap_m = s.get(key::gap);
+  if (!s.has(key::stiffness)) return gap_m;
+  const double loaded_m =
+      spring_gap_m(gap_m, s.get(key::rated_load), s.get(key::stiffness), load_N);
   if (!(loaded_m > 0.0)) {
-    throw s.error("stiffness_N_m", "a gap that the platform's weight closes", "a stiffer bearing");
+    throw s.error(key::stiffness, "a gap that the platform's weight closes", "a stiffer bearing");
   }
   return loaded_m;
 }
 
 FilmDrag read_socket_drag(const Settings& s, const DisturbanceContext& context) {
   SphericalSocket socket;
-  socket.radius_m = s.number("radius_m", Range::positive());
-  socket.half_angle_rad = s.number("half_angle_deg", {0.0, pi, true, false});
+  socket.radius_m = s.get(key::radius);
+  socket.half_angle_rad = s.get(key::half_angle);
   socket.recess_half_angle_rad =
-      s.number_or("recess_half_angle_deg", 0.0, {0.0, socket.half_angle_rad, false, true});
-  socket.sheared_fraction = s.number_or("sheared_share", 1.0, Range::fraction());
+      s.get(key::recess_half_angle.within({0.0, socket.half_angle_rad, false, true}));
+  socket.sheared_fraction = s.get(key::sheared_share);
   socket.gap_m = read_gap_m(s, socket, context);
   return film_drag(socket, context.environment.air_viscosity_Pa_s);
 }
 
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
-  if (settings.has("socket")) {
-    const FilmDrag drag = read_socket_drag(settings.table("socket"), context);
+  if (settings.has(key::socket)) {
+    const FilmDrag drag = read_socket_drag(settings.get(key::socket), context);
     return make_disturbance<SocketDrag>(
         {fixed_parameter(about_axis.name, {&drag.axial_N_m_s, 1}),
          fixed_parameter(across_axis.name, {&drag.transverse_N_m_s, 1}, across_axis.first)});
   }
   if (settings.has(about_axis.name)) {
     return make_disturbance<SocketDrag>(
-        {scalar_parameter(settings, about_axis, Range::not_negative()),
-         scalar_parameter(settings, across_axis, Range::not_negative())});
+        {scalar_parameter(settings, about_axis), scalar_parameter(settings, across_axis)});
   }
-  return make_disturbance<IsotropicDrag>(
-      {scalar_parameter(settings, coefficient, Range::not_negative())});
+  return make_disturbance<IsotropicDrag>({scalar_parameter(settings, coefficient)});
 }
 
 std::vector<Key> socket_keys() {
-  return {
-      Key::number("radius_m", Range::positive(), "of the ball"),
-      Key::number("half_angle_deg", {0.0, pi, true, false}, "polar angle of the socket's rim"),
-      Key::number_or("recess_half_angle_deg", 0.0, {0.0, pi, false, true},
-                     "of the central recess, below `half_angle_deg`")
-          .range_that_varies(),
-      Key::number_or("sheared_share", 1.0, Range::fraction(),
-                     "fraction of the film that is thin (grooves take from it)"),
-      Key::number(
-          "gap_m", Range::positive(),
-          "of the film under the platform's weight, *or* with the next two at the rated load")
-          .optional(),
-      Key::number("rated_load_N", Range::positive(), "of a spring").optional(),
-      Key::number("stiffness_N_m", Range::positive(), "of a spring, newton per metre").optional(),
-      Key::number("supply_Pa", Range::positive(),
-                  "instead of `gap_m`, absolute, above the ambient pressure: the gap follows from "
-                  "supply and feeding holes; needs a recess")
-          .range_that_varies()
-          .optional(),
-      Key::number("hole_area_mm2", Range::positive(), "of the feeding holes").optional(),
-      Key::number_or("discharge_coefficient", 0.8, {0.0, 1.0, true, false}, "of the holes")};
+  using namespace key;
+  return {radius,    half_angle, recess_half_angle, sheared_share,        gap, rated_load,
+          stiffness, supply,     hole_area,         discharge_coefficient};
 }
 
 }  // namespace
@@ -124,14 +136,7 @@ DisturbanceKind kind() {
                                           {EffectKey::number(coefficient.name, 2e-5)}}},
                     .needs = Requirement::bearing,
                     .least_sum = LeastSum{min_sum_N_m_s, "the bearing's drag would feed energy"}},
-      .keys = {
-          Key::uncertain("coefficient_N_m_s", Range::not_negative(),
-                         "c in T = −c ω, about every axis; *or*")
-              .optional(),
-          Key::uncertain("axial_N_m_s", Range::not_negative(), "about the vertical; with the next")
-              .optional(),
-          Key::uncertain("transverse_N_m_s", Range::not_negative(), "across it; *or*").optional(),
-          Key::table("socket", socket_keys(), "both from the film of the ball")}};
+      .keys = {coefficient, about_axis, across_axis, key::socket.of(socket_keys())}};
 }
 
 }  // namespace photorque::kinds::bearing_drag

@@ -8,7 +8,12 @@
 namespace photorque::kinds::dry_friction {
 namespace {
 
-constexpr ScalarKey friction{"torque_N_m"};
+constexpr ScalarKey friction("torque_N_m", Range::not_negative(), "τ in T = −τ ω/√(ω² + creep²)");
+
+namespace key {
+constexpr NumberKey creep_rate("creep_rate_rad_s", 1e-6, Range::positive(),
+                               "below it the torque fades to zero");
+}  // namespace key
 
 class DryFriction final : public TorqueLaw<DryFriction> {
  public:
@@ -26,9 +31,8 @@ class DryFriction final : public TorqueLaw<DryFriction> {
 };
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  Disturbance d = make_disturbance<DryFriction>(
-      {scalar_parameter(settings, friction, Range::not_negative())}, Stage::torque, {},
-      settings.number_or("creep_rate_rad_s", 1e-6, Range::positive()));
+  Disturbance d = make_disturbance<DryFriction>({scalar_parameter(settings, friction)},
+                                                Stage::torque, {}, settings.get(key::creep_rate));
   d.is_abrupt = true;
   return d;
 }
@@ -36,17 +40,14 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "dry_friction",
-      .summary = "rubbing contact: a torque against the motion, whatever the rate",
-      .read = read,
-      .screening =
-          {.parametrisations = {{"something rubs: a torque of constant size against the motion",
-                                 {EffectKey::not_negative(friction.name, 5e-6)}}},
-           .needs = Requirement::bearing},
-      .keys = {Key::uncertain("torque_N_m", Range::not_negative(), "τ in T = −τ ω/√(ω² + creep²)"),
-               Key::number_or("creep_rate_rad_s", 1e-6, Range::positive(),
-                              "below it the torque fades to zero")}};
+  return {.name = "dry_friction",
+          .summary = "rubbing contact: a torque against the motion, whatever the rate",
+          .read = read,
+          .screening =
+              {.parametrisations = {{"something rubs: a torque of constant size against the motion",
+                                     {EffectKey::not_negative(friction.name, 5e-6)}}},
+               .needs = Requirement::bearing},
+          .keys = {friction, key::creep_rate}};
 }
 
 }  // namespace photorque::kinds::dry_friction

@@ -15,7 +15,12 @@
 namespace photorque::kinds::tether {
 namespace {
 
-constexpr ScalarKey stiffness{"stiffness_N_m_per_rad"};
+constexpr ScalarKey stiffness("stiffness_N_m_per_rad", Range::not_negative(),
+                              "k in T = −k φ; φ is the shortest way and jumps at half a turn");
+
+namespace key {
+constexpr FlagKey winds_up("winds_up", false, "true: whole turns about body z count, φ + 2π n z");
+}  // namespace key
 // The angle about body z since the start; tells whole turns, so its accuracy hardly matters.
 constexpr StateKey twist{"tether_twist_rad"};
 
@@ -59,9 +64,9 @@ class Tether final : public TorqueLaw<Tether> {
 };
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  const bool winds_up = settings.flag_or("winds_up", false);
+  const bool winds_up = settings.get(key::winds_up);
   Disturbance d = make_disturbance<Tether>(
-      {scalar_parameter(settings, stiffness, Range::not_negative())}, Stage::torque,
+      {scalar_parameter(settings, stiffness)}, Stage::torque,
       winds_up ? std::vector<ExtraState>{{twist.name}} : std::vector<ExtraState>{}, winds_up);
   d.is_abrupt = true;
   return d;
@@ -76,10 +81,7 @@ DisturbanceKind kind() {
           .screening = {.parametrisations = {{"a cable pulls the platform back to zero attitude",
                                               {EffectKey::not_negative(stiffness.name, 1e-5)}}},
                         .needs = Requirement::air_bearing},
-          .keys = {
-              Key::uncertain("stiffness_N_m_per_rad", Range::not_negative(),
-                             "k in T = −k φ; φ is the shortest way and jumps at half a turn"),
-              Key::flag_or("winds_up", false, "true: whole turns about body z count, φ + 2π n z")}};
+          .keys = {stiffness, key::winds_up}};
 }
 
 }  // namespace photorque::kinds::tether

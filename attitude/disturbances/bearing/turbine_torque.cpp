@@ -7,7 +7,7 @@
 namespace photorque::kinds::turbine_torque {
 namespace {
 
-constexpr ScalarKey torque_up{"torque_N_m"};
+constexpr ScalarKey torque_up("torque_N_m", {}, "positive counterclockwise from above");
 
 struct TurbineTorque final : TorqueLaw<TurbineTorque> {
   template <class T>
@@ -31,7 +31,7 @@ DisturbanceKind kind() {
                                               {EffectKey::number(torque_up.name, 5e-6)}}},
                         .needs = Requirement::air_bearing,
                         .alike = {{"room_draft"}}},
-          .keys = {Key::uncertain("torque_N_m", {}, "positive counterclockwise from above")}};
+          .keys = {torque_up}};
 }
 
 }  // namespace photorque::kinds::turbine_torque

@@ -24,25 +24,42 @@ Vec3 dipole_A_m2(std::span<const CurrentLoop> loops) {
   return sum_A_m2;
 }
 
+namespace {
+
+namespace loop_key {
+constexpr NumberKey current("current_A", {}, "right-handed about the area");
+constexpr NumberKey turns("turns", 1.0, Range::positive(), "of the loop");
+constexpr Vec3Key area("area_m2", "normal times area, body axes; or `corners_m`",
+                       {.optional = true});
+constexpr Vec3sKey corners("corners_m", "at least three, body axes", {.optional = true});
+}  // namespace loop_key
+
+}  // namespace
+
 std::vector<CurrentLoop> read_current_loops(const std::vector<Settings>& loops) {
   std::vector<CurrentLoop> all;
   for (const Settings& s : loops) {
     CurrentLoop loop;
-    loop.current_A = s.number("current_A");
-    loop.turns = s.number_or("turns", 1.0, Range::positive());
-    if (s.has("corners_m")) {
-      const std::vector<Vec3> corners_m = s.vectors3("corners_m");
+    loop.current_A = s.get(loop_key::current);
+    loop.turns = s.get(loop_key::turns);
+    if (s.has(loop_key::corners)) {
+      const std::vector<Vec3> corners_m = s.get(loop_key::corners);
       if (corners_m.size() < 3) {
-        throw s.error("corners_m", std::to_string(corners_m.size()) + " points",
+        throw s.error(loop_key::corners, std::to_string(corners_m.size()) + " points",
                       "at least 3 corners of a loop");
       }
       loop.area_body_m2 = polygon_area_m2(corners_m);
     } else {
-      loop.area_body_m2 = s.vector3("area_m2");
+      loop.area_body_m2 = s.get(loop_key::area);
     }
     all.push_back(loop);
   }
   return all;
+}
+
+std::vector<Key> current_loop_keys() {
+  using namespace loop_key;
+  return {current, turns, area, corners};
 }
 
 // μ₀I/4π (a × b)(|a| + |b|) / (|a||b|(|a||b| + a·b)), a and b from the point to the ends: Biot and

@@ -7,7 +7,7 @@
 
 #include "attitude/environment/igrf.h"
 #include "attitude/environment/time_series.h"
-#include "core/settings/settings.h"
+#include "core/settings/typed_keys.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -31,6 +31,7 @@ Vec3 dipole_A_m2(std::span<const CurrentLoop> loops);
 // Reads tables with current_A, turns (default 1) and either area_m2 (a vector) or corners_m (a
 // polygon, at least three).
 std::vector<CurrentLoop> read_current_loops(const std::vector<Settings>& loops);
+std::vector<Key> current_loop_keys();
 
 // Field of a current that flows along a straight wire from `from_m` to `to_m` [T]; a closed path of
 // such wires is physical, one alone is not. Singular on the wire.

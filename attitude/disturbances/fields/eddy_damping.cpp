@@ -10,7 +10,8 @@
 namespace photorque::kinds::eddy_damping {
 namespace {
 
-constexpr ScalarKey damping{"coefficient_N_m_s_per_T2"};
+constexpr ScalarKey damping("coefficient_N_m_s_per_T2", Range::not_negative(),
+                            "k in T = k (ω × B) × B; a thin shell has (2π/3) σ R⁴ δ");
 
 struct EddyDamping final : TorqueLaw<EddyDamping> {
   template <class T>
@@ -22,8 +23,7 @@ struct EddyDamping final : TorqueLaw<EddyDamping> {
 };
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<EddyDamping>(
-      {scalar_parameter(settings, damping, Range::not_negative())});
+  return make_disturbance<EddyDamping>({scalar_parameter(settings, damping)});
 }
 
 }  // namespace
@@ -36,8 +36,7 @@ DisturbanceKind kind() {
                             {{"eddy currents brake rotation across the ambient magnetic field",
                               {EffectKey::not_negative(damping.name, 2e4)}}},
                         .needs = Requirement::field},
-          .keys = {Key::uncertain("coefficient_N_m_s_per_T2", Range::not_negative(),
-                                  "k in T = k (ω × B) × B; a thin shell has (2π/3) σ R⁴ δ")}};
+          .keys = {damping}};
 }
 
 }  // namespace photorque::kinds::eddy_damping

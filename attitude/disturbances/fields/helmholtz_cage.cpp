@@ -17,7 +17,23 @@
 namespace photorque::kinds::helmholtz_cage {
 namespace {
 
-constexpr ScalarKey gain_error{"gain_error"};
+constexpr ScalarKey gain_error("gain_error", 0.0, {}, "the coils give 1 + this of the correction");
+
+namespace key {
+constexpr Vec3Key field_lab("field_lab_T", {0.0, 0.0, 0.0}, "what the coils set, lab axes; *or*");
+constexpr TextKey field_file("field_file",
+                             "a CSV: `t_s`, `field_x_T`, `field_y_T`, `field_z_T`, ends held; *or*",
+                             {.optional = true});
+constexpr NumberKey altitude("altitude_m", Range::not_negative(), "above 6371.2 km");
+constexpr NumberKey inclination("inclination_deg", {}, "of the orbit");
+constexpr NumberKey date_year("date_year", {1900.0, 2035.0, false, false}, "of IGRF");
+constexpr NumberKey duration("duration_s", Range::positive(), "how long the field is played");
+constexpr NumberKey ascending_node("ascending_node_deg", 0.0, {}, "of the orbit");
+constexpr NumberKey phase("phase_deg", 0.0, {}, "argument of latitude at t = 0");
+constexpr NumberKey greenwich_angle("greenwich_angle_deg", 0.0, {}, "at t = 0");
+constexpr NumberKey interval("interval_s", 20.0, Range::positive(), "of the table of the field");
+constexpr TableKey orbit("orbit", "the field of IGRF on a circular orbit");
+}  // namespace key
 
 class HelmholtzCage final : public LawOf<HelmholtzCage> {
  public:
@@ -42,63 +58,49 @@ class HelmholtzCage final : public LawOf<HelmholtzCage> {
 };
 
 TimeSeries read_wanted_field_T(const Settings& settings) {
-  if (settings.has("field_file")) {
-    return read_time_series(file_of(settings, "field_file"),
+  if (settings.has(key::field_file)) {
+    return read_time_series(file_of(settings, key::field_file),
                             {"field_x_T", "field_y_T", "field_z_T"}, TimeSeries::Outside::hold);
   }
-  if (settings.has("orbit")) {
-    const Settings s = settings.table("orbit");
-    const CircularOrbit orbit{6371.2e3 + s.number("altitude_m", Range::not_negative()),
-                              s.number("inclination_deg"), s.number_or("ascending_node_deg", 0.0),
-                              s.number_or("phase_deg", 0.0),
-                              s.number_or("greenwich_angle_deg", 0.0)};
-    const double date_year = s.number("date_year", {1900.0, 2035.0, false, false});
-    const double duration_s = s.number("duration_s", Range::positive());
-    const double interval_s = s.number_or("interval_s", 20.0, Range::positive());
+  if (settings.has(key::orbit)) {
+    const Settings s = settings.get(key::orbit);
+    const CircularOrbit orbit{6371.2e3 + s.get(key::altitude), s.get(key::inclination),
+                              s.get(key::ascending_node), s.get(key::phase),
+                              s.get(key::greenwich_angle)};
+    const double date_year = s.get(key::date_year);
+    const double duration_s = s.get(key::duration);
+    const double interval_s = s.get(key::interval);
     constexpr double most_instants = 1e6;
     if (duration_s > most_instants * interval_s) {
-      throw s.error("duration_s", shortest(duration_s / interval_s) + " intervals",
+      throw s.error(key::duration, shortest(duration_s / interval_s) + " intervals",
                     "at most a million");
     }
     return orbit_field_T(orbit, date_year, duration_s, interval_s);
   }
-  const Vec3 field_lab_T = settings.vector3_or("field_lab_T", Vec3::Zero());
+  const Vec3 field_lab_T = settings.get(key::field_lab);
   return TimeSeries({0.0, 1.0}, {field_lab_T, field_lab_T});
 }
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<HelmholtzCage>({scalar_parameter_or(settings, gain_error, 0.0)},
+  return make_disturbance<HelmholtzCage>({scalar_parameter(settings, gain_error)},
                                          Stage::conditions, {}, read_wanted_field_T(settings));
 }
 
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "helmholtz_cage",
-      .summary = "coils around the platform set the magnetic field",
-      .read = read,
-      .screening =
-          {.reason_against =
-               "the coils are a part of the laboratory that is set, not one that is forgotten"},
-      .sets = "the magnetic field",
-      .keys = {
-          Key::vector3_or("field_lab_T", Vec3::Zero(), "what the coils set, lab axes; *or*"),
-          Key::text("field_file",
-                    "a CSV: `t_s`, `field_x_T`, `field_y_T`, `field_z_T`, ends held; *or*")
-              .optional(),
-          Key::table(
-              "orbit",
-              {Key::number("altitude_m", Range::not_negative(), "above 6371.2 km"),
-               Key::number("inclination_deg", {}, "of the orbit"),
-               Key::number("date_year", {1900.0, 2035.0, false, false}, "of IGRF"),
-               Key::number("duration_s", Range::positive(), "how long the field is played"),
-               Key::number_or("ascending_node_deg", 0.0, {}, "of the orbit"),
-               Key::number_or("phase_deg", 0.0, {}, "argument of latitude at t = 0"),
-               Key::number_or("greenwich_angle_deg", 0.0, {}, "at t = 0"),
-               Key::number_or("interval_s", 20.0, Range::positive(), "of the table of the field")},
-              "the field of IGRF on a circular orbit"),
-          Key::uncertain_or("gain_error", 0.0, {}, "the coils give 1 + this of the correction")}};
+  return {.name = "helmholtz_cage",
+          .summary = "coils around the platform set the magnetic field",
+          .read = read,
+          .screening =
+              {.reason_against =
+                   "the coils are a part of the laboratory that is set, not one that is forgotten"},
+          .sets = "the magnetic field",
+          .keys = {
+              key::field_lab, key::field_file,
+              key::orbit.of({key::altitude, key::inclination, key::date_year, key::duration,
+                             key::ascending_node, key::phase, key::greenwich_angle, key::interval}),
+              gain_error}};
 }
 
 }  // namespace photorque::kinds::helmholtz_cage

@@ -13,8 +13,13 @@
 namespace photorque::kinds::lamp_pressure {
 namespace {
 
-constexpr VectorKey torque_lab{"torque_lab_N_m"};
-constexpr ScalarKey led_current{"led_current_A", torque_lab.end()};
+constexpr VectorKey torque_lab("torque_lab_N_m", "at that current, lab axes");
+
+namespace key {
+constexpr NumberKey led_current("led_current_A", Range::positive(),
+                                "of the lamps, at which the torque is that");
+}  // namespace key
+constexpr ScalarKey led_current("led_current_A", torque_lab.end());
 
 struct LampPressure final : TorqueLaw<LampPressure> {
   template <class T>
@@ -44,9 +49,7 @@ DisturbanceKind kind() {
                                                EffectKey::largest_recorded(led_current.name)}}},
                         .needs = Requirement::lamps},
           .budget = {.reason_against = "depends on the light at the instant"},
-          .keys = {Key::uncertain_vector("torque_lab_N_m", "at that current, lab axes"),
-                   Key::number("led_current_A", Range::positive(),
-                               "of the lamps, at which the torque is that")}};
+          .keys = {torque_lab, key::led_current}};
 }
 
 }  // namespace photorque::kinds::lamp_pressure

@@ -8,7 +8,10 @@
 namespace photorque::kinds::magnetic_dipole {
 namespace {
 
-constexpr VectorKey moment{"dipole_A_m2"};
+constexpr auto moment =
+    VectorKey("dipole_A_m2", "m in T = m × B, body axes; *or* the loops").optional();
+
+constexpr TablesKey loops("loop", "current loops, summed");
 
 struct MagneticDipole final : TorqueLaw<MagneticDipole> {
   template <class T>
@@ -18,8 +21,8 @@ struct MagneticDipole final : TorqueLaw<MagneticDipole> {
 };
 
 PlacedParameters dipole(const Settings& settings) {
-  if (!settings.has("loop")) return vector_parameter(settings, moment);
-  const Vec3 sum_A_m2 = dipole_A_m2(read_current_loops(settings.tables("loop")));
+  if (!settings.has(loops)) return vector_parameter(settings, moment);
+  const Vec3 sum_A_m2 = dipole_A_m2(read_current_loops(settings.get(loops)));
   return fixed_parameter(moment.name, {sum_A_m2.data(), 3});
 }
 
@@ -30,25 +33,15 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "magnetic_dipole",
-      .summary = "current loops and remanent steel turn towards the ambient field",
-      .read = read,
-      .screening =
-          {.parametrisations =
-               {{"a residual magnetic dipole of the platform turns towards the ambient field",
-                 {EffectKey::vector(moment.name, 0.05)}}},
-           .needs = Requirement::field},
-      .keys = {
-          Key::uncertain_vector("dipole_A_m2", "m in T = m × B, body axes; *or* the loops")
-              .optional(),
-          Key::tables(
-              "loop",
-              {Key::number("current_A", {}, "right-handed about the area"),
-               Key::number_or("turns", 1.0, Range::positive(), "of the loop"),
-               Key::vector3("area_m2", "normal times area, body axes; or `corners_m`").optional(),
-               Key::vectors3("corners_m", "at least three, body axes").optional()},
-              "current loops, summed")}};
+  return {.name = "magnetic_dipole",
+          .summary = "current loops and remanent steel turn towards the ambient field",
+          .read = read,
+          .screening =
+              {.parametrisations =
+                   {{"a residual magnetic dipole of the platform turns towards the ambient field",
+                     {EffectKey::vector(moment.name, 0.05)}}},
+               .needs = Requirement::field},
+          .keys = {moment, loops.of(current_loop_keys())}};
 }
 
 }  // namespace photorque::kinds::magnetic_dipole

@@ -18,6 +18,24 @@
 namespace photorque::kinds::orbit {
 namespace {
 
+constexpr double interval_s = 20.0;  // of the table of the field
+
+namespace key {
+constexpr NumberKey altitude("altitude_m", Range::positive(), "above 6371.2 km");
+constexpr NumberKey inclination("inclination_deg", {}, "of the orbit");
+constexpr NumberKey ascending_node("ascending_node_deg", 0.0, {}, "of the orbit");
+constexpr NumberKey phase("phase_deg", 0.0, {}, "argument of latitude at t = 0");
+constexpr NumberKey greenwich_angle("greenwich_angle_deg", 0.0, {}, "at t = 0");
+constexpr NumberKey date_year("date_year", {1900.0, 2035.0, false, false},
+                              "field by IGRF along the orbit",
+                              {.usually = "the field of `[environment]`"});
+constexpr NumberKey duration("duration_s", 86400.0, {0.0, 1e6 * interval_s, true, false},
+                             "with `date_year`: how long the field is known; its end is held");
+constexpr Vec3Key sun_direction("sun_direction",
+                                "towards the Sun, any length: shadow with penumbra",
+                                {.usually = "always light"});
+}  // namespace key
+
 constexpr double mean_radius_m = 6371.2e3;
 
 class Orbit final : public LawOf<Orbit> {
@@ -51,22 +69,19 @@ class Orbit final : public LawOf<Orbit> {
 };
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  const CircularOrbit orbit{
-      mean_radius_m + settings.number("altitude_m", Range::positive()),
-      settings.number("inclination_deg"), settings.number_or("ascending_node_deg", 0.0),
-      settings.number_or("phase_deg", 0.0), settings.number_or("greenwich_angle_deg", 0.0)};
+  const CircularOrbit orbit{mean_radius_m + settings.get(key::altitude),
+                            settings.get(key::inclination), settings.get(key::ascending_node),
+                            settings.get(key::phase), settings.get(key::greenwich_angle)};
   std::optional<TimeSeries> field_T;
-  if (settings.has("date_year")) {
-    constexpr double interval_s = 20.0, longest_s = 1e6 * interval_s;
-    field_T = orbit_field_T(
-        orbit, settings.number("date_year", {1900.0, 2035.0, false, false}),
-        settings.number_or("duration_s", 86400.0, {0.0, longest_s, true, false}), interval_s);
+  if (settings.has(key::date_year)) {
+    field_T =
+        orbit_field_T(orbit, settings.get(key::date_year), settings.get(key::duration), interval_s);
   }
   std::optional<Vec3> sun_direction;
-  if (settings.has("sun_direction")) {
-    const Vec3 direction = settings.vector3("sun_direction");
+  if (settings.has(key::sun_direction)) {
+    const Vec3 direction = settings.get(key::sun_direction);
     if (!(direction.norm() > 0.0)) {
-      throw settings.error("sun_direction", "a zero vector", "a direction");
+      throw settings.error(key::sun_direction, "a zero vector", "a direction");
     }
     sun_direction = direction.normalized();
   }
@@ -76,26 +91,15 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "orbit",
-      .summary = "a circular orbit around the Earth: free fall, gradient, field and shadow",
-      .read = read,
-      .screening = {.reason_against = "where a platform is, is known"},
-      .budget = {.reason_against = "an orbit is where the others act"},
-      .has_eclipses = true,
-      .sets = "the magnetic field",
-      .keys = {
-          Key::number("altitude_m", Range::positive(), "above 6371.2 km"),
-          Key::number("inclination_deg", {}, "of the orbit"),
-          Key::number_or("ascending_node_deg", 0.0, {}, "of the orbit"),
-          Key::number_or("phase_deg", 0.0, {}, "argument of latitude at t = 0"),
-          Key::number_or("greenwich_angle_deg", 0.0, {}, "at t = 0"),
-          Key::number("date_year", {1900.0, 2035.0, false, false}, "field by IGRF along the orbit")
-              .usually_is("the field of `[environment]`"),
-          Key::number_or("duration_s", 86400.0, {0.0, 2e7, true, false},
-                         "with `date_year`: how long the field is known; its end is held"),
-          Key::vector3("sun_direction", "towards the Sun, any length: shadow with penumbra")
-              .usually_is("always light")}};
+  return {.name = "orbit",
+          .summary = "a circular orbit around the Earth: free fall, gradient, field and shadow",
+          .read = read,
+          .screening = {.reason_against = "where a platform is, is known"},
+          .budget = {.reason_against = "an orbit is where the others act"},
+          .has_eclipses = true,
+          .sets = "the magnetic field",
+          .keys = {key::altitude, key::inclination, key::ascending_node, key::phase,
+                   key::greenwich_angle, key::date_year, key::duration, key::sun_direction}};
 }
 
 }  // namespace photorque::kinds::orbit

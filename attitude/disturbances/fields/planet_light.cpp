@@ -20,7 +20,32 @@ namespace photorque::kinds::planet_light {
 namespace {
 
 constexpr double mean_radius_of_planet_m = 6371.2e3;
-constexpr ScalarKey planet_factor{"scale"};
+constexpr ScalarKey planet_factor("scale", 1.0, {}, "factor");
+
+namespace key {
+constexpr PlanetSurface earth;
+
+constexpr TextKey table("table",
+                        "CSV of `torque-map` over the sphere (`elevation_deg`, `azimuth_deg`; "
+                        "`torque_x_N_m`, …), traced in sunlight");
+constexpr TextKey infrared_table(
+    "infrared_table", "the same in the planet's infrared",
+    {.usually = "`table`: surfaces meet infrared as they meet sunlight"});
+constexpr NumberKey table_irradiance("table_irradiance_W_m2", solar_irradiance_W_m2,
+                                     Range::positive(),
+                                     "of the light in which the tables were traced");
+constexpr NumberKey irradiance("irradiance_W_m2", solar_irradiance_W_m2, Range::positive(),
+                               "of sunlight at the planet");
+constexpr Vec3Key sun_direction("sun_direction", "towards the Sun, any length",
+                                {.usually = "`propagate`: that of `orbit`"});
+constexpr NumberKey albedo("albedo", earth.albedo.mean, Range::fraction(), "mean over the planet");
+constexpr NumberKey emissivity("emissivity", earth.emissivity.mean, Range::fraction(),
+                               "likewise: of a quarter of the sunlight");
+constexpr FlagKey zonal(
+    "zonal", true, "with the Earth's belts of latitude: albedo + 0.29 P₂, emissivity − 0.18 P₂");
+constexpr NumberKey date_year("date_year", {1900.0, 2100.0, false, false},
+                              "and its seasons: ± 0.10 and ∓ 0.07 P₁", {.usually = "no season"});
+}  // namespace key
 
 struct PlanetOptions {
   PlanetSurface surface;
@@ -76,10 +101,10 @@ class PlanetLight final : public TorqueLaw<PlanetLight> {
   std::optional<TorqueSurface> infrared_;
 };
 
-TorqueSurface sphere_of(const Settings& settings, const char* key) {
-  TorqueSurface surface(read_wrench_table(file_of(settings, key)));
+TorqueSurface sphere_of(const Settings& settings, const TextKey& table) {
+  TorqueSurface surface(read_wrench_table(file_of(settings, table)));
   if (surface.angles() != WrenchTable::Angles::azimuth_elevation) {
-    throw settings.error(key, "a table over tilt and heading",
+    throw settings.error(table, "a table over tilt and heading",
                          "one over azimuth and elevation: the planet's light comes from all sides");
   }
   return surface;
@@ -88,64 +113,41 @@ TorqueSurface sphere_of(const Settings& settings, const char* key) {
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
   PlanetOptions options;
   PlanetSurface& surface = options.surface;
-  if (!settings.flag_or("zonal", true)) {
+  if (!settings.get(key::zonal)) {
     surface.albedo.season = surface.albedo.second = 0.0;
     surface.emissivity.season = surface.emissivity.second = 0.0;
   }
-  surface.albedo.mean = settings.number_or("albedo", surface.albedo.mean, Range::fraction());
-  surface.emissivity.mean =
-      settings.number_or("emissivity", surface.emissivity.mean, Range::fraction());
-  if (settings.has("date_year")) {
-    options.season = season_cosine(settings.number("date_year", {1900.0, 2100.0, false, false}));
+  surface.albedo.mean = settings.get(key::albedo);
+  surface.emissivity.mean = settings.get(key::emissivity);
+  if (settings.has(key::date_year)) {
+    options.season = season_cosine(settings.get(key::date_year));
   }
-  options.to_sun = settings.vector3("sun_direction");
+  options.to_sun = settings.get(key::sun_direction);
   if (!(options.to_sun.norm() > 0.0)) {
-    throw settings.error("sun_direction", "a zero vector", "a direction");
+    throw settings.error(key::sun_direction, "a zero vector", "a direction");
   }
   options.to_sun.normalize();
-  options.irradiance_W_m2 =
-      settings.number_or("irradiance_W_m2", options.irradiance_W_m2, Range::positive());
-  options.table_W_m2 =
-      settings.number_or("table_irradiance_W_m2", options.table_W_m2, Range::positive());
+  options.irradiance_W_m2 = settings.get(key::irradiance);
+  options.table_W_m2 = settings.get(key::table_irradiance);
   std::optional<TorqueSurface> infrared;
-  if (settings.has("infrared_table")) infrared = sphere_of(settings, "infrared_table");
-  return make_disturbance<PlanetLight>({scalar_parameter_or(settings, planet_factor, 1.0)},
-                                       Stage::torque, {}, options, sphere_of(settings, "table"),
+  if (settings.has(key::infrared_table)) infrared = sphere_of(settings, key::infrared_table);
+  return make_disturbance<PlanetLight>({scalar_parameter(settings, planet_factor)}, Stage::torque,
+                                       {}, options, sphere_of(settings, key::table),
                                        std::move(infrared));
 }
 
 }  // namespace
 
 DisturbanceKind kind() {
-  const PlanetSurface earth;
   return {
       .name = "planet_light",
       .summary = "sunlight that the planet reflects, and its infrared, push on a spacecraft",
       .read = read,
       .screening = {.reason_against = "needs a table that torque-map traces for this spacecraft"},
       .budget = {.reason_against = "of a spacecraft in orbit, not of a platform on the ground"},
-      .keys = {
-          Key::text("table",
-                    "CSV of `torque-map` over the sphere (`elevation_deg`, `azimuth_deg`; "
-                    "`torque_x_N_m`, …), traced in sunlight"),
-          Key::text("infrared_table", "the same in the planet's infrared")
-              .usually_is("`table`: surfaces meet infrared as they meet sunlight"),
-          Key::number_or("table_irradiance_W_m2", solar_irradiance_W_m2, Range::positive(),
-                         "of the light in which the tables were traced"),
-          Key::number_or("irradiance_W_m2", solar_irradiance_W_m2, Range::positive(),
-                         "of sunlight at the planet"),
-          Key::vector3("sun_direction", "towards the Sun, any length")
-              .usually_is("`propagate`: that of `orbit`"),
-          Key::number_or("albedo", earth.albedo.mean, Range::fraction(), "mean over the planet"),
-          Key::number_or("emissivity", earth.emissivity.mean, Range::fraction(),
-                         "likewise: of a quarter of the sunlight"),
-          Key::flag_or(
-              "zonal", true,
-              "with the Earth's belts of latitude: albedo + 0.29 P₂, emissivity − 0.18 P₂"),
-          Key::number("date_year", {1900.0, 2100.0, false, false},
-                      "and its seasons: ± 0.10 and ∓ 0.07 P₁")
-              .usually_is("no season"),
-          Key::uncertain_or("scale", 1.0, {}, "factor")}};
+      .keys = {key::table, key::infrared_table, key::table_irradiance, key::irradiance,
+               key::sun_direction, key::albedo, key::emissivity, key::zonal, key::date_year,
+               planet_factor}};
 }
 
 }  // namespace photorque::kinds::planet_light

@@ -17,8 +17,22 @@
 namespace photorque::kinds::power_balance {
 namespace {
 
-constexpr ScalarKey load{"load_W"};
-constexpr ScalarKey array_scale{"array_scale", load.end()};
+constexpr ScalarKey load(
+    "load_W", Range::not_negative(),
+    "what is drawn: the battery gives (load − array)/`platform.battery_voltage_V`, tapered when "
+    "full or empty; nothing where a recording has the current");
+
+namespace key {
+constexpr NumberKey array_power("array_power_W", 0.0, Range::not_negative(),
+                                "at zero tilt, falls with its cosine; *or*");
+constexpr NumbersKey tilt("tilt_deg", {0.0, pi, false, false},
+                          "a table, rising, held beyond its end; with the next",
+                          {.optional = true});
+constexpr NumbersKey power("power_W", Range::not_negative(), "of the array at each tilt",
+                           {.optional = true});
+}  // namespace key
+constexpr ScalarKey array_scale("array_scale", 1.0, Range::not_negative(), "factor on either",
+                                load.end());
 
 // A monotone cubic through points (F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984)
 // 300): smooth, and without a maximum that the points do not have.
@@ -95,22 +109,22 @@ class PowerBalance final : public LawOf<PowerBalance> {
 };
 
 MonotoneCurve read_curve(const Settings& settings) {
-  if (!settings.has("tilt_deg")) {
+  if (!settings.has(key::tilt)) {
     // cos(tilt) = 1 − 2 sin²(tilt/2): a straight line down to zero at 90 deg.
-    const double power_W = settings.number_or("array_power_W", 0.0, Range::not_negative());
+    const double power_W = settings.get(key::array_power);
     return {{0.0, 0.5}, {power_W, 0.0}};
   }
-  const std::vector<double> tilt_rad = settings.numbers("tilt_deg", {0.0, pi, false, false});
-  const std::vector<double> power_W = settings.numbers("power_W", Range::not_negative());
+  const std::vector<double> tilt_rad = settings.get(key::tilt);
+  const std::vector<double> power_W = settings.get(key::power);
   if (tilt_rad.empty() || power_W.size() != tilt_rad.size()) {
-    throw settings.error("power_W", std::to_string(power_W.size()) + " numbers",
+    throw settings.error(key::power, std::to_string(power_W.size()) + " numbers",
                          std::to_string(tilt_rad.size()) + ", one for each tilt");
   }
   std::vector<double> x;
   for (const double tilt : tilt_rad) {
     x.push_back(std::pow(std::sin(tilt / 2), 2));
     if (x.size() > 1 && !(x.back() > x[x.size() - 2])) {
-      throw settings.error("tilt_deg", "tilts out of order", "rising tilts");
+      throw settings.error(key::tilt, "tilts out of order", "rising tilts");
     }
   }
   return {x, power_W};
@@ -118,9 +132,8 @@ MonotoneCurve read_curve(const Settings& settings) {
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
   return make_disturbance<PowerBalance>(
-      {scalar_parameter(settings, load, Range::not_negative()),
-       scalar_parameter_or(settings, array_scale, 1.0, Range::not_negative())},
-      Stage::torque, {}, read_curve(settings));
+      {scalar_parameter(settings, load), scalar_parameter(settings, array_scale)}, Stage::torque,
+      {}, read_curve(settings));
 }
 
 }  // namespace
@@ -134,18 +147,7 @@ DisturbanceKind kind() {
           {.reason_against =
                "acts on the battery alone; of the motion nothing shows it but battery_discharge"},
       .sets = "the battery's current",
-      .keys = {
-          Key::uncertain(
-              "load_W", Range::not_negative(),
-              "what is drawn: the battery gives (load − array)/`platform.battery_voltage_V`, "
-              "tapered when full or empty; nothing where a recording has the current"),
-          Key::number_or("array_power_W", 0.0, Range::not_negative(),
-                         "at zero tilt, falls with its cosine; *or*"),
-          Key::numbers("tilt_deg", {0.0, pi, false, false},
-                       "a table, rising, held beyond its end; with the next")
-              .optional(),
-          Key::numbers("power_W", Range::not_negative(), "of the array at each tilt").optional(),
-          Key::uncertain_or("array_scale", 1.0, Range::not_negative(), "factor on either")}};
+      .keys = {load, key::array_power, key::tilt, key::power, array_scale}};
 }
 
 }  // namespace photorque::kinds::power_balance

@@ -22,7 +22,7 @@
 namespace photorque::kinds::radiation_pressure {
 namespace {
 
-constexpr ScalarKey factor{"scale"};
+constexpr ScalarKey factor("scale", 1.0, {}, "factor");
 
 class RadiationPressure final : public TorqueLaw<RadiationPressure> {
  public:
@@ -48,7 +48,22 @@ class RadiationPressure final : public TorqueLaw<RadiationPressure> {
   Vec3 sun_direction_lab_;
 };
 
-constexpr VectorKey area_moment{"area_moment_m3"};
+constexpr auto area_moment = VectorKey("area_moment_m3",
+                                       "projected area times its place from the centre of mass, "
+                                       "body axes; needs `[environment.sun]`")
+                                 .optional();
+
+namespace key {
+constexpr TextKey table("table",
+                        "CSV of `torque-map` (`wrench_table_body.csv`): `tilt_deg`, "
+                        "`heading_deg` or `elevation_deg`, `azimuth_deg`; `torque_x_N_m`, "
+                        "`…_y_…`, `…_z_…`. The motion must stay within it; *or*",
+                        {.optional = true});
+constexpr Vec3Key sun_direction_lab(
+    "sun_direction_lab",
+    "towards the light, any length; only, and always, with elevation and azimuth",
+    {.optional = true});
+}  // namespace key
 
 // With the time's derivatives, where it has any.
 Lanes moved(const Lanes&, const Lanes& value, const Lanes&) {
@@ -87,7 +102,7 @@ class SunPressure final : public TorqueLaw<SunPressure> {
 
 Disturbance read_of_sun(const Settings& settings, const DisturbanceContext& context) {
   if (!context.environment.sun) {
-    throw settings.error("area_moment_m3", "no [environment.sun]", "where the Sun is");
+    throw settings.error(area_moment, "no [environment.sun]", "where the Sun is");
   }
   return make_disturbance<SunPressure>({vector_parameter(settings, area_moment)}, Stage::torque, {},
                                        *context.environment.sun);
@@ -104,43 +119,28 @@ std::vector<Parametrisation> of_experiment(const DisturbanceContext& context) {
 
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   if (settings.has(area_moment.name)) return read_of_sun(settings, context);
-  const TorqueSurface surface(read_wrench_table(file_of(settings, "table")));
+  const TorqueSurface surface(read_wrench_table(file_of(settings, key::table)));
   Vec3 sun_direction_lab = Vec3::UnitZ();
   if (surface.angles() == WrenchTable::Angles::azimuth_elevation) {
-    sun_direction_lab = settings.vector3("sun_direction_lab");
+    sun_direction_lab = settings.get(key::sun_direction_lab);
     if (!(sun_direction_lab.norm() > 0.0)) {
-      throw settings.error("sun_direction_lab", "a zero vector", "a direction");
+      throw settings.error(key::sun_direction_lab, "a zero vector", "a direction");
     }
   }
-  return make_disturbance<RadiationPressure>({scalar_parameter_or(settings, factor, 1.0)},
-                                             Stage::torque, {}, surface,
-                                             sun_direction_lab.normalized());
+  return make_disturbance<RadiationPressure>({scalar_parameter(settings, factor)}, Stage::torque,
+                                             {}, surface, sun_direction_lab.normalized());
 }
 
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "radiation_pressure",
-      .summary = "light pushes on what it falls on",
-      .read = read,
-      .screening = {.of_experiment = of_experiment,
-                    .widths = "1 m³, where `[environment.sun]` is stated"},
-      .budget = {.paper_figure = "radiation_torque_at_30_deg_N_m"},
-      .keys = {Key::text("table",
-                         "CSV of `torque-map` (`wrench_table_body.csv`): `tilt_deg`, `heading_deg` "
-                         "or `elevation_deg`, `azimuth_deg`; `torque_x_N_m`, `…_y_…`, `…_z_…`. The "
-                         "motion must stay within it; *or*")
-                   .optional(),
-               Key::uncertain_vector("area_moment_m3",
-                                     "projected area times its place from the centre of mass, "
-                                     "body axes; needs `[environment.sun]`")
-                   .optional(),
-               Key::vector3(
-                   "sun_direction_lab",
-                   "towards the light, any length; only, and always, with elevation and azimuth")
-                   .optional(),
-               Key::uncertain_or("scale", 1.0, {}, "factor")}};
+  return {.name = "radiation_pressure",
+          .summary = "light pushes on what it falls on",
+          .read = read,
+          .screening = {.of_experiment = of_experiment,
+                        .widths = "1 m³, where `[environment.sun]` is stated"},
+          .budget = {.paper_figure = "radiation_torque_at_30_deg_N_m"},
+          .keys = {key::table, area_moment, key::sun_direction_lab, factor}};
 }
 
 }  // namespace photorque::kinds::radiation_pressure

@@ -4,7 +4,7 @@
 namespace photorque::kinds::attitude_latency {
 namespace {
 
-constexpr ScalarKey latency{"latency_s"};
+constexpr ScalarKey latency("latency_s", {}, "the camera reports what was, so long ago");
 
 struct AttitudeLatency final : LawOf<AttitudeLatency> {
   template <class T>
@@ -28,7 +28,7 @@ DisturbanceKind kind() {
                                               {EffectKey::not_negative(latency.name, 0.1)}}}},
           .budget = {.reason_against = "an error of an instrument: no torque"},
           .instrument = "camera",
-          .keys = {Key::uncertain("latency_s", {}, "the camera reports what was, so long ago")}};
+          .keys = {latency}};
 }
 
 }  // namespace photorque::kinds::attitude_latency

@@ -4,7 +4,7 @@
 namespace photorque::kinds::camera_misalignment {
 namespace {
 
-constexpr VectorKey turn{"misalignment_rad"};
+constexpr VectorKey turn("misalignment_rad", "rotation vector from the true to the seen body axes");
 
 // The attitude seen is q ⊗ exp(m/2) for the rotation vector m, in body axes, from the true to the
 // seen body axes.
@@ -31,8 +31,7 @@ DisturbanceKind kind() {
                               {EffectKey::vector(turn.name, 5e-3)}}}},
           .budget = {.reason_against = "an error of an instrument: no torque"},
           .instrument = "camera",
-          .keys = {Key::uncertain_vector("misalignment_rad",
-                                         "rotation vector from the true to the seen body axes")}};
+          .keys = {turn}};
 }
 
 }  // namespace photorque::kinds::camera_misalignment

@@ -4,7 +4,7 @@
 namespace photorque::kinds::gyro_bias {
 namespace {
 
-constexpr VectorKey bias{"bias_rad_s"};
+constexpr VectorKey bias("bias_rad_s", "what it reads at rest");
 
 struct GyroBias final : LawOf<GyroBias> {
   template <class T>
@@ -30,7 +30,7 @@ DisturbanceKind kind() {
                     .per_recording = true},
       .budget = {.reason_against = "an error of an instrument: no torque"},
       .instrument = "gyro",
-      .keys = {Key::uncertain_vector("bias_rad_s", "what it reads at rest")}};
+      .keys = {bias}};
 }
 
 }  // namespace photorque::kinds::gyro_bias

@@ -4,7 +4,7 @@
 namespace photorque::kinds::gyro_misalignment {
 namespace {
 
-constexpr VectorKey turn{"misalignment_rad"};
+constexpr VectorKey turn("misalignment_rad", "rotation vector of the mounting");
 
 // reading − ω = m × ω for a mounting rotation vector m of the body axes against the gyro's: first
 // order, good to |m|²/2.
@@ -30,7 +30,7 @@ DisturbanceKind kind() {
                                           {EffectKey::vector(turn.name, 0.01)}}}},
       .budget = {.reason_against = "an error of an instrument: no torque"},
       .instrument = "gyro",
-      .keys = {Key::uncertain_vector("misalignment_rad", "rotation vector of the mounting")}};
+      .keys = {turn}};
 }
 
 }  // namespace photorque::kinds::gyro_misalignment

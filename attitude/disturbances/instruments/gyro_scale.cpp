@@ -4,7 +4,7 @@
 namespace photorque::kinds::gyro_scale {
 namespace {
 
-constexpr VectorKey scale{"scale"};
+constexpr VectorKey scale("scale", "three fractions: 0.01 reads 1 % too much");
 
 // reading − ω = s_i ω_i on each axis.
 struct GyroScale final : LawOf<GyroScale> {
@@ -32,7 +32,7 @@ DisturbanceKind kind() {
                           {EffectKey::vector(scale.name, 0.02)}}}},
       .budget = {.reason_against = "an error of an instrument: no torque"},
       .instrument = "gyro",
-      .keys = {Key::uncertain_vector("scale", "three fractions: 0.01 reads 1 % too much")}};
+      .keys = {scale}};
 }
 
 }  // namespace photorque::kinds::gyro_scale

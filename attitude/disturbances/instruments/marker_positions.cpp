@@ -10,6 +10,18 @@ namespace {
 constexpr const char* marker_key = "marker";
 constexpr const char* error_key = "error_m";
 
+namespace key {
+constexpr IntegerKey marker(marker_key, 1, 1'000'000,
+                            "which of `markers_m`, the first is 1; without it all, with "
+                            "three numbers of `error_m` for each",
+                            {.optional = true, .varies = true});
+constexpr NumbersKey error(
+    error_key, {-0.1, 0.1},
+    "where it is in truth, less where `markers_m` says, body axes; [sensors.camera] "
+    "`marker_error_m` says the same of a recording that is made",
+    {.has_error = true});
+}  // namespace key
+
 // One marker as the law needs it.
 struct SeenMarker {
   Vec3 place_m, normal;  // body axes
@@ -237,12 +249,12 @@ PlacedParameters read_error_m(const Settings& settings, size_t size, int first) 
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   const TrackingCamera& camera = camera_of(settings, context);
   const auto count = static_cast<int64_t>(camera.markers.size());
-  if (!settings.has(marker_key)) {
+  if (!settings.has(key::marker)) {
     return make_disturbance<MarkerPositions>(
         {read_error_m(settings, static_cast<size_t>(3 * count), 0)}, Stage::measurement, {}, camera,
         std::optional<size_t>{});
   }
-  const int64_t which = settings.integer(marker_key, 1, count);
+  const int64_t which = settings.get(key::marker.within(1, count));
   const double value[] = {static_cast<double>(which)};
   return make_disturbance<MarkerPositions>(
       {fixed_parameter(marker_key, value), read_error_m(settings, 3, 1)}, Stage::measurement, {},
@@ -282,16 +294,7 @@ DisturbanceKind kind() {
                         .widths = "`error_m` 0.0003 each, of every marker alone and of all; needs "
                                   "markers in [sensors.camera]"},
           .budget = {.reason_against = "an error of an instrument: no torque"},
-          .keys = {Key::integer(marker_key, 1, 1'000'000,
-                                "which of `markers_m`, the first is 1; without it all, with three "
-                                "numbers of `error_m` for each")
-                       .range_that_varies()
-                       .optional(),
-                   Key::numbers(error_key, {-0.1, 0.1},
-                                "where it is in truth, less where `markers_m` says, body axes; "
-                                "[sensors.camera] `marker_error_m` says the same of a recording "
-                                "that is made")
-                       .with_error()}};
+          .keys = {key::marker, key::error}};
 }
 
 }  // namespace photorque::kinds::marker_positions

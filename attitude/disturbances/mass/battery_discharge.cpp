@@ -12,7 +12,24 @@
 namespace photorque::kinds::battery_discharge {
 namespace {
 
-constexpr VectorKey shift{"shift_m_per_Ah"};
+constexpr auto shift =
+    VectorKey(
+        "shift_m_per_Ah",
+        "of the centre of mass per charge drawn, body axes; *or* the cells, from which it follows")
+        .optional();
+
+namespace key {
+constexpr Vec3Key electrodes("electrodes_m",
+                             "way of the lithium from charged to empty, body axes; half a cell's "
+                             "length is the upper bound, wound cells 1/100 of it");
+constexpr NumberKey charge_share("charge_share", 1.0, Range::fraction(),
+                                 "1 in series, 1/n of n in parallel");
+constexpr TablesKey cell("cell", "instead of `shift_m_per_Ah`: one table for every cell");
+constexpr ChoiceKey lithium("lithium",
+                            {{"exact", "Faraday's mass per charge"},
+                             {"rounded", "the paper's 0.3 g/Ah"}},
+                            0, "with cells: how much lithium moves");
+}  // namespace key
 
 struct BatteryDischarge final : LawOf<BatteryDischarge> {
   template <class T>
@@ -23,13 +40,13 @@ struct BatteryDischarge final : LawOf<BatteryDischarge> {
 
 PlacedParameters shift_from_cells(const Settings& settings, double platform_mass_kg) {
   std::vector<BatteryCell> cells;
-  for (const Settings& s : settings.tables("cell")) {
+  for (const Settings& s : settings.get(key::cell)) {
     BatteryCell cell;
-    cell.electrodes_body_m = s.vector3("electrodes_m");
-    cell.charge_fraction = s.number_or("charge_share", 1.0, Range::fraction());
+    cell.electrodes_body_m = s.get(key::electrodes);
+    cell.charge_fraction = s.get(key::charge_share);
     cells.push_back(cell);
   }
-  const bool rounded = settings.choice_or("lithium", {"exact", "rounded"}, 0) == 1;
+  const bool rounded = settings.get(key::lithium) == 1;
   const Vec3 shift_m_C =
       com_shift_m_C(cells, platform_mass_kg, rounded ? lithium_as_published_kg_C : lithium_kg_C);
   return fixed_parameter(shift.name, {shift_m_C.data(), 3});
@@ -37,8 +54,8 @@ PlacedParameters shift_from_cells(const Settings& settings, double platform_mass
 
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   return make_disturbance<BatteryDischarge>(
-      {settings.has("cell") ? shift_from_cells(settings, context.platform.mass_kg)
-                            : vector_parameter(settings, shift)},
+      {settings.has(key::cell) ? shift_from_cells(settings, context.platform.mass_kg)
+                               : vector_parameter(settings, shift)},
       Stage::mass);
 }
 
@@ -56,22 +73,7 @@ DisturbanceKind kind() {
                .alike = {{"mass_shift", Requirement::charge},
                          {"static_unbalance", Requirement::charge}}},
           .budget = {.paper_figure = "battery_torque_N_m"},
-          .keys = {Key::uncertain_vector("shift_m_per_Ah",
-                                         "of the centre of mass per charge drawn, body axes; *or* "
-                                         "the cells, from which it follows")
-                       .optional(),
-                   Key::tables(
-                       "cell",
-                       {Key::vector3("electrodes_m",
-                                     "way of the lithium from charged to empty, body axes; half a "
-                                     "cell's length is the upper bound, wound cells 1/100 of it"),
-                        Key::number_or("charge_share", 1.0, Range::fraction(),
-                                       "1 in series, 1/n of n in parallel")},
-                       "instead of `shift_m_per_Ah`: one table for every cell"),
-                   Key::choice_or("lithium",
-                                  {{"exact", "Faraday's mass per charge"},
-                                   {"rounded", "the paper's 0.3 g/Ah"}},
-                                  0, "with cells: how much lithium moves")}};
+          .keys = {shift, key::cell.of({key::electrodes, key::charge_share}), key::lithium}};
 }
 
 }  // namespace photorque::kinds::battery_discharge

@@ -11,8 +11,28 @@
 namespace photorque::kinds::elastic_sag {
 namespace {
 
-constexpr VectorKey diagonal{"compliance_s2"};
+constexpr VectorKey diagonal("compliance_s2");
 constexpr MatrixKey compliance{diagonal.name};
+
+namespace key {
+constexpr OtherKey compliance(
+    "compliance_s2", Key::an_array | Key::a_table,
+    "C in T = m C (g − g at zero tilt) × g, metres per m/s²: three numbers (a diagonal; "
+    "only these take ±) or a symmetric 3 × 3 matrix; *or*",
+    {.optional = true});
+constexpr Vec3Key axis("axis", {1.0, 0.0, 0.0}, "of the arms, body axes");
+constexpr NumberKey length("length_m", Range::positive(), "of one arm");
+constexpr NumberKey end_mass("end_mass_kg", Range::not_negative(), "at its end");
+constexpr NumberKey beam_mass("beam_mass_kg", Range::not_negative(), "of one arm");
+constexpr NumberKey bending_stiffness("bending_stiffness_N_m2", Range::positive(), "EI");
+constexpr TableKey dumbbell("dumbbell", "two arms, from which C follows; *or*");
+constexpr NumberKey tabletop_length("length_m", Range::positive(), "of a beam");
+constexpr NumberKey total_mass("total_mass_kg", Range::not_negative(), "of all");
+constexpr NumberKey tabletop_bending_stiffness("bending_stiffness_N_m2", Range::positive(),
+                                               "EI of one");
+constexpr IntegerKey count("count", 1, 1000, "of beams");
+constexpr TableKey tabletop("tabletop", "beams along z, from which C follows");
+}  // namespace key
 
 template <class T>
 Vec3Of<T> gravity_change(const EvaluationContext<T>& now) {
@@ -34,23 +54,19 @@ struct MatrixSag final : LawOf<MatrixSag> {
 };
 
 Mat3 read_compliance_s2(const Settings& settings, double platform_mass_kg) {
-  if (settings.has("dumbbell")) {
-    const Settings s = settings.table("dumbbell");
-    const DumbbellArms arms{s.vector3_or("axis", Vec3::UnitX()),
-                            s.number("length_m", Range::positive()),
-                            s.number("end_mass_kg", Range::not_negative()),
-                            s.number("beam_mass_kg", Range::not_negative()),
-                            s.number("bending_stiffness_N_m2", Range::positive())};
-    if (!(arms.axis_body.norm() > 0.0)) throw s.error("axis", "a zero vector", "a direction");
+  if (settings.has(key::dumbbell)) {
+    const Settings s = settings.get(key::dumbbell);
+    const DumbbellArms arms{s.get(key::axis), s.get(key::length), s.get(key::end_mass),
+                            s.get(key::beam_mass), s.get(key::bending_stiffness)};
+    if (!(arms.axis_body.norm() > 0.0)) throw s.error(key::axis, "a zero vector", "a direction");
     return sag_compliance_s2(arms, platform_mass_kg);
   }
-  if (settings.has("tabletop")) {
-    const Settings s = settings.table("tabletop");
+  if (settings.has(key::tabletop)) {
+    const Settings s = settings.get(key::tabletop);
     return sag_compliance_s2(
-        CounterbalanceBeams{s.number("length_m", Range::positive()),
-                            s.number("total_mass_kg", Range::not_negative()),
-                            s.number("bending_stiffness_N_m2", Range::positive()),
-                            static_cast<int>(s.integer("count", 1, 1000))},
+        CounterbalanceBeams{s.get(key::tabletop_length), s.get(key::total_mass),
+                            s.get(key::tabletop_bending_stiffness),
+                            static_cast<int>(s.get(key::count))},
         platform_mass_kg);
   }
   Mat3 compliance_s2 = settings.matrix3(compliance.name);
@@ -61,7 +77,7 @@ Mat3 read_compliance_s2(const Settings& settings, double platform_mass_kg) {
 }
 
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
-  const bool computed = settings.has("dumbbell") || settings.has("tabletop");
+  const bool computed = settings.has(key::dumbbell) || settings.has(key::tabletop);
   if (!computed && count_as_written(settings, diagonal.name) == 3) {
     return make_disturbance<DiagonalSag>({vector_parameter(settings, diagonal)}, Stage::mass);
   }
@@ -73,31 +89,18 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "elastic_sag",
-      .summary = "the structure bends differently at every tilt",
-      .read = read,
-      .screening =
-          {.parametrisations = {{"the structure bends under its weight, differently at every tilt",
-                                 {EffectKey::vector_not_negative(diagonal.name, 5e-7)}}},
-           .needs = Requirement::gravity},
-      .keys = {Key::other("compliance_s2", Key::an_array | Key::a_table,
-                          "C in T = m C (g − g at zero tilt) × g, metres per m/s²: three numbers "
-                          "(a diagonal; only these take ±) or a symmetric 3 × 3 matrix; *or*")
-                   .optional(),
-               Key::table("dumbbell",
-                          {Key::vector3_or("axis", Vec3::UnitX(), "of the arms, body axes"),
-                           Key::number("length_m", Range::positive(), "of one arm"),
-                           Key::number("end_mass_kg", Range::not_negative(), "at its end"),
-                           Key::number("beam_mass_kg", Range::not_negative(), "of one arm"),
-                           Key::number("bending_stiffness_N_m2", Range::positive(), "EI")},
-                          "two arms, from which C follows; *or*"),
-               Key::table("tabletop",
-                          {Key::number("length_m", Range::positive(), "of a beam"),
-                           Key::number("total_mass_kg", Range::not_negative(), "of all"),
-                           Key::number("bending_stiffness_N_m2", Range::positive(), "EI of one"),
-                           Key::integer("count", 1, 1000, "of beams")},
-                          "beams along z, from which C follows")}};
+  return {.name = "elastic_sag",
+          .summary = "the structure bends differently at every tilt",
+          .read = read,
+          .screening = {.parametrisations =
+                            {{"the structure bends under its weight, differently at every tilt",
+                              {EffectKey::vector_not_negative(diagonal.name, 5e-7)}}},
+                        .needs = Requirement::gravity},
+          .keys = {key::compliance,
+                   key::dumbbell.of({key::axis, key::length, key::end_mass, key::beam_mass,
+                                     key::bending_stiffness}),
+                   key::tabletop.of({key::tabletop_length, key::total_mass,
+                                     key::tabletop_bending_stiffness, key::count})}};
 }
 
 }  // namespace photorque::kinds::elastic_sag

@@ -13,12 +13,23 @@
 namespace photorque::kinds::flexible_mode {
 namespace {
 
-constexpr VectorKey direction{"axis"};
-constexpr ScalarKey frequency{"frequency_Hz", direction.end()};
-constexpr ScalarKey damping{"damping", frequency.end()};
-constexpr ScalarKey inertia{"inertia_kg_m2", damping.end()};
-constexpr const char* initial_angle = "initial_angle_deg";
-constexpr const char* initial_rate = "initial_rate_rad_s";
+constexpr VectorKey direction("axis", "of the mode, body axes, any length");
+constexpr ScalarKey frequency("frequency_Hz", Range::positive(), "with the body at rest",
+                              direction.end());
+constexpr ScalarKey damping("damping", Range::not_negative(), "fraction of critical damping",
+                            frequency.end());
+constexpr ScalarKey inertia(
+    "inertia_kg_m2", Range::positive(),
+    "of the appendage about the axis, below the platform's, of which it is part", damping.end());
+
+namespace key {
+constexpr NumberKey initial_angle("initial_angle_deg", 0.0, {},
+                                  "beside the body at the start of a run");
+constexpr NumberKey initial_rate("initial_rate_rad_s", {},
+                                 "its own about the axis, at the start of a run",
+                                 {.usually = "the body's: it rests beside it"});
+}  // namespace key
+
 constexpr StateKey angle{"angle_rad", 0};
 constexpr StateKey rate{"rate_rad_s", 1};
 
@@ -51,20 +62,19 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   if (!(along.norm() > 0.0)) throw settings.error(direction.name, "a zero vector", "a direction");
   const Vec3 unit = along.normalized();
   const double whole_kg_m2 = unit.dot(context.platform.inertia_kg_m2 * unit);
-  const bool has_own_rate = settings.has(initial_rate);
+  const bool has_own_rate = settings.has(key::initial_rate);
   const Range part_of_whole{0.0, whole_kg_m2, true, true};
   return make_disturbance<FlexibleMode>(
-      {axis, scalar_parameter(settings, frequency, Range::positive()),
-       scalar_parameter(settings, damping, Range::not_negative()),
+      {axis, scalar_parameter(settings, frequency), scalar_parameter(settings, damping),
        scalar_parameter(settings, inertia, part_of_whole)},
       Stage::torque,
       {{.name = angle.name,
-        .initial = settings.number_or(initial_angle, 0.0),
-        .key = initial_angle},
+        .initial = settings.get(key::initial_angle),
+        .key = std::string(key::initial_angle)},
        {.name = rate.name,
-        .initial = has_own_rate ? settings.number(initial_rate) : 0.0,
+        .initial = has_own_rate ? settings.get(key::initial_rate) : 0.0,
         .per_body_rate = has_own_rate ? Vec3(Vec3::Zero()) : unit,
-        .key = initial_rate}});
+        .key = std::string(key::initial_rate)}});
 }
 
 }  // namespace
@@ -87,16 +97,8 @@ DisturbanceKind kind() {
                            {inertia.name, {0.01}, 0.05, 0.0, EffectKey::unbounded, true, true}}}},
                     .scan = Scan::mode,
                     .fast = true},
-      .keys = {Key::uncertain_vector("axis", "of the mode, body axes, any length"),
-               Key::uncertain("frequency_Hz", Range::positive(), "with the body at rest"),
-               Key::uncertain("damping", Range::not_negative(), "fraction of critical damping"),
-               Key::uncertain(
-                   "inertia_kg_m2", Range::positive(),
-                   "of the appendage about the axis, below the platform's, of which it is part")
-                   .range_that_varies(),
-               Key::number_or(initial_angle, 0.0, {}, "beside the body at the start of a run"),
-               Key::number(initial_rate, {}, "its own about the axis, at the start of a run")
-                   .usually_is("the body's: it rests beside it")}};
+      .keys = {direction, frequency, damping, Key(inertia).range_that_varies(), key::initial_angle,
+               key::initial_rate}};
 }
 
 }  // namespace photorque::kinds::flexible_mode

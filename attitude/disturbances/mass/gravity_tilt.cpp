@@ -6,8 +6,13 @@
 namespace photorque::kinds::gravity_tilt {
 namespace {
 
-constexpr ScalarKey about_x{"tilt_rad"};
-constexpr ScalarKey about_y{about_x.name, about_x.end()};
+constexpr ScalarKey about_x("tilt_rad");
+
+namespace key {
+constexpr NumbersKey tilt("tilt_rad", {}, "[about x, about y], lab axes: turns lab −z into gravity",
+                          {.has_error = true, .size = 2});
+}  // namespace key
+constexpr ScalarKey about_y(about_x.name, about_x.end());
 
 struct GravityTilt final : LawOf<GravityTilt> {
   template <class T>
@@ -39,10 +44,7 @@ DisturbanceKind kind() {
                    {{"gravity does not point along the camera's vertical: the camera is not level",
                      {{about_x.name, {0.0, 0.0}, 5e-3}}}},
                .needs = Requirement::gravity},
-          .keys = {Key::numbers("tilt_rad", {},
-                                "[about x, about y], lab axes: turns lab −z into gravity")
-                       .with_error()
-                       .of_size(2)}};
+          .keys = {key::tilt}};
 }
 
 }  // namespace photorque::kinds::gravity_tilt

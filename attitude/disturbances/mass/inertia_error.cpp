@@ -9,6 +9,13 @@ namespace {
 // xx, yy, zz, xy, xz, yz.
 constexpr KeyOf<6> delta{"delta_kg_m2"};
 
+namespace key {
+constexpr NumbersKey delta(
+    "delta_kg_m2", {},
+    "[xx, yy, zz, xy, xz, yz], about the centre of rotation; the whole stays an inertia",
+    {.has_error = true, .size = 6});
+}  // namespace key
+
 template <class T>
 Mat3Of<T> symmetric(const T& xx, const T& yy, const T& zz, const T& xy, const T& xz, const T& yz) {
   Mat3Of<T> m;
@@ -47,23 +54,17 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "inertia_error",
-      .summary = "the moments or products of inertia are not those stated",
-      .read = read,
-      .screening =
-          {.parametrisations = {{"the moments or products of inertia differ from those stated",
-                                 {{.key = delta.name,
-                                   .start = {0, 0, 0, 0, 0, 0},
-                                   .scale = 0.03,
-                                   .times_inertia = true}}}},
-           .inertia_change_kg_m2 = inertia_change_kg_m2},
-      .keys = {
-          Key::numbers(
-              "delta_kg_m2", {},
-              "[xx, yy, zz, xy, xz, yz], about the centre of rotation; the whole stays an inertia")
-              .with_error()
-              .of_size(6)}};
+  return {.name = "inertia_error",
+          .summary = "the moments or products of inertia are not those stated",
+          .read = read,
+          .screening =
+              {.parametrisations = {{"the moments or products of inertia differ from those stated",
+                                     {{.key = delta.name,
+                                       .start = {0, 0, 0, 0, 0, 0},
+                                       .scale = 0.03,
+                                       .times_inertia = true}}}},
+               .inertia_change_kg_m2 = inertia_change_kg_m2},
+          .keys = {key::delta}};
 }
 
 }  // namespace photorque::kinds::inertia_error

@@ -7,8 +7,8 @@
 namespace photorque::kinds::mass_shift {
 namespace {
 
-constexpr ScalarKey start{"time_s"};
-constexpr VectorKey offset{"offset_m", start.end()};
+constexpr ScalarKey start("time_s", {}, "when");
+constexpr VectorKey offset("offset_m", "by what the centre of mass moves, body axes", start.end());
 
 struct MassShift final : LawOf<MassShift> {
   template <class T>
@@ -44,8 +44,7 @@ DisturbanceKind kind() {
                   EffectKey::vector(offset.name, 3e-6)}}},
            .needs = Requirement::gravity,
            .scan = Scan::instant},
-      .keys = {Key::uncertain("time_s", {}, "when"),
-               Key::uncertain_vector("offset_m", "by what the centre of mass moves, body axes")}};
+      .keys = {start, offset}};
 }
 
 }  // namespace photorque::kinds::mass_shift

@@ -62,18 +62,32 @@ BalanceCommand steps_that_remove(const Vec3& offset_body_m, const std::vector<Mo
   return command;
 }
 
+namespace {
+
+namespace moving_key {
+constexpr NumberKey moving_mass("moving_mass_kg", Range::positive(), "of each mass");
+constexpr NumberKey lead("lead_m", Range::positive(), "travel per turn of its screw");
+constexpr NumberKey step_angle("step_angle_deg", 1.8 * degree_rad, {0.0, 2.0 * pi, true, false},
+                               "of the motor");
+constexpr IntegerKey microsteps("microsteps", 1, 1, 1024, "positions per step");
+constexpr Vec3sKey directions("directions", "of travel, body axes, one per mass",
+                              {.usually = "eight: 2 x, 2 y, 4 z"});
+}  // namespace moving_key
+
+}  // namespace
+
 std::vector<MovingMass> read_moving_masses(const Settings& settings) {
   MovingMass pattern;
-  pattern.mass_kg = settings.number("moving_mass_kg", Range::positive());
-  pattern.lead_m = settings.number("lead_m", Range::positive());
-  pattern.step_angle_rad =
-      settings.number_or("step_angle_deg", 1.8 * degree_rad, {0.0, 2.0 * pi, true, false});
-  pattern.microsteps = static_cast<int>(settings.integer_or("microsteps", 1, 1, 1024));
-  if (!settings.has("directions")) return eight_masses(pattern);
+  pattern.mass_kg = settings.get(moving_key::moving_mass);
+  pattern.lead_m = settings.get(moving_key::lead);
+  pattern.step_angle_rad = settings.get(moving_key::step_angle);
+  pattern.microsteps = static_cast<int>(settings.get(moving_key::microsteps));
+  if (!settings.has(moving_key::directions)) return eight_masses(pattern);
   std::vector<MovingMass> masses;
-  for (const Vec3& direction : settings.vectors3("directions")) {
+  for (const Vec3& direction : settings.get(moving_key::directions)) {
     if (!(direction.norm() > 0.0)) {
-      throw settings.error("directions", "a direction of zero length", "directions of travel");
+      throw settings.error(moving_key::directions, "a direction of zero length",
+                           "directions of travel");
     }
     masses.push_back(pattern);
     masses.back().direction_body = direction.normalized();
@@ -82,13 +96,8 @@ std::vector<MovingMass> read_moving_masses(const Settings& settings) {
 }
 
 std::vector<Key> moving_mass_keys() {
-  return {Key::number("moving_mass_kg", Range::positive(), "of each mass"),
-          Key::number("lead_m", Range::positive(), "travel per turn of its screw"),
-          Key::number_or("step_angle_deg", 1.8 * degree_rad, {0.0, 2.0 * pi, true, false},
-                         "of the motor"),
-          Key::integer_or("microsteps", 1, 1, 1024, "positions per step"),
-          Key::vectors3("directions", "of travel, body axes, one per mass")
-              .usually_is("eight: 2 x, 2 y, 4 z")};
+  using namespace moving_key;
+  return {moving_mass, lead, step_angle, microsteps, directions};
 }
 
 }  // namespace photorque

@@ -5,8 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/settings/keys.h"
-#include "core/settings/settings.h"
+#include "core/settings/typed_keys.h"
 #include "core/transform.h"
 
 namespace photorque {

@@ -7,7 +7,9 @@
 namespace photorque::kinds::static_unbalance {
 namespace {
 
-constexpr VectorKey offset{"offset_m"};
+constexpr VectorKey offset("offset_m",
+                           "r in T = m r × g, from the centre of rotation, body axes; a platform "
+                           "that stands stable has a negative z");
 
 struct StaticUnbalance final : LawOf<StaticUnbalance> {
   template <class T>
@@ -31,9 +33,7 @@ DisturbanceKind kind() {
                    {{"the centre of mass lies elsewhere than stated, beyond the uncertainty stated",
                      {EffectKey::vector(offset.name, 5e-6)}}},
                .needs = Requirement::gravity},
-          .keys = {Key::uncertain_vector("offset_m",
-                                         "r in T = m r × g, from the centre of rotation, body "
-                                         "axes; a platform that stands stable has a negative z")}};
+          .keys = {offset}};
 }
 
 }  // namespace photorque::kinds::static_unbalance

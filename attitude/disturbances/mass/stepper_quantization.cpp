@@ -13,7 +13,7 @@ namespace photorque::kinds::stepper_quantization {
 namespace {
 
 // One number for each mass.
-constexpr ScalarKey rounding{"rounding_steps"};
+constexpr ScalarKey rounding("rounding_steps");
 
 class StepperQuantization final : public LawOf<StepperQuantization> {
  public:

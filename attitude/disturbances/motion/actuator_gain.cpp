@@ -6,7 +6,9 @@
 namespace photorque::kinds::actuator_gain {
 namespace {
 
-constexpr ScalarKey common_gain{"gain_error"};
+constexpr ScalarKey common_gain(
+    "gain_error", {},
+    "e: actuators give (1 + e) of the command; one number, or one for each body axis");
 constexpr VectorKey axis_gain{common_gain.name};
 
 struct CommonGain final : TorqueLaw<CommonGain> {
@@ -43,12 +45,7 @@ DisturbanceKind kind() {
                     {"the actuators give more or less torque than commanded, each axis its own",
                      {EffectKey::vector(common_gain.name, 0.2)}}},
                .needs = Requirement::command},
-          .keys = {
-              Key::uncertain(
-                  "gain_error", {},
-                  "e: actuators give (1 + e) of the command; one number, or one for each body axis")
-                  .one_or_several()
-                  .of_size(3)}};
+          .keys = {Key(common_gain).one_or_several().of_size(3)}};
 }
 
 }  // namespace photorque::kinds::actuator_gain

@@ -16,12 +16,30 @@
 namespace photorque::kinds::floor_vibration {
 namespace {
 
-constexpr VectorKey shaking{"acceleration_m_s2"};
-constexpr ScalarKey frequency{"frequency_Hz", shaking.end()};
-constexpr ScalarKey phase{"phase", frequency.end()};
 // Faster, and the phase loses its digits within a day: steps would see something slow.
 constexpr Range tone_Hz{0.0, 1e6};
-constexpr ScalarKey factor{"scale"};  // of a spectrum and of a record
+constexpr auto shaking = VectorKey("acceleration_m_s2",
+                                   "a of a sine in T = −m r × a, nothing without an offset of "
+                                   "mass; lab axes; with the next two; *or*")
+                             .optional();
+constexpr auto frequency =
+    ScalarKey("frequency_Hz", tone_Hz, "of a sine", shaking.end()).optional();
+constexpr ScalarKey phase("phase", 0.0, {}, "of it at t = 0, rad; or `phase_deg`", frequency.end());
+constexpr ScalarKey factor("scale", 1.0, Range::not_negative(), "factor on the last two");
+
+namespace key {
+constexpr UncertainNumberKey phase("phase_deg", {}, "instead of `phase`", {.optional = true});
+constexpr NumbersKey frequency("frequency_Hz", Range::positive(), "at least two, rising");
+constexpr NumbersKey density("density_m2_s3", Range::not_negative(),
+                             "one-sided, the same along each axis");
+constexpr IntegerKey tones("tones", 32, 1, 10000, "of which it is made");
+constexpr IntegerKey seed("seed", 1, 0, INT64_MAX, "of their phases");
+constexpr TableKey spectrum("spectrum", "a random floor; *or*");
+constexpr TextKey accelerogram_file(
+    "accelerogram_file",
+    "CSV: `t_s`, `acceleration_x_m_s2`, `…_y_…`, `…_z_…`, lab axes, zero outside",
+    {.optional = true});
+}  // namespace key
 
 template <class T>
 Vec3Of<T> shaken(const EvaluationContext<T>& now, const Vec3Of<T>& acceleration_lab_m_s2) {
@@ -84,39 +102,38 @@ class RecordedVibration final : public TorqueLaw<RecordedVibration> {
 };
 
 Disturbance read_spectrum(const Settings& settings) {
-  const Settings s = settings.table("spectrum");
-  const std::vector<double> frequency_Hz = s.numbers("frequency_Hz", Range::positive());
-  const std::vector<double> density_m2_s3 = s.numbers("density_m2_s3", Range::not_negative());
+  const Settings s = settings.get(key::spectrum);
+  const std::vector<double> frequency_Hz = s.get(key::frequency);
+  const std::vector<double> density_m2_s3 = s.get(key::density);
   if (density_m2_s3.size() != frequency_Hz.size()) {
-    throw s.error("density_m2_s3", std::to_string(density_m2_s3.size()) + " numbers",
+    throw s.error(key::density, std::to_string(density_m2_s3.size()) + " numbers",
                   std::to_string(frequency_Hz.size()) + ", one for each frequency");
   }
   std::vector<SpectrumPoint> points;
   for (size_t i = 0; i < frequency_Hz.size(); ++i) {
     points.push_back({frequency_Hz[i], Vec3::Constant(density_m2_s3[i])});
     if (i > 0 && !(frequency_Hz[i] > frequency_Hz[i - 1])) {
-      throw s.error("frequency_Hz", "frequencies out of order", "rising frequencies");
+      throw s.error(key::frequency, "frequencies out of order", "rising frequencies");
     }
   }
-  if (points.size() < 2) throw s.error("frequency_Hz", "one frequency", "at least two");
-  const auto tones = static_cast<int>(s.integer_or("tones", 32, 1, 10000));
-  const auto seed = static_cast<uint64_t>(s.integer_or("seed", 1, 0, INT64_MAX));
-  return make_disturbance<SpectrumVibration>(
-      {scalar_parameter_or(settings, factor, 1.0, Range::not_negative())}, Stage::torque, {},
-      tones_of_spectrum(points, tones, seed));
+  if (points.size() < 2) throw s.error(key::frequency, "one frequency", "at least two");
+  const auto tones = static_cast<int>(s.get(key::tones));
+  const auto seed = static_cast<uint64_t>(s.get(key::seed));
+  return make_disturbance<SpectrumVibration>({scalar_parameter(settings, factor)}, Stage::torque,
+                                             {}, tones_of_spectrum(points, tones, seed));
 }
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  if (settings.has("spectrum")) return read_spectrum(settings);
-  if (settings.has("accelerogram_file")) {
+  if (settings.has(key::spectrum)) return read_spectrum(settings);
+  if (settings.has(key::accelerogram_file)) {
     return make_disturbance<RecordedVibration>(
-        {scalar_parameter_or(settings, factor, 1.0, Range::not_negative())}, Stage::torque, {},
-        read_time_series(file_of(settings, "accelerogram_file"),
+        {scalar_parameter(settings, factor)}, Stage::torque, {},
+        read_time_series(file_of(settings, key::accelerogram_file),
                          {"acceleration_x_m_s2", "acceleration_y_m_s2", "acceleration_z_m_s2"},
                          TimeSeries::Outside::zero));
   }
   return make_disturbance<ToneVibration>({vector_parameter(settings, shaking),
-                                          scalar_parameter(settings, frequency, tone_Hz),
+                                          scalar_parameter(settings, frequency),
                                           phase_parameter(settings, phase)});
 }
 
@@ -135,25 +152,9 @@ DisturbanceKind kind() {
                     .needs = Requirement::gravity,
                     .scan = Scan::frequency,
                     .fast = true},
-      .keys = {
-          Key::uncertain_vector("acceleration_m_s2",
-                                "a of a sine in T = −m r × a, nothing without an offset of mass; "
-                                "lab axes; with the next two; *or*")
-              .optional(),
-          Key::uncertain("frequency_Hz", tone_Hz, "of a sine").optional(),
-          Key::uncertain_or("phase", 0.0, {}, "of it at t = 0, rad; or `phase_deg`"),
-          Key::uncertain("phase_deg", {}, "instead of `phase`").optional(),
-          Key::table("spectrum",
-                     {Key::numbers("frequency_Hz", Range::positive(), "at least two, rising"),
-                      Key::numbers("density_m2_s3", Range::not_negative(),
-                                   "one-sided, the same along each axis"),
-                      Key::integer_or("tones", 32, 1, 10000, "of which it is made"),
-                      Key::integer_or("seed", 1, 0, INT64_MAX, "of their phases")},
-                     "a random floor; *or*"),
-          Key::text("accelerogram_file",
-                    "CSV: `t_s`, `acceleration_x_m_s2`, `…_y_…`, `…_z_…`, lab axes, zero outside")
-              .optional(),
-          Key::uncertain_or("scale", 1.0, Range::not_negative(), "factor on the last two")}};
+      .keys = {shaking, frequency, phase, key::phase,
+               key::spectrum.of({key::frequency, key::density, key::tones, key::seed}),
+               key::accelerogram_file, factor}};
 }
 
 }  // namespace photorque::kinds::floor_vibration

@@ -8,11 +8,15 @@
 namespace photorque::kinds::periodic_torque {
 namespace {
 
-constexpr VectorKey amplitude{"torque_N_m"};
-constexpr ScalarKey frequency{"frequency_Hz", amplitude.end()};
-constexpr ScalarKey phase{"phase", frequency.end()};
 // Faster, and the phase loses its digits within a day: steps would see something slow.
 constexpr Range tone_Hz{0.0, 1e6};
+constexpr VectorKey amplitude("torque_N_m", "T₀ in T = T₀ sin(2π f t + φ), body axes");
+constexpr ScalarKey frequency("frequency_Hz", tone_Hz, "f", amplitude.end());
+constexpr ScalarKey phase("phase", 0.0, {}, "φ, rad; or `phase_deg`", frequency.end());
+
+namespace key {
+constexpr UncertainNumberKey phase("phase_deg", {}, "instead of `phase`", {.optional = true});
+}  // namespace key
 
 struct PeriodicTorque final : TorqueLaw<PeriodicTorque> {
   template <class T>
@@ -23,7 +27,7 @@ struct PeriodicTorque final : TorqueLaw<PeriodicTorque> {
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
   return make_disturbance<PeriodicTorque>({vector_parameter(settings, amplitude),
-                                           scalar_parameter(settings, frequency, tone_Hz),
+                                           scalar_parameter(settings, frequency),
                                            phase_parameter(settings, phase)});
 }
 
@@ -41,10 +45,7 @@ DisturbanceKind kind() {
                                                             -EffectKey::unbounded)}}},
                     .scan = Scan::frequency,
                     .fast = true},
-      .keys = {Key::uncertain_vector("torque_N_m", "T₀ in T = T₀ sin(2π f t + φ), body axes"),
-               Key::uncertain("frequency_Hz", tone_Hz, "f"),
-               Key::uncertain_or("phase", 0.0, {}, "φ, rad; or `phase_deg`"),
-               Key::uncertain("phase_deg", {}, "instead of `phase`").optional()}};
+      .keys = {amplitude, frequency, phase, key::phase}};
 }
 
 }  // namespace photorque::kinds::periodic_torque

@@ -6,7 +6,8 @@
 namespace photorque::kinds::rotor_momentum {
 namespace {
 
-constexpr VectorKey momentum{"momentum_N_m_s"};
+constexpr VectorKey momentum("momentum_N_m_s",
+                             "h in T = −ω × h, ω inertial; against the body, body axes");
 
 struct RotorMomentum final : TorqueLaw<RotorMomentum> {
   template <class T>
@@ -28,8 +29,7 @@ DisturbanceKind kind() {
           .screening =
               {.parametrisations = {{"a spinning part on board couples the axes like a gyroscope",
                                      {EffectKey::vector(momentum.name, 5e-3)}}}},
-          .keys = {Key::uncertain_vector(
-              "momentum_N_m_s", "h in T = −ω × h, ω inertial; against the body, body axes")}};
+          .keys = {momentum}};
 }
 
 }  // namespace photorque::kinds::rotor_momentum

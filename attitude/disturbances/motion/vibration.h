@@ -48,7 +48,7 @@ T sinusoid(const T& time_s, const T& frequency_Hz, const T& phase_rad) {
 inline PlacedParameters phase_parameter(const Settings& settings, ScalarKey phase) {
   return settings.has(phase.name)
              ? scalar_parameter(settings, phase)
-             : scalar_parameter_or(settings, ScalarKey{"phase_rad", phase.first}, 0.0);
+             : scalar_parameter_or(settings, ScalarKey("phase_rad", phase.first), 0.0);
 }
 
 }  // namespace photorque

@@ -20,10 +20,26 @@
 namespace photorque::kinds::wheel_control {
 namespace {
 
-constexpr ScalarKey gain_on_angle{"gain_N_m_per_rad"};
-constexpr ScalarKey gain_on_rate{"gain_N_m_s", gain_on_angle.end()};
-constexpr ScalarKey viscous{"viscous_N_m_s", gain_on_rate.end()};
-constexpr ScalarKey dry{"dry_N_m", viscous.end()};
+constexpr ScalarKey gain_on_angle("gain_N_m_per_rad", Range::not_negative(), "on the angle");
+constexpr ScalarKey gain_on_rate("gain_N_m_s", Range::not_negative(), "on the rate",
+                                 gain_on_angle.end());
+constexpr ScalarKey viscous("viscous_N_m_s", 0.0, Range::not_negative(), "friction of a wheel",
+                            gain_on_rate.end());
+constexpr ScalarKey dry("dry_N_m", 0.0, Range::not_negative(), "friction of a wheel",
+                        viscous.end());
+
+namespace key {
+constexpr Vec3Key target_axis("target_axis", {0.0, 0.0, 1.0}, "of the target attitude, any length");
+constexpr NumberKey target_angle("target_angle_deg", 0.0, {}, "about it");
+constexpr Vec3Key target_rate("target_rate_rad_s", {0.0, 0.0, 0.0}, "body axes");
+constexpr NumberKey wheel_inertia(
+    "wheel_inertia_kg_m2", Range::positive(),
+    "of each, part of the platform's and below the least of its diagonal", {.varies = true});
+constexpr NumberKey largest_torque("largest_torque_N_m", Range::positive(), "of a motor");
+constexpr NumberKey largest_rate("largest_rate_rad_s", Range::positive(),
+                                 "of a wheel against the body");
+}  // namespace key
+
 // Absolute axial rate of each wheel.
 constexpr std::array<StateKey, 3> wheel = {
     {{"wheel_x_rad_s", 0}, {"wheel_y_rad_s", 1}, {"wheel_z_rad_s", 2}}};
@@ -98,15 +114,16 @@ class WheelControl final : public LawOf<WheelControl> {
 
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   WheelSettings wheels;
-  const double angle_rad = settings.number_or("target_angle_deg", 0.0);
-  const Vec3 axis = settings.vector3_or("target_axis", Vec3::UnitZ());
-  if (!(axis.norm() > 0.0)) throw settings.error("target_axis", "a zero vector", "a direction");
+  const double angle_rad = settings.get(key::target_angle);
+  const Vec3 axis = settings.get(key::target_axis);
+  if (!(axis.norm() > 0.0)) throw settings.error(key::target_axis, "a zero vector", "a direction");
   wheels.lab_from_target = Quat(Eigen::AngleAxisd(angle_rad, axis.normalized()));
-  wheels.target_rate_body_rad_s = settings.vector3_or("target_rate_rad_s", Vec3::Zero());
+  wheels.target_rate_body_rad_s = settings.get(key::target_rate);
   const double min_kg_m2 = context.platform.inertia_kg_m2.diagonal().minCoeff();
-  wheels.wheel_inertia_kg_m2 = settings.number("wheel_inertia_kg_m2", {0.0, min_kg_m2, true, true});
-  wheels.largest_torque_N_m = settings.number("largest_torque_N_m", Range::positive());
-  wheels.largest_rate_rad_s = settings.number("largest_rate_rad_s", Range::positive());
+  wheels.wheel_inertia_kg_m2 =
+      settings.get(key::wheel_inertia.within({0.0, min_kg_m2, true, true}));
+  wheels.largest_torque_N_m = settings.get(key::largest_torque);
+  wheels.largest_rate_rad_s = settings.get(key::largest_rate);
   std::vector<ExtraState> states;
   for (int k = 0; k < 3; ++k) {
     states.push_back({.name = wheel[size_t(k)].name,
@@ -115,34 +132,22 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
                       .per_body_rate = Vec3::Unit(k)});
   }
   return make_disturbance<WheelControl>(
-      {scalar_parameter(settings, gain_on_angle, Range::not_negative()),
-       scalar_parameter(settings, gain_on_rate, Range::not_negative()),
-       scalar_parameter_or(settings, viscous, 0.0, Range::not_negative()),
-       scalar_parameter_or(settings, dry, 0.0, Range::not_negative())},
+      {scalar_parameter(settings, gain_on_angle), scalar_parameter(settings, gain_on_rate),
+       scalar_parameter(settings, viscous), scalar_parameter(settings, dry)},
       Stage::torque, std::move(states), wheels);
 }
 
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "wheel_control",
-          .summary = "reaction wheels turn the platform to a target attitude",
-          .read = read,
-          .screening = {.reason_against = "a controller is known to whoever switched it on; its "
-                                          "torque stands in the commands"},
-          .keys = {
-              Key::uncertain("gain_N_m_per_rad", Range::not_negative(), "on the angle"),
-              Key::uncertain("gain_N_m_s", Range::not_negative(), "on the rate"),
-              Key::vector3_or("target_axis", Vec3::UnitZ(), "of the target attitude, any length"),
-              Key::number_or("target_angle_deg", 0.0, {}, "about it"),
-              Key::vector3_or("target_rate_rad_s", Vec3::Zero(), "body axes"),
-              Key::number("wheel_inertia_kg_m2", Range::positive(),
-                          "of each, part of the platform's and below the least of its diagonal")
-                  .range_that_varies(),
-              Key::number("largest_torque_N_m", Range::positive(), "of a motor"),
-              Key::number("largest_rate_rad_s", Range::positive(), "of a wheel against the body"),
-              Key::uncertain_or("viscous_N_m_s", 0.0, Range::not_negative(), "friction of a wheel"),
-              Key::uncertain_or("dry_N_m", 0.0, Range::not_negative(), "friction of a wheel")}};
+  return {
+      .name = "wheel_control",
+      .summary = "reaction wheels turn the platform to a target attitude",
+      .read = read,
+      .screening = {.reason_against = "a controller is known to whoever switched it on; its "
+                                      "torque stands in the commands"},
+      .keys = {gain_on_angle, gain_on_rate, key::target_axis, key::target_angle, key::target_rate,
+               key::wheel_inertia, key::largest_torque, key::largest_rate, viscous, dry}};
 }
 
 }  // namespace photorque::kinds::wheel_control

@@ -8,7 +8,10 @@
 namespace photorque::kinds::wheel_momentum {
 namespace {
 
-constexpr ScalarKey common_inertia{"inertia_kg_m2"};
+constexpr ScalarKey common_inertia(
+    "inertia_kg_m2", Range::not_negative(),
+    "J in T = −J (Ω′ + ω × Ω), Ω the measured speeds (`wheel_x_rad_s` … in the recording), about a "
+    "wheel's own axis: one number for all, or three for those about body x, y and z");
 constexpr VectorKey axis_inertia{common_inertia.name};
 
 struct AlikeWheels final : TorqueLaw<AlikeWheels> {
@@ -33,8 +36,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   if (count_as_written(settings, common_inertia.name) > 0) {
     return make_disturbance<OwnWheels>({vector_parameter(settings, axis_inertia)});
   }
-  return make_disturbance<AlikeWheels>(
-      {scalar_parameter(settings, common_inertia, Range::not_negative())});
+  return make_disturbance<AlikeWheels>({scalar_parameter(settings, common_inertia)});
 }
 
 }  // namespace
@@ -51,12 +53,7 @@ DisturbanceKind kind() {
                                        .lowest = 0.0,
                                        .times_inertia = true}}}},
                .needs = Requirement::wheel},
-          .keys = {Key::uncertain("inertia_kg_m2", Range::not_negative(),
-                                  "J in T = −J (Ω′ + ω × Ω), Ω the measured speeds "
-                                  "(`wheel_x_rad_s` … in the recording), about a wheel's own axis: "
-                                  "one number for all, or three for those about body x, y and z")
-                       .one_or_several()
-                       .of_size(3)}};
+          .keys = {Key(common_inertia).one_or_several().of_size(3)}};
 }
 
 }  // namespace photorque::kinds::wheel_momentum

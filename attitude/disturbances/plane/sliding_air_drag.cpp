@@ -6,7 +6,7 @@
 namespace photorque::kinds::sliding_air_drag {
 namespace {
 
-constexpr ScalarKey coefficient{"coefficient_kg_m"};
+constexpr ScalarKey coefficient("coefficient_kg_m", Range::not_negative(), "k in F = −k |v| v");
 
 struct SlidingAirDrag final : ForceLaw<SlidingAirDrag> {
   template <class T>
@@ -16,8 +16,7 @@ struct SlidingAirDrag final : ForceLaw<SlidingAirDrag> {
 };
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<SlidingAirDrag>(
-      {scalar_parameter(settings, coefficient, Range::not_negative())});
+  return make_disturbance<SlidingAirDrag>({scalar_parameter(settings, coefficient)});
 }
 
 }  // namespace
@@ -31,7 +30,7 @@ DisturbanceKind kind() {
                                               {EffectKey::not_negative(coefficient.name, 1e-2)}}},
                         .needs = Requirement::plane},
           .budget = {.reason_against = "a force, not a torque"},
-          .keys = {Key::uncertain("coefficient_kg_m", Range::not_negative(), "k in F = −k |v| v")}};
+          .keys = {coefficient}};
 }
 
 }  // namespace photorque::kinds::sliding_air_drag

@@ -7,7 +7,7 @@
 namespace photorque::kinds::sliding_friction {
 namespace {
 
-constexpr ScalarKey coefficient{"coefficient"};
+constexpr ScalarKey coefficient("coefficient", Range::not_negative(), "μ in F = −μ m g v/|v|");
 
 struct SlidingFriction final : ForceLaw<SlidingFriction> {
   template <class T>
@@ -20,8 +20,7 @@ struct SlidingFriction final : ForceLaw<SlidingFriction> {
 };
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  Disturbance d = make_disturbance<SlidingFriction>(
-      {scalar_parameter(settings, coefficient, Range::not_negative())});
+  Disturbance d = make_disturbance<SlidingFriction>({scalar_parameter(settings, coefficient)});
   d.is_abrupt = true;
   return d;
 }
@@ -37,7 +36,7 @@ DisturbanceKind kind() {
                                               {EffectKey::not_negative(coefficient.name, 1e-3)}}},
                         .needs = Requirement::plane},
           .budget = {.reason_against = "a force, not a torque"},
-          .keys = {Key::uncertain("coefficient", Range::not_negative(), "μ in F = −μ m g v/|v|")}};
+          .keys = {coefficient}};
 }
 
 }  // namespace photorque::kinds::sliding_friction

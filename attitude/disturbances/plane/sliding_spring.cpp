@@ -6,7 +6,12 @@
 namespace photorque::kinds::sliding_spring {
 namespace {
 
-constexpr ScalarKey stiffness{"stiffness_N_per_m"};
+constexpr ScalarKey stiffness("stiffness_N_per_m", Range::not_negative(), "k in F = f − k r");
+
+namespace key {
+constexpr NumbersKey pull("pull_N", {}, "f at the lab's origin; it pulls to f/k",
+                          {.has_error = true, .size = 2});
+}  // namespace key
 constexpr KeyOf<2> pull{"pull_N", stiffness.end()};
 
 struct SlidingSpring final : ForceLaw<SlidingSpring> {
@@ -20,8 +25,7 @@ struct SlidingSpring final : ForceLaw<SlidingSpring> {
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
   return make_disturbance<SlidingSpring>(
-      {scalar_parameter(settings, stiffness, Range::not_negative()),
-       array_parameter(settings, pull.name, 2, pull.first)});
+      {scalar_parameter(settings, stiffness), array_parameter(settings, pull.name, 2, pull.first)});
 }
 
 }  // namespace
@@ -36,10 +40,7 @@ DisturbanceKind kind() {
                                                {pull.name, {0.0, 0.0}, 1e-2}}}},
                         .needs = Requirement::plane},
           .budget = {.reason_against = "a force, not a torque"},
-          .keys = {Key::uncertain("stiffness_N_per_m", Range::not_negative(), "k in F = f − k r"),
-                   Key::numbers("pull_N", {}, "f at the lab's origin; it pulls to f/k")
-                       .of_size(2)
-                       .with_error()}};
+          .keys = {stiffness, key::pull}};
 }
 
 }  // namespace photorque::kinds::sliding_spring

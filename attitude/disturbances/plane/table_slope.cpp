@@ -9,6 +9,11 @@ namespace {
 
 constexpr KeyOf<2> slope{"slope_rad"};
 
+namespace key {
+constexpr NumbersKey slope("slope_rad", {}, "by which the table rises along lab x and y; small",
+                           {.has_error = true, .size = 2});
+}  // namespace key
+
 struct TableSlope final : ForceLaw<TableSlope> {
   template <class T>
   Vec3Of<T> force(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
@@ -24,18 +29,15 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "table_slope",
-      .summary = "the table is not level: a constant acceleration",
-      .read = read,
-      .screening = {.parametrisations = {{"the table is not level, or a steady draught or "
-                                          "another constant force acts, which looks the same",
-                                          {{slope.name, {0.0, 0.0}, 1e-3}}}},
-                    .needs = Requirement::plane},
-      .budget = {.reason_against = "a force, not a torque"},
-      .keys = {Key::numbers("slope_rad", {}, "by which the table rises along lab x and y; small")
-                   .of_size(2)
-                   .with_error()}};
+  return {.name = "table_slope",
+          .summary = "the table is not level: a constant acceleration",
+          .read = read,
+          .screening = {.parametrisations = {{"the table is not level, or a steady draught or "
+                                              "another constant force acts, which looks the same",
+                                              {{slope.name, {0.0, 0.0}, 1e-3}}}},
+                        .needs = Requirement::plane},
+          .budget = {.reason_against = "a force, not a torque"},
+          .keys = {key::slope}};
 }
 
 }  // namespace photorque::kinds::table_slope

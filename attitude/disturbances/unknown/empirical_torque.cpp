@@ -36,7 +36,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
       shape.coefficients() == 1 && count_as_written(settings, empirical_coefficients) == 0;
   append(d.parameters,
          is_one_number
-             ? scalar_parameter(settings, ScalarKey{empirical_coefficients, first})
+             ? scalar_parameter(settings, ScalarKey(empirical_coefficients, first))
              : array_parameter(settings, empirical_coefficients, shape.coefficients(), first));
   return d;
 }

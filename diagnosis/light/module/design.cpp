@@ -1,16 +1,9 @@
 #include "diagnosis/light/module/design.h"
 
+#include "photovoltaics/fit/rated_keys.h"
+
 namespace photorque {
 namespace {
-
-RatedPoint rated_point(const Settings& s) {
-  return {s.number_or("irradiance_W_m2", 1000.0, Range::positive()),
-          s.number_or("temperature_K", 298.15, {1.0, 1000.0}),
-          s.number("short_circuit_A", Range::positive()),
-          s.number("open_circuit_V", Range::positive()),
-          s.number("maximum_A", Range::positive()),
-          s.number("maximum_V", Range::positive())};
-}
 
 void read_temperatures(const Settings& s, ModuleDesign& design) {
   const double usual_K = design.datasheet.empty() ? 298.15 : design.datasheet.front().temperature_K;
@@ -89,11 +82,10 @@ ModuleDesign read_module(const Settings& root, const std::filesystem::path& fold
     }
   } else {
     for (const Settings& point : s.tables("datasheet")) {
-      design.datasheet.push_back(rated_point(point));
+      design.datasheet.push_back(read_rated_point(point));
       point.finish();
     }
-    design.slopes.short_circuit_1_K = s.number_or("short_circuit_slope_per_K", 5e-4);
-    design.slopes.open_circuit_1_K = s.number_or("open_circuit_slope_per_K", -3e-3);
+    design.slopes = read_rated_slopes(s);
   }
   read_temperatures(s, design);
   if (s.has("current_noise_A")) {

@@ -5,7 +5,7 @@
 namespace photorque::kinds::added_torque {
 namespace {
 
-constexpr ScalarKey growth{"torque_N_m"};
+constexpr ScalarKey growth("torque_N_m", {}, "per ampere-hour drawn");
 
 struct AddedTorque final : TorqueLaw<AddedTorque> {
   template <class T>
@@ -27,7 +27,8 @@ DisturbanceKind kind() {
           .read = read,
           .screening = {.parametrisations = {{"something grows with the charge drawn",
                                               {EffectKey::number(growth.name, 1e-4)}}},
-                        .needs = Requirement::charge}};
+                        .needs = Requirement::charge},
+          .keys = {growth}};
 }
 
 }  // namespace photorque::kinds::added_torque

@@ -1,0 +1,15 @@
+#include "tools/keys/fit.h"
+
+#include "photovoltaics/fit/rated_keys.h"
+
+namespace photorque {
+
+Key fit_table() {
+  using namespace fit_key;
+  return fit.of(joined({{curves, datasheet.of(rated_point_keys()), cells_in_series, temperature},
+                        rated_slope_keys(),
+                        {rounding_current, rounding_voltage, tolerance, current_noise,
+                         voltage_noise, correlation_points, substrings, even_voltage_steps}}));
+}
+
+}  // namespace photorque

@@ -1,0 +1,45 @@
+// [fit], which the verb `fit-cell` reads.
+#pragma once
+
+#include "core/settings/typed_keys.h"
+
+namespace photorque {
+
+namespace fit_key {
+inline constexpr TextsKey curves(
+    "curves",
+    "files of `voltage_V,current_A` (or `V,I`); several are repeats under the same light; *or*",
+    {.optional = true});
+inline constexpr TablesKey datasheet("datasheet", "one to several points at one temperature");
+inline constexpr IntegerKey cells_in_series("cells_in_series", 1, 1, 2000, "of the device");
+inline constexpr NumberKey temperature(
+    "temperature_K", 298.15, {1.0, 1000.0},
+    "of the curves; with a datasheet it belongs to each of its points");
+inline constexpr NumberKey rounding_current("rounding_A", Range::not_negative(),
+                                            "step of a datasheet's currents",
+                                            {.usually = "the last decimal that any of them has"});
+inline constexpr NumberKey rounding_voltage("rounding_V", Range::not_negative(),
+                                            "step of its voltages",
+                                            {.usually = "the last decimal that any of them has"});
+inline constexpr NumberKey tolerance("tolerance", 0.0, {0.0, 0.5},
+                                     "a fraction of every figure of it, one sigma");
+inline constexpr NumberKey current_noise(
+    "current_noise", 1e-3, {1e-12, 1.0},
+    "of curves: fraction of each reading (with `substrings`, of the short-circuit current)");
+inline constexpr NumberKey voltage_noise("voltage_noise", 5e-4, {1e-12, 1.0},
+                                         "fraction of each reading");
+inline constexpr NumberKey correlation_points(
+    "correlation_points", 0.0, Range::not_negative(),
+    "readings over which the noise of the current falls off (slow drift of the light)");
+inline constexpr IntegerKey substrings(
+    "substrings", 0, 0, 100,
+    "instead: one curve of a partly shaded string; 0: a whole string in even light");
+inline constexpr FlagKey even_voltage_steps(
+    "even_voltage_steps", false,
+    "repeats of one even ramp: averages the noise of the voltages away");
+inline constexpr TableKey fit("fit", "parameters of cells from measurements");
+}  // namespace fit_key
+
+Key fit_table();
+
+}  // namespace photorque

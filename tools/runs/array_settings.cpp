@@ -1,0 +1,141 @@
+// [array] beyond the array itself: what `power` reports of it.
+#include <algorithm>
+
+#include "core/constants.h"
+#include "photovoltaics/array/keys.h"
+#include "tools/runs/array_report.h"
+
+namespace photorque {
+namespace {
+
+constexpr Range efficiency{0.0, 1.0, true, false};
+
+namespace chain_key {
+constexpr NumberKey wall_plug("wall_plug_efficiency", efficiency, "light over mains",
+                              {.usually = "left out"});
+constexpr NumberKey collimator("collimator_efficiency", efficiency, "of the lamps' optics",
+                               {.usually = "left out"});
+constexpr NumberKey converter("converter_efficiency", efficiency, "after the array",
+                              {.usually = "left out"});
+}  // namespace chain_key
+
+namespace target_key {
+constexpr NumberKey power("power_W", Range::positive(), "what the array is to give",
+                          {.usually = "`array_power_W` of `[[published]]` at zero tilt"});
+constexpr NumberKey cell_efficiency("efficiency", efficiency, "of light on the cells",
+                                    {.usually = "`array_efficiency` of `[[published]]`"});
+}  // namespace target_key
+
+namespace motion_key {
+constexpr NumbersKey time("time_s", {}, "instants, rising, at least two",
+                          {.usually = "none: for `propagate`"});
+constexpr NumbersKey tilt("tilt_deg", {-pi, pi}, "with `time_s`: one per instant",
+                          {.optional = true});
+constexpr NumbersKey heading("heading_deg", {-2.0 * pi, 2.0 * pi}, "one per instant",
+                             {.usually = "0"});
+}  // namespace motion_key
+
+namespace report_key {
+constexpr TextKey receiver("receiver", "the map whose light the cells take",
+                           {.usually = "the first `flux_map`"});
+constexpr TableKey chain("chain", "stages before and after the array in the list of losses");
+constexpr TableKey target(
+    "target",
+    "what these require: EQE · V_oc · FF, light on the cells, what each known cell reaches, how "
+    "the power changes with light, temperature, resistances; and what the published powers at "
+    "other tilts need beyond the cosine");
+constexpr TableKey tracker(
+    "tracker", "four trackers on the exact curves while the platform moves through these instants");
+constexpr TableKey day("day",
+                       "array and battery over time; with the first tracker's efficiency if there "
+                       "is an `[array.tracker]`");
+constexpr IntegerKey most_tried(
+    "most_tried", 2000, 1, 10000000,
+    "assignments of cells to strings: every one if there are few, else exchanges of pairs");
+constexpr TableKey layout("layout",
+                          "a better wiring for the attitudes of the motion, with the bound that "
+                          "none exceeds. Not with `cross_tied`");
+constexpr TableKey array("array", "cells and wiring on a flux map");
+}  // namespace report_key
+
+std::optional<double> published_upright(const std::vector<PublishedFigure>& figures,
+                                        const std::string& quantity) {
+  for (const PublishedFigure& figure : figures) {
+    if (figure.quantity == quantity && figure.tilt_rad < same_tilt_rad) return figure.value;
+  }
+  return std::nullopt;
+}
+
+double given_or_published(const Settings& target, const NumberKey& key,
+                          const std::optional<double>& published) {
+  return published ? target.get_or(key, *published) : target.get(key);
+}
+
+ArrayTarget read_array_target(const Settings& target,
+                              const std::vector<PublishedFigure>& published) {
+  return {
+      given_or_published(target, target_key::power, published_upright(published, "array_power_W")),
+      given_or_published(target, target_key::cell_efficiency,
+                         published_upright(published, "array_efficiency"))};
+}
+
+std::optional<double> stage_of(const Settings& chain, const NumberKey& key) {
+  if (!chain.has(key)) return {};
+  return chain.get(key);
+}
+
+ArrayReport::Motion read_motion(const Settings& s) {
+  using namespace motion_key;
+  ArrayReport::Motion motion;
+  motion.trackers = read_trackers(s);
+  // Without instants it is for `propagate`, where the platform moves by itself.
+  if (!s.has(motion_key::time) && !s.has(tilt)) return motion;
+  motion.time_s = s.get(motion_key::time);
+  motion.tilt_rad = s.get(tilt);
+  motion.heading_rad =
+      s.has(heading) ? s.get(heading) : std::vector<double>(motion.time_s.size(), 0.0);
+  const bool rises =
+      std::ranges::adjacent_find(motion.time_s, std::greater_equal<>()) == motion.time_s.end();
+  if (motion.time_s.size() < 2 || !rises) {
+    throw s.error(motion_key::time, std::to_string(motion.time_s.size()) + " instants",
+                  "at least two, ascending");
+  }
+  if (motion.tilt_rad.size() != motion.time_s.size() ||
+      motion.heading_rad.size() != motion.time_s.size()) {
+    throw s.error(tilt, std::to_string(motion.tilt_rad.size()) + " angles",
+                  std::to_string(motion.time_s.size()) + ", one per instant");
+  }
+  return motion;
+}
+
+}  // namespace
+
+ArrayReport read_array_report(const Settings& array, std::vector<PublishedFigure> published) {
+  using namespace report_key;
+  ArrayReport report;
+  report.published = std::move(published);
+  if (array.has(chain)) {
+    const Settings stages = array.get(chain);
+    report.chain = {stage_of(stages, chain_key::wall_plug), stage_of(stages, chain_key::collimator),
+                    stage_of(stages, chain_key::converter)};
+  }
+  if (array.has(target)) report.target = read_array_target(array.get(target), report.published);
+  if (array.has(tracker)) report.motion = read_motion(array.get(tracker));
+  if (array.has(day)) report.day = read_day(array.get(day));
+  if (array.has(layout)) report.layout_most_tried = array.get(layout).get(most_tried);
+  return report;
+}
+
+Key array_table() {
+  using namespace report_key;
+  const std::vector<Key> motion = {motion_key::time, motion_key::tilt, motion_key::heading};
+  return report_key::array.of(
+      joined({{receiver},
+              array_design_keys(),
+              {chain.of({chain_key::wall_plug, chain_key::collimator, chain_key::converter}),
+               target.of({target_key::power, target_key::cell_efficiency}),
+               tracker.of(joined({motion, tracker_keys()})), day.of(day_keys()),
+               layout.of({most_tried})}}));
+}
+
+}  // namespace photorque
