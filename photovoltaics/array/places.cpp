@@ -244,7 +244,7 @@ std::optional<CellPlaces> read_cell_places(const Settings& array, const Scene& s
     if (array.has(key)) throw array.error(key, "places of the cells too", "one of the two");
   }
   if (mesh) {
-    array.get(array_key::cells);
+    array.choice(array_key::cells, {"mesh"});
     return places_from_mesh(scene, grid);
   }
   std::vector<CellRectangle> cells;
