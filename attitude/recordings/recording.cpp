@@ -62,12 +62,12 @@ std::optional<double> to_number(std::string_view cell) {
 }
 
 // "0,25": a number of somebody whose numbers have a comma.
-bool has_decimal_comma(std::string_view cell) {
+std::optional<double> with_decimal_comma(std::string_view cell) {
   const size_t comma = cell.find(',');
-  if (comma == std::string_view::npos) return false;
+  if (comma == std::string_view::npos) return std::nullopt;
   std::string with_point(cell);
   with_point[comma] = '.';
-  return number_in(with_point).has_value();
+  return number_in(with_point);
 }
 
 // One column of the file: the channel it fills and the factor to SI.
@@ -132,7 +132,7 @@ class RecordingReader {
     std::string_view line;
     for (int i = 0; i < max_preamble_lines && lines_.next(line); ++i) {
       if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
-      for (const char separator : {',', ';', '\t'}) {
+      for (const char separator : {',', ';', '\t', ' '}) {
         if (take_header(line, separator)) return;
       }
       ++recording_.report.preamble_lines;
@@ -180,10 +180,9 @@ class RecordingReader {
       }
       return;
     }
-    const std::optional<double> time = to_number(cells_[time_column_]);
+    const std::optional<double> time = number_of(cells_[time_column_]);
     const double time_s = time.value_or(empty_cell) * columns_[time_column_].to_SI;
     if (!std::isfinite(time_s)) {  // of hours, say, as seconds
-      if (!time) require_decimal_points(time_column_);
       if (++report.rows_without_time == 1) {
         first_without_time_ = error("t_s", in_quotes(cells_[time_column_]), "a number");
       }
@@ -206,9 +205,8 @@ class RecordingReader {
     size_t channel = 0;
     for (size_t i = 0; i < cells_.size(); ++i) {
       if (i == time_column_) continue;
-      std::optional<double> value = to_number(cells_[i]);
+      std::optional<double> value = number_of(cells_[i]);
       if (!value) {
-        require_decimal_points(i);
         ++report.unreadable_cells;
         value = empty_cell;
       } else if (std::isnan(*value)) {
@@ -221,10 +219,13 @@ class RecordingReader {
     }
   }
 
-  // Emptied like other cells without a number, such numbers would leave a recording of whole ones.
-  void require_decimal_points(size_t column) const {
-    if (!has_decimal_comma(cells_[column])) return;
-    throw error(columns_[column].name, in_quotes(cells_[column]), "a decimal point, no comma");
+  // Where commas do not separate cells they may stand in numbers.
+  std::optional<double> number_of(std::string_view cell) {
+    std::optional<double> number = to_number(cell);
+    if (number || separator_ == ',') return number;
+    number = with_decimal_comma(cell);
+    recording_.report.has_decimal_commas = recording_.report.has_decimal_commas || number;
+    return number;
   }
 
   // A few damaged rows are left out; where most are, something else is wrong with the file.

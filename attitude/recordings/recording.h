@@ -50,6 +50,7 @@ struct RecordingReport {
   double median_interval_s = 0.0;
   double jitter_s = 0.0;                    // standard deviation of the intervals, gaps left out
   std::map<std::string, int64_t> outliers;  // cells by channel
+  bool has_decimal_commas = false;          // "0,25" between other separators, read as 0.25
   std::set<std::string> absent_columns;     // that the options name and the file has not
 
   // A few lines for people; only what occurred.

@@ -44,6 +44,10 @@ std::vector<std::string_view> lines_of(std::string_view text) {
 
 void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells) {
   cells.clear();
+  if (separator == ' ') {
+    for (const std::string_view word : words_of(line)) cells.push_back(unquoted(word));
+    return;
+  }
   for (;;) {
     const size_t end = line.find(separator);
     cells.push_back(unquoted(line.substr(0, end)));

@@ -24,7 +24,7 @@ std::string_view unquoted(std::string_view text);
 std::vector<std::string_view> lines_of(std::string_view text);
 
 // The cells between separators, each unquoted(); one more than there are separators. A separator
-// inside quotes separates all the same.
+// inside quotes separates all the same. Where blanks separate, any number of them does.
 std::vector<std::string_view> cells_of(std::string_view line, char separator = ',');
 // The same into `cells`, for readers of millions of lines.
 void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells);

@@ -89,6 +89,9 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
     refuse_jump_of_clock(r.recording, r.name);
     Segments segments = observe_segments(r.recording, r.name, platform, options.max_blocks);
     say_cuts(r.name, segments, warnings);
+    if (r.recording.report.has_decimal_commas) {
+      warnings.push_back(r.name + ": its numbers have decimal commas, read as points");
+    }
     say_unused(r, nominal, options.read_elsewhere, warnings);
     say_assumed_sequence(r, platform, warnings);
     if (MotionColumns(r.recording, platform, r.name).has_scalar(Scalar::tilt)) {

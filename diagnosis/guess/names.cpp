@@ -20,11 +20,22 @@ struct FileHead {
   std::vector<std::vector<double>> rows;
 };
 
-std::optional<std::vector<double>> numbers_of(const std::vector<std::string_view>& cells) {
+// With a comma for a point, where that cannot separate cells.
+std::optional<double> number_of_cell(std::string_view cell, char separator) {
+  const std::optional<double> number = number_in(cell);
+  const size_t comma = cell.find(',');
+  if (number || separator == ',' || comma == std::string_view::npos) return number;
+  std::string with_point(cell);
+  with_point[comma] = '.';
+  return number_in(with_point);
+}
+
+std::optional<std::vector<double>> numbers_of(const std::vector<std::string_view>& cells,
+                                              char separator) {
   std::vector<double> numbers;
   bool any = false;
   for (const std::string_view cell : cells) {
-    const std::optional<double> number = number_in(cell);
+    const std::optional<double> number = number_of_cell(cell, separator);
     if (!number && !cell.empty() && cell != "nan" && cell != "NaN" && cell != "NA") {
       return std::nullopt;
     }
@@ -54,7 +65,7 @@ std::optional<FileHead> head_with(const std::vector<std::string>& lines, char se
   std::vector<std::string_view> cells, before;
   for (size_t i = 0; i < lines.size(); ++i) {
     split_cells(lines[i], separator, cells);
-    if (!numbers_of(cells)) {
+    if (!numbers_of(cells, separator)) {
       before = cells;
       continue;
     }
@@ -63,7 +74,7 @@ std::optional<FileHead> head_with(const std::vector<std::string>& lines, char se
     head.header.assign(before.begin(), before.end());
     for (; i < lines.size(); ++i) {
       split_cells(lines[i], separator, cells);
-      const auto row = numbers_of(cells);
+      const auto row = numbers_of(cells, separator);
       if (row && row->size() == head.header.size()) head.rows.push_back(*row);
     }
     return head;
@@ -73,26 +84,29 @@ std::optional<FileHead> head_with(const std::vector<std::string>& lines, char se
 
 FileHead head_of(const std::filesystem::path& path) {
   const std::vector<std::string> lines = first_lines(path);
-  for (const char separator : {',', ';', '\t'}) {
+  for (const char separator : {',', ';', '\t', ' '}) {
     if (auto head = head_with(lines, separator)) return *std::move(head);
   }
-  // Numbers such as "0,25" between semicolons.
-  const bool commas = std::any_of(lines.begin(), lines.end(), [](const std::string& line) {
-    return line.find(';') != std::string::npos && line.find(',') != std::string::npos &&
-           std::isdigit(static_cast<unsigned char>(line.front())) != 0;
-  });
-  if (commas) {
-    throw InputError({path.string()}, "rows", "numbers with decimal commas",
-                     "decimal points (sed 's/,/./g' makes them)");
-  }
   std::vector<std::string_view> cells;
-  if (!lines.empty()) split_cells(lines.front(), ',', cells);
-  if (numbers_of(cells)) {
+  for (const char separator : {',', ';', '\t', ' '}) {
+    if (lines.empty()) break;
+    split_cells(lines.front(), separator, cells);
+    if (!numbers_of(cells, separator)) continue;
+    // Of as many columns: time first, then what moves.
+    std::string names = "t_s";
+    const char* const usual[] = {"x_m", "y_m", "angle_rad"};
+    for (size_t k = 1; k < cells.size(); ++k) {
+      names += separator;
+      names += cells.size() == 2 ? "angle_rad"
+               : k < 4           ? usual[k - 1]
+                                 : "other_" + std::to_string(k);
+    }
     throw InputError({path.string(), 1}, "header", "numbers in the first line",
-                     "a line above them that names the columns, such as t_s,gyro_z_rad_s");
+                     "a line above them that names the columns (sed -i '1i " + names + "' " +
+                         path.filename().string() + " puts one there; write what they are)");
   }
   throw InputError({path.string()}, "header",
-                   "no rows of numbers between commas, semicolons or tabs",
+                   "no rows of numbers between commas, semicolons, tabs or blanks",
                    "a table with a header that names its columns");
 }
 
@@ -102,13 +116,30 @@ struct UnitWord {
 
 // As people write units; longest first where one is a part of another.
 constexpr UnitWord unit_words[] = {
-    {"rad/s", "rad_s"}, {"rad s-1", "rad_s"}, {"deg/s", "deg_s"}, {"°/s", "deg_s"},
-    {"dps", "deg_s"},   {"rpm", "rpm"},       {"m/s^2", "m_s2"},  {"m/s2", "m_s2"},
-    {"m/s²", "m_s2"},   {"µs", "us"},         {"us", "us"},       {"ms", "ms"},
-    {"sec", "s"},       {"s", "s"},           {"min", "min"},     {"rad", "rad"},
-    {"deg", "deg"},     {"°", "deg"},         {"mrad", "mrad"},   {"µT", "uT"},
-    {"uT", "uT"},       {"nT", "nT"},         {"T", "T"},         {"arcsec", "arcsec"},
-    {"mm", "mm"},       {"cm", "cm"},         {"m", "m"},
+    {"rad/s", "rad_s"},   {"rad s-1", "rad_s"},
+    {"deg/s", "deg_s"},   {"°/s", "deg_s"},
+    {"dps", "deg_s"},     {"rpm", "rpm"},
+    {"m/s^2", "m_s2"},    {"m/s2", "m_s2"},
+    {"m/s²", "m_s2"},     {"µs", "us"},
+    {"us", "us"},         {"ms", "ms"},
+    {"sec", "s"},         {"s", "s"},
+    {"min", "min"},       {"rad", "rad"},
+    {"deg", "deg"},       {"°", "deg"},
+    {"mrad", "mrad"},     {"µT", "uT"},
+    {"uT", "uT"},         {"nT", "nT"},
+    {"T", "T"},           {"arcsec", "arcsec"},
+    {"mm", "mm"},         {"cm", "cm"},
+    {"m", "m"},           {"seconds", "s"},
+    {"second", "s"},      {"milliseconds", "ms"},
+    {"minutes", "min"},   {"degrees", "deg"},
+    {"degree", "deg"},    {"radians", "rad"},
+    {"radian", "rad"},    {"radians/s", "rad_s"},
+    {"rad/sec", "rad_s"}, {"degrees/s", "deg_s"},
+    {"deg/sec", "deg_s"}, {"degrees/sec", "deg_s"},
+    {"rev/min", "rpm"},   {"r/min", "rpm"},
+    {"RPM", "rpm"},       {"U/min", "rpm"},
+    {"meters", "m"},      {"metres", "m"},
+    {"meter", "m"},       {"metre", "m"},
 };
 
 // The unit in brackets behind a name, and the name without it.
@@ -186,7 +217,9 @@ MeantQuantity quantity_of(const std::vector<std::string>& words) {
   };
   const std::string axis = axis_of(words);
   if (any("wheel", "flywheel", "rotor")) return {"wheel_" + (axis.empty() ? "z" : axis), "rad_s"};
-  if (any("time", "sec", "elapsed", "clock") || (words.size() == 1 && words[0] == "t")) {
+  // In English, German, French, Spanish and Italian, letters with accents left out.
+  if (any("time", "sec", "elapsed", "clock", "zeit", "temps", "tiempo", "tempo") ||
+      (words.size() == 1 && words[0] == "t")) {
     return {"t", "s"};
   }
   if (any("magnitude", "norm", "modulus") &&
@@ -194,8 +227,8 @@ MeantQuantity quantity_of(const std::vector<std::string>& words) {
     return {"rate_magnitude", "rad_s"};
   }
   // A coordinate: x, or "pos_x", "puck x".
-  if (is_one_of(axis, {"x", "y"}) &&
-      (words == std::vector<std::string>{axis} || any("pos", "coord", "place", "puck", "cent"))) {
+  if (is_one_of(axis, {"x", "y"}) && (words == std::vector<std::string>{axis} ||
+                                      any("pos", "coord", "place", "puck", "cent", "ort"))) {
     return {axis, "m"};
   }
   if (any("acc")) return {axis.empty() ? "" : "accel_" + axis, "m_s2"};
@@ -211,8 +244,12 @@ MeantQuantity quantity_of(const std::vector<std::string>& words) {
   }
   if (any("azimuth")) return {"heading", "rad"};
   if (any("inclination")) return {"tilt", "rad"};
-  if (any("angle", "theta", "encoder", "phi")) return {"angle", "rad"};
-  if (any("rate", "speed", "rpm", "velocity")) return {"rate", "rad_s"};
+  if (any("angle", "theta", "encoder", "phi", "winkel", "angul", "ngulo", "angolo")) {
+    return {"angle", "rad"};
+  }
+  if (any("rate", "speed", "rpm", "veloc", "drehzahl", "vitesse", "winkelgeschw")) {
+    return {"rate", "rad_s"};
+  }
   return {};
 }
 

@@ -267,10 +267,20 @@ TEST_F(Guess, FilesThatCannotBeReadNameTheCure) {
     }
     return "";
   };
-  EXPECT_THAT(refusal("t_s;gyro_z_rad_s\n0,0;1,5\n0,1;1,6\n"), HasSubstr("decimal commas"));
+  EXPECT_THAT(refusal("0,0;1,5;2\n0,1;1,6;3\n"), HasSubstr("sed -i '1i t_s;x_m;y_m' bad.csv"));
   EXPECT_THAT(refusal("0,1\n0.1,2\n"), HasSubstr("a line above them that names the columns"));
   EXPECT_THAT(refusal(std::string("\xff\xfet\0_\0s\0", 8)), HasSubstr("UTF-16"));
   EXPECT_THAT(refusal("nothing here\n"), HasSubstr("no rows of numbers"));
+}
+
+// Tables as programs of other countries and calculators write them.
+TEST_F(Guess, BlanksAndDecimalCommasAreRead) {
+  const fs::path blanks = write("blanks.txt", "time  theta\n 0.0   1.5\n 0.1   1.6\n");
+  EXPECT_EQ(guess_columns(blanks)[1].channel, "angle_rad");
+  const fs::path german =
+      write("messung.csv", "Messung vom Montag\nZeit (s);Winkel (degrees)\n0,0;1,5\n0,1;1,6\n");
+  EXPECT_EQ(guess_columns(german)[0].channel, "t_s");
+  EXPECT_EQ(guess_columns(german)[1].channel, "angle_deg");
 }
 
 // The experiment that is guessed of a wheel names what acts on it, in words of another maker.
