@@ -37,11 +37,6 @@ class Rounds {
     bool scan = false, scans_base = false;
     for (int round = 0; round < limits_.search.max_rounds; ++round) {
       std::vector<Trial> found = scan ? scanned(at) : predicted(at, round == 0);
-      // What swings has a part that slow effects stand in for: both are tried before one of them
-      // is built on.
-      if (round == 0 && scans && set_.pieces == 1 && is_worth_a_scan(at)) {
-        for (Trial& t : scanned(at)) found.push_back(std::move(t));
-      }
       // Slow effects may stand in for one that is fast: once the scan also begins without them.
       if (scan && !scans_base && may_be_stand_ins(at)) {
         scans_base = true;
