@@ -101,7 +101,9 @@ double gain_sigma(const std::vector<double>& chi2_of_worse,
     const double gain = 0.5 * (chi2_of_worse[i] - chi2_of_better[i]);
     if (!std::isnan(gain)) gains.push_back(gain);
   }
-  return inference::mean_sigma(std::move(gains));
+  const double by_ranks = inference::signed_rank_sigma(gains),
+               by_mean = inference::mean_sigma(std::move(gains));
+  return std::abs(by_ranks) > std::abs(by_mean) ? by_ranks : by_mean;
 }
 
 }  // namespace photorque

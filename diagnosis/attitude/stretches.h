@@ -39,8 +39,9 @@ class Stretches {
   std::vector<Stretch> stretches_;
 };
 
-// By how many standard errors one explanation predicts stretches better than another: of the mean
-// difference of their log scores, as those of normal numbers (inference/whiteness.h).
+// By how many standard errors one explanation predicts stretches better than another: of the
+// differences of their log scores, by their mean or, where they differ in size by orders, by their
+// ranks, whichever says more (inference/whiteness.h).
 double gain_sigma(const std::vector<double>& chi2_of_worse,
                   const std::vector<double>& chi2_of_better);
 
