@@ -64,6 +64,34 @@ TEST(Machines, AWheelThatCoastsDownIsNamedByItsDryTorqueAndItsDrag) {
   for (const Alternative& a : d.alternatives) EXPECT_THAT(a.kinds, Not(Contains("room_draft")));
 }
 
+// The same wheel with a hum that no law has, beside which the two names stand. Each gate that they
+// pass takes them away where it asks for what nothing can give.
+TEST(Machines, NamesBesideTheRestPassEveryGate) {
+  constexpr double dry = 0.01, form = 1.2e-4, start_rad_s = 30.0;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0.0, 0.003);
+  Channel rate{"gyro_z_rad_s", {}};
+  for (int i = 0; i < 1200; ++i) {
+    rate.values.push_back(coasting_rad_s(0.25 * i, start_rad_s, dry, form) +
+                          0.05 * std::sin(0.31 * i + 0.002 * i * i) + noise(random));
+  }
+  const std::vector<NamedRecording> runs = {{"wheel.csv", recording_of(0.25, {rate})}};
+  const auto named = [&](const DiagnoseOptions& options) {
+    return diagnose(machine(wheel_toml), runs, {}, options);
+  };
+  const Diagnosis d = named({});
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
+  EXPECT_THAT(kinds_of(d), UnorderedElementsAre("dry_friction", "air_pressure_drag"));
+  EXPECT_THAT(d.warnings, Contains(HasSubstr("predicted better with it than without it")));
+  DiagnoseOptions stretches, held_out, errors;
+  stretches.limits.discrepancy.min_sigma = 1e9;
+  held_out.limits.discrepancy.max_held_growth = -1e9;
+  errors.limits.decision.min_significance = 1e9;
+  for (const DiagnoseOptions& mutant : {stretches, held_out, errors}) {
+    EXPECT_THAT(kinds_of(named(mutant)), testing::IsEmpty());
+  }
+}
+
 TEST(Machines, ABodyThatTurnsFreelyLacksNothing) {
   // A body with two equal moments precesses: ωx + i ωy turns with λ = (Iz − Ix) ωz / Ix (Landau and
   // Lifshitz, Mechanics, section 36).
