@@ -361,6 +361,7 @@ void Propagator::cross_end_of_slip() {
   const std::vector<double> after = contact_.rates(now_s, held_, step_.start());
   const size_t count = sensitivity_->variables().size();
   for (size_t v = 0; v < count; ++v) {
+    if (before[rate] == 0.0) break;  // it came to rest ever more slowly
     const double later_s = -sensitivity_->start()[rate * count + v] / before[rate];
     std::vector<double> change;
     for (size_t c = 0; c < before.size(); ++c) change.push_back((before[c] - after[c]) * later_s);
@@ -369,9 +370,20 @@ void Propagator::cross_end_of_slip() {
 }
 
 // A command may have changed, or the run begins: one that begins with what sticks has no rate
-// whatever the variables are.
+// whatever the variables are. What would come to rest before the time can tell is at rest.
 void Propagator::choose_slip(bool released) {
+  constexpr double slow_rad_s = 1e-9, slowest_rad_s = 1e-12;
   const size_t c = contact_.component();
+  if (const double now = step_.start()[c]; now != 0.0 && std::abs(now) < slow_rad_s) {
+    if (!has_step_ && std::abs(now) < slowest_rad_s) {
+      step_.set_component(static_cast<int>(c), 0.0);
+    } else if (has_step_ && slip_ != Slip::sticks) {
+      held_.slip = slip_;
+      const double start_s = step_.start_s();
+      const double rests_in_s = -now / contact_.rates(start_s, held_, step_.start())[c];
+      if (rests_in_s > 0.0 && rests_in_s < 1e-15 * std::abs(start_s)) cross_end_of_slip();
+    }
+  }
   const double rate = step_.start()[c];
   if (rate == 0.0 && !released) {
     slip_ = contact_.at_rest(step_.start_s(), held_, step_.start());
@@ -389,7 +401,7 @@ void Propagator::choose_slip(bool released) {
 }
 
 Lanes Propagator::fraction(const Lanes& time_s) const {
-  if (!has_step_) return 0.0;
+  if (!(step_.length_s() > 0.0)) return 0.0;
   return (time_s - step_.start_s()) / step_.length_s();
 }
 

@@ -159,14 +159,14 @@ struct OneAxis {
   }
 };
 
-// Four whole cycles and more, and the rest after the fifth half swing or so.
+// Five half swings, then it stays.
 TEST(Sticking, AboutOneAxisLosesFourTimesFrictionOverStiffnessACycle) {
   const OneAxis swing;
   std::vector<double> times_s;
   for (double part = 0.31; part < 9.0; part += 0.37) times_s.push_back(part * swing.half_period_s());
   const Trajectory t = swing.at(times_s);
   for (size_t i = 0; i < times_s.size(); ++i) {
-    EXPECT_NEAR(heading_rad(t.states[i].lab_from_body), swing.angle_rad(times_s[i]), 1e-9) << i;
+    EXPECT_NEAR(heading_rad(t.states[i].lab_from_body), swing.angle_rad(times_s[i]), 1e-8) << i;
   }
   EXPECT_EQ(t.states.back().rate_body_rad_s.z(), 0.0);
   EXPECT_LT(t.statistics.steps, 200);
