@@ -93,6 +93,10 @@ struct EvaluationContext {
   Vec3Of<T> wheel_rad_s;            // of wheels about the body's axes, relative to the body
   Vec3Of<T> wheel_rad_s2;           // their acceleration
 
+  // Dry friction about one axis: 1 where its direction is held (ZeroOrderHold::slip), 0 where the
+  // rate tells it, and the direction of slip that is held, 0 where the platform sticks.
+  T slip_is_held, slip_sign;
+
   // Of a platform that slides; zero for all others.
   Vec3Of<T> position_lab_m, velocity_lab_m_s;
 
@@ -329,6 +333,8 @@ struct Disturbance {
   // The torque may change its sign within a far shorter time than the motion takes: the propagator
   // then looks closely at the ends of its steps too.
   bool is_abrupt = false;
+  // Dry friction: about one axis it acts against the slip that the propagator holds, and sticks.
+  bool is_dry_friction = false;
   // Its uncertain parameters have other values in every recording: a dry torque that differs from
   // day to day.
   bool per_recording = false;

@@ -11,6 +11,16 @@ namespace photorque {
 
 namespace {
 
+double sign_of(Slip slip) {
+  return slip == Slip::forward ? 1.0 : slip == Slip::backward ? -1.0 : 0.0;
+}
+
+// 1 where friction holds the platform, 0 elsewhere.
+template <class T>
+T sticks(const EvaluationContext<T>& now) {
+  return now.slip_is_held * (1.0 - now.slip_sign * now.slip_sign);
+}
+
 // q' = ½ q ⊗ (0, ω).
 template <class T>
 void turn(const QuatOf<T>& q, const Vec3Of<T>& w, T* rates) {
@@ -134,7 +144,9 @@ Dynamics::Command Dynamics::broadcast(const ZeroOrderHold& held, const Lanes& ti
                   .lamps_as_stated = held.lamps_as_stated,
                   .light_body_N_m = {},
                   .wheel_rad_s = {},
-                  .wheel_rad_s2 = {}};
+                  .wheel_rad_s2 = {},
+                  .slip_is_held = held.slip == Slip::by_rate ? 0.0 : 1.0,
+                  .slip_sign = sign_of(held.slip)};
   for (int k = 0; k < 3; ++k) {
     command.light_body_N_m[k] =
         light.value_N_m[k] + t * (light.rate_N_m_s[k] + t * light.curvature_N_m_s2[k]);
@@ -157,6 +169,8 @@ Dynamics::Command Dynamics::gather(const std::array<ZeroOrderHold, Lanes::count>
       command.wheel_rad_s[k].set(i, wheel_rad_s[k]);
       command.wheel_rad_s2[k].set(i, lane.wheel.acceleration_rad_s2[k]);
     }
+    command.slip_is_held.set(i, lane.slip == Slip::by_rate ? 0.0 : 1.0);
+    command.slip_sign.set(i, sign_of(lane.slip));
     command.battery_current_A.set(i, lane.battery_current_A);
     command.led_current_A.set(i, lane.led_current_A);
     command.lamps_as_stated.set(i, lane.lamps_as_stated);
@@ -199,6 +213,8 @@ EvaluationContext<T> Dynamics::begin(const T& time_s, const Command& command, co
           .traced_light_body_N_m = command.light_body_N_m.template cast<T>(),
           .wheel_rad_s = command.wheel_rad_s.template cast<T>(),
           .wheel_rad_s2 = command.wheel_rad_s2.template cast<T>(),
+          .slip_is_held = command.slip_is_held,
+          .slip_sign = command.slip_sign,
           .position_lab_m = position,
           .velocity_lab_m_s = velocity,
           .gravity_body_m_s2 = zero,
@@ -253,7 +269,7 @@ void Dynamics::solve(const EvaluationContext<T>& now, const T* y, T* rates) cons
   Vec3Of<T> acceleration;
   if (model_.platform.turns_about_one_axis()) {
     const Mat3Of<T> inertia = now.inertia_kg_m2 - now.detached_inertia_kg_m2;
-    acceleration = about_axis<T>(now.torque_body_N_m, inertia);
+    acceleration = (1.0 - sticks(now)) * about_axis<T>(now.torque_body_N_m, inertia);
   } else if (now.inertia_changed) {
     const Mat3Of<T> inertia = now.inertia_kg_m2 - now.detached_inertia_kg_m2;
     // The inverse from cross products of the columns: Eigen's wants comparisons of scalars.
@@ -327,6 +343,14 @@ Dynamics::Instants Dynamics::at(const Lanes& time_s,
     result.torque_body_N_m[d] = now.torque_body_N_m - before + w.cross(carried);
   };
   run_stages(order_, now, act);
+  // What holds the platform exerts what the others do not.
+  for (size_t d = 0; d < model_.disturbances.size(); ++d) {
+    if (!model_.disturbances[d].is_dry_friction) continue;
+    const Vec3Of<Lanes> axis = model_.platform.axis.cast<Lanes>();
+    const Lanes rest = sticks(now) * axis.dot(now.torque_body_N_m);
+    result.torque_body_N_m[d] -= rest * axis;
+    break;
+  }
   solve(now, y, result.rates.data());
   for (const size_t d : instruments_) act(d);
   result.command_body_N_m = now.command_body_N_m;

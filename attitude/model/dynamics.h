@@ -137,6 +137,7 @@ class Dynamics {
     Lanes led_current_A, lamps_as_stated;
     Vec3Of<Lanes> light_body_N_m;
     Vec3Of<Lanes> wheel_rad_s, wheel_rad_s2;
+    Lanes slip_is_held, slip_sign;
   };
   static Command broadcast(const ZeroOrderHold& held, const Lanes& time_s);
   static Command gather(const std::array<ZeroOrderHold, Lanes::count>& held, const Lanes& time_s);

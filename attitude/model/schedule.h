@@ -2,6 +2,7 @@
 // (zero-order hold), and what a simulation beside them says (the light, the battery).
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/transform.h"
@@ -33,6 +34,10 @@ struct WheelSpeeds {
   bool operator==(const WheelSpeeds&) const = default;
 };
 
+// Which way a platform that turns about one axis slips in its dry friction. The propagator holds it
+// within a step and changes it between two; elsewhere the rate tells.
+enum class Slip : int64_t { by_rate, backward, sticks, forward };
+
 struct ZeroOrderHold {
   Vec3 command_body_N_m = Vec3::Zero();
   double battery_current_A = 0.0;   // positive discharges
@@ -40,6 +45,7 @@ struct ZeroOrderHold {
   double lamps_as_stated = 1.0;     // 1: it is not, and they shine as the model states; else 0
   ContinuedTorque light_body = {};  // of light that is traced beside the motion
   WheelSpeeds wheel = {};
+  Slip slip = Slip::by_rate;
 
   bool operator==(const ZeroOrderHold&) const = default;
 };

@@ -27,7 +27,10 @@ CollocationStep::CollocationStep(const Dynamics& dynamics, double time_s, std::v
       accepted_increments_(y_.size()),
       stages_(y_.size()),
       rates_(y_.size()) {
-  for (const Disturbance& d : dynamics.model().disturbances) is_abrupt_ |= d.is_abrupt;
+  const bool about_axis = dynamics.model().platform.turns_about_one_axis();
+  for (const Disturbance& d : dynamics.model().disturbances) {
+    is_abrupt_ |= d.is_abrupt && !(d.is_dry_friction && about_axis);
+  }
   for (const double scale : dynamics.scales()) inverse_scales_.push_back(1.0 / scale);
 }
 

@@ -94,6 +94,7 @@ Propagator::Propagator(const Dynamics& dynamics, const PlatformState& initial, d
       end_s_(end_s),
       options_(options),
       step_(dynamics, initial.time_s, checked_start(dynamics, initial)),
+      contact_(dynamics),
       event_functions_(std::move(events)),
       held_(dynamics.model().schedule.at(initial.time_s)),
       step_end_s_(initial.time_s) {
@@ -139,14 +140,17 @@ void Propagator::collect_jumps(double from_s) {
 
 bool Propagator::advance() {
   if (ended()) return false;
+  const bool released = slip_ends_ && slip_ == Slip::sticks;
   if (has_step_) {
     step_.accept(step_end_s_);
     if (sensitivity_) sensitivity_->accept();
+    if (slip_ends_) cross_end_of_slip();
     cross_jumps();
   } else {
     take_command(step_.start_s(), true);
   }
   take_over();
+  if (contact_.exists()) choose_slip(released);
   take_step();
   has_step_ = true;
   find_events();
@@ -188,11 +192,14 @@ void Propagator::take_step() {
   // A free body's phase shows every bit of its iterations after a day; torques hide them.
   const bool is_free = dynamics_.model().disturbances.empty();
   const double settled = (is_free ? 1e-10 : 1e-6) * options_.tolerance;
+  const double planned_s = stop_s;
+  int corrections = 0;
+  slip_ends_ = false;
   for (;;) {
     // Half of what is left rather than nearly all of it: no slivers.
     const double left_s = stop_s - start_s;
     double h_s = std::min(h_s_, options_.max_step_s);
-    const bool cut = h_s >= left_s;
+    const bool cut = slip_ends_ || h_s >= left_s;
     h_s = cut ? left_s : with_few_bits(h_s > 0.5 * left_s ? 0.5 * left_s : h_s);
     if (++statistics_.steps > options_.max_steps || start_s + h_s <= start_s) {
       throw NumericalError("the step length of the propagator fell to " + shown(h_s) +
@@ -210,6 +217,12 @@ void Propagator::take_step() {
       h_s_ = propose_length(outcome, h_s, false);
       ceiling_s_ = 0.9 * h_s;
       is_ceiling_of_state_ = false;
+    } else if (contact_.exists() && !contact_.resolves(step_, held_)) {
+      h_s_ = 0.5 * h_s;
+    } else if (contact_.exists() && ends_slip(stop_s, corrections)) {
+      stop_s = std::min(stop_s, planned_s);
+      --statistics_.steps;
+      continue;
     } else if (sensitivity_ && !sensitivity_->solve(step_, held_, options_.derivative_tolerance)) {
       h_s_ = 0.5 * h_s;
       ceiling_s_ = 0.7 * h_s;
@@ -223,6 +236,9 @@ void Propagator::take_step() {
       step_end_s_ = cut ? stop_s : start_s + h_s;
       return;
     }
+    stop_s = planned_s;
+    corrections = 0;
+    slip_ends_ = false;
     --statistics_.steps;
     ++statistics_.rejected;
   }
@@ -284,7 +300,11 @@ void Propagator::cross_jumps() {
     is_tick = is_tick || jumps_[next_jump_].is_tick;
     if (jumps_[next_jump_].variable < 0) continue;
     dynamics_.rates(std::nextafter(now_s, -1e300), held_, y.data(), before.data());
-    dynamics_.rates(now_s, held_, y.data(), after.data());
+    ZeroOrderHold then = held_;
+    if (contact_.exists() && step_.start()[contact_.component()] == 0.0) {
+      then.slip = contact_.at_rest(now_s, held_, step_.start());
+    }
+    dynamics_.rates(now_s, then, y.data(), after.data());
     std::vector<double> change;
     for (size_t c = 0; c < y.size(); ++c) change.push_back(before[c][0] - after[c][0]);
     sensitivity_->add(static_cast<size_t>(jumps_[next_jump_].variable), change);
@@ -294,8 +314,94 @@ void Propagator::cross_jumps() {
   if (sensitivity_) sensitivity_->restart();
 }
 
+// Whether the slip that is held ends within the attempted step elsewhere than at its end: then
+// `stop_s` becomes a better guess of that time, by cutting first and by Newton's method from then
+// on, until the time cannot be told better.
+bool Propagator::ends_slip(double& stop_s, int& corrections) {
+  constexpr int most = 5;
+  if (!slip_ends_) {
+    const EventFunction beyond = {.name = "", .value = [&](const Lanes& time_s, const Lanes* y) {
+                                    return contact_.beyond(time_s, held_, y);
+                                  }};
+    const std::optional<DryContact::Stretch> within =
+        contact_.ends_within(step_, held_, step_.start_s() + step_.length_s());
+    if (!within) return false;
+    slip_ends_ = true;
+    stop_s = locate(beyond, within->low_s, within->high_s);
+    return true;
+  }
+  if (slip_ == Slip::sticks || ++corrections > most) return false;
+  const std::vector<double> end = step_.end();
+  const size_t c = contact_.component();
+  const double correction_s = -end[c] / contact_.rates(stop_s, held_, end)[c];
+  const double resolved_s = 2e-16 * (std::abs(stop_s) + step_.length_s());
+  if (!(std::abs(correction_s) > resolved_s && stop_s + correction_s > step_.start_s())) {
+    return false;
+  }
+  stop_s += correction_s;
+  return true;
+}
+
+// The rate has come to zero, or torques overcome what held the platform. The time t at which it
+// came to rest changes with every variable by ∂t/∂v = −(∂ω/∂v)/ω̇⁻, and the derivatives by
+// (f⁻ − f⁺) ∂t/∂v. What is released leaves with no acceleration, and theirs do not jump.
+void Propagator::cross_end_of_slip() {
+  const double now_s = step_.start_s();
+  step_.restart();
+  if (sensitivity_) sensitivity_->restart();
+  if (slip_ == Slip::sticks) {
+    held_.slip = slip_ = contact_.released(now_s, held_, step_.start());
+    return;
+  }
+  const size_t rate = contact_.component();
+  step_.set_component(static_cast<int>(rate), 0.0);
+  const std::vector<double> before = contact_.rates(now_s, held_, step_.start());
+  held_.slip = slip_ = contact_.at_rest(now_s, held_, step_.start());
+  if (!sensitivity_) return;
+  const std::vector<double> after = contact_.rates(now_s, held_, step_.start());
+  const size_t count = sensitivity_->variables().size();
+  for (size_t v = 0; v < count; ++v) {
+    if (before[rate] == 0.0) break;  // it came to rest ever more slowly
+    const double later_s = -sensitivity_->start()[rate * count + v] / before[rate];
+    std::vector<double> change;
+    for (size_t c = 0; c < before.size(); ++c) change.push_back((before[c] - after[c]) * later_s);
+    sensitivity_->add(v, change);
+  }
+}
+
+// A command may have changed, or the run begins: one that begins with what sticks has no rate
+// whatever the variables are. What would come to rest before the time can tell is at rest.
+void Propagator::choose_slip(bool released) {
+  constexpr double slow_rad_s = 1e-9, slowest_rad_s = 1e-12;
+  const size_t c = contact_.component();
+  if (const double now = step_.start()[c]; now != 0.0 && std::abs(now) < slow_rad_s) {
+    if (!has_step_ && std::abs(now) < slowest_rad_s) {
+      step_.set_component(static_cast<int>(c), 0.0);
+    } else if (has_step_ && slip_ != Slip::sticks) {
+      held_.slip = slip_;
+      const double start_s = step_.start_s();
+      const double rests_in_s = -now / contact_.rates(start_s, held_, step_.start())[c];
+      if (rests_in_s > 0.0 && rests_in_s < 1e-15 * std::abs(start_s)) cross_end_of_slip();
+    }
+  }
+  const double rate = step_.start()[c];
+  if (rate == 0.0 && !released) {
+    slip_ = contact_.at_rest(step_.start_s(), held_, step_.start());
+  } else if (!has_step_) {
+    slip_ = rate > 0.0 ? Slip::forward : Slip::backward;
+  }
+  held_.slip = slip_;
+  if (has_step_ || !sensitivity_ || slip_ != Slip::sticks) return;
+  const size_t count = sensitivity_->variables().size();
+  for (size_t v = 0; v < count; ++v) {
+    std::vector<double> change(step_.start().size(), 0.0);
+    change[c] = -sensitivity_->start()[c * count + v];
+    sensitivity_->add(v, change);
+  }
+}
+
 Lanes Propagator::fraction(const Lanes& time_s) const {
-  if (!has_step_) return 0.0;
+  if (!(step_.length_s() > 0.0)) return 0.0;
   return (time_s - step_.start_s()) / step_.length_s();
 }
 
@@ -374,7 +480,7 @@ void Propagator::keep(Snapshot& snapshot) {
   snapshot.fixed(event_values_);
   snapshot.expect(jumps_.size());
   snapshot.at_most(next_jump_, jumps_.size());
-  snapshot(held_, exchange_, exchange_is_new_);
+  snapshot(held_, slip_, slip_ends_, exchange_, exchange_is_new_);
   snapshot(h_s_, ceiling_s_, is_ceiling_of_state_, is_stiff_, held_back_);
   snapshot(step_end_s_, has_step_, ended_by_event_, statistics_);
 }

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "attitude/propagation/dry_contact.h"
 #include "attitude/propagation/sensitivity.h"
 
 namespace photorque {
@@ -126,6 +127,9 @@ class Propagator {
   double propose_length(const CollocationStep::Outcome& outcome, double h_s, bool cut) const;
   void choose_method(const CollocationStep::Outcome& outcome, bool was_at_ceiling);
   void cross_jumps();
+  bool ends_slip(double& stop_s, int& corrections);
+  void cross_end_of_slip();
+  void choose_slip(bool released);
   void take_over();
   void find_events();
   double locate(const EventFunction& event, double low_s, double high_s) const;
@@ -136,6 +140,9 @@ class Propagator {
   double end_s_;
   PropagationOptions options_;
   CollocationStep step_;
+  DryContact contact_;
+  Slip slip_ = Slip::by_rate;
+  bool slip_ends_ = false;  // at the end of the last step
   std::optional<Sensitivity> sensitivity_;
   std::vector<EventFunction> event_functions_;
   std::vector<Event> events_;

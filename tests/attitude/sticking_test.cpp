@@ -127,6 +127,76 @@ TEST(Sticking, EveryReversalIsSeen) {
   }
 }
 
+// About one axis the friction is Coulomb's own: the same spring and friction, in which every half
+// swing ends 2 τ/k nearer to zero until an end lies within τ/k, where it stays.
+struct OneAxis {
+  double k = 2e-4, friction_N_m = 1e-5, start_rad = 0.53;
+
+  AttitudeModel model() const {
+    AttitudeModel model = bench_model();
+    model.platform.topology = Topology::one_axis;
+    return with(with(std::move(model), "tether", {{"stiffness_N_m_per_rad", node(k)}}),
+                "dry_friction", {{"torque_N_m", node(friction_N_m)}});
+  }
+  double half_period_s() const { return pi * std::sqrt(I_kg_m2 / k); }
+  // A half swing is a cosine about ±τ/k.
+  double angle_rad(double time_s) const {
+    double end_rad = start_rad;
+    for (double from_s = 0.0;; from_s += half_period_s()) {
+      if (std::abs(end_rad) <= friction_N_m / k) return end_rad;
+      const double centre_rad = std::copysign(friction_N_m / k, end_rad);
+      if (time_s <= from_s + half_period_s()) {
+        return centre_rad +
+               (end_rad - centre_rad) * std::cos(pi * (time_s - from_s) / half_period_s());
+      }
+      end_rad = 2.0 * centre_rad - end_rad;
+    }
+  }
+  Trajectory at(std::span<const double> times_s, const std::vector<Variable>& variables = {}) const {
+    const AttitudeModel all = model();
+    const Dynamics dynamics(all);
+    return propagate(dynamics, state_of(all, turned(start_rad, {0, 0, 1})), times_s, {}, variables);
+  }
+};
+
+// Five half swings, then it stays.
+TEST(Sticking, AboutOneAxisLosesFourTimesFrictionOverStiffnessACycle) {
+  const OneAxis swing;
+  std::vector<double> times_s;
+  for (double part = 0.31; part < 9.0; part += 0.37) times_s.push_back(part * swing.half_period_s());
+  const Trajectory t = swing.at(times_s);
+  for (size_t i = 0; i < times_s.size(); ++i) {
+    EXPECT_NEAR(heading_rad(t.states[i].lab_from_body), swing.angle_rad(times_s[i]), 1e-8) << i;
+  }
+  EXPECT_EQ(t.states.back().rate_body_rad_s.z(), 0.0);
+  EXPECT_LT(t.statistics.steps, 200);
+}
+
+// Before and after every reversal, and where it has come to stay: by friction and by stiffness,
+// against differences of the closed form.
+TEST(Sticking, AboutOneAxisDerivativesCrossReversals) {
+  const OneAxis swing;
+  std::vector<double> times_s;
+  for (double part = 0.31; part < 9.0; part += 0.37) times_s.push_back(part * swing.half_period_s());
+  const Trajectory t = swing.at(times_s, {Variable::of(1, 0), Variable::of(0, 0)});
+  const auto difference = [&](double OneAxis::*which, double relative, double time_s) {
+    OneAxis more = swing, less = swing;
+    more.*which *= 1.0 + relative;
+    less.*which *= 1.0 - relative;
+    return (more.angle_rad(time_s) - less.angle_rad(time_s)) / (2.0 * relative * swing.*which);
+  };
+  const double by_friction_scale = 1.0 / swing.k, by_stiffness_scale = swing.start_rad / swing.k;
+  for (size_t i = 0; i < times_s.size(); ++i) {
+    const size_t angle = (i * t.components + 2) * 2;
+    EXPECT_NEAR(t.derivatives[angle] / by_friction_scale,
+                difference(&OneAxis::friction_N_m, 1e-5, times_s[i]) / by_friction_scale, 1e-5)
+        << i;
+    EXPECT_NEAR(t.derivatives[angle + 1] / by_stiffness_scale,
+                difference(&OneAxis::k, 1e-5, times_s[i]) / by_stiffness_scale, 1e-5)
+        << i;
+  }
+}
+
 // A cable that is wound up pulls with every turn: an oscillator of three turns' amplitude.
 TEST(Tether, CountsItsTurns) {
   constexpr double k = 2e-4, amplitude_rad = 6 * pi;

@@ -1,8 +1,10 @@
 // Friction that does not depend on the rate's size: T = −τ ω/|ω|, a bearing that touches.
 //
-// torque_N_m: τ ≥ 0. creep_rate_rad_s (default 1e-6): below this rate the torque fades linearly to
-// zero, so that the law has a derivative at rest: T = −τ ω/√(ω² + creep²). Sticking is thus a slow
-// creep, too slow for an instrument to tell.
+// torque_N_m: τ ≥ 0. About one axis the propagator holds the direction of slip within a step, ends
+// steps where the rate changes its sign, and lets the platform stick until the other torques exceed
+// τ (attitude/propagation/dry_contact.h). About three axes, creep_rate_rad_s (default 1e-6): below
+// this rate the torque fades linearly to zero, so that the law has a derivative at rest:
+// T = −τ ω/√(ω² + creep²). Sticking is thus a slow creep, too slow for an instrument to tell.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::dry_friction {
@@ -12,7 +14,7 @@ constexpr ScalarKey friction("torque_N_m", Range::not_negative(), "τ in T = −
 
 namespace key {
 constexpr NumberKey creep_rate("creep_rate_rad_s", 1e-6, Range::positive(),
-                               "below it the torque fades to zero");
+                               "about three axes: below it the torque fades to zero");
 }  // namespace key
 
 class DryFriction final : public TorqueLaw<DryFriction> {
@@ -23,7 +25,9 @@ class DryFriction final : public TorqueLaw<DryFriction> {
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const Vec3Of<T>& w = now.rate_body_rad_s;
     const T speed = sqrt(w.dot(w) + T(creep_rate_rad_s_ * creep_rate_rad_s_));
-    return -(own[friction] / speed) * w;
+    const Vec3Of<T> by_rate = (1.0 / speed) * w;
+    const Vec3Of<T> held = now.slip_sign * now.platform.axis.template cast<T>();
+    return -own[friction] * Vec3Of<T>(by_rate + now.slip_is_held * Vec3Of<T>(held - by_rate));
   }
 
  private:
@@ -34,6 +38,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   Disturbance d = make_disturbance<DryFriction>({scalar_parameter(settings, friction)},
                                                 Stage::torque, {}, settings.get(key::creep_rate));
   d.is_abrupt = true;
+  d.is_dry_friction = true;
   return d;
 }
 
