@@ -40,7 +40,13 @@ Answer searched(const NominalModel& nominal, const Fit& nominal_fit, const Recor
     std::ranges::stable_partition(a.all.list,
                                   [&](const Candidate& c) { return is_among(c, first); });
   }
-  std::erase_if(a.all.list, [&](const Candidate& c) { return !is_among(c, among); });
+  // An inertia that is uncertain has its error already; a second one leaves all torques without a
+  // scale.
+  const bool has_error = nominal.uncertain_inertia.has_value();
+  std::erase_if(a.all.list, [&](const Candidate& c) {
+    const bool is_second = has_error && c.effect.how.inertia_change_kg_m2 != nullptr;
+    return !is_among(c, among) || (among == Among::torques && is_second);
+  });
   const AttitudeDomain domain(a.all);
   const Trial base = nominal_trial(nominal_fit, a.all);
   std::optional<Trial> begin;
