@@ -38,7 +38,8 @@ DisturbanceKind kind() {
                                               "place",
                                               {EffectKey::not_negative(stiffness.name, 1e-2),
                                                {pull.name, {0.0, 0.0}, 1e-2}}}},
-                        .needs = Requirement::plane},
+                        .needs = Requirement::plane,
+                        .steady = true},
           .budget = {.reason_against = "a force, not a torque"},
           .keys = {stiffness, key::pull}};
 }

@@ -35,7 +35,8 @@ DisturbanceKind kind() {
           .screening = {.parametrisations = {{"the table is not level, or a steady draught or "
                                               "another constant force acts, which looks the same",
                                               {{slope.name, {0.0, 0.0}, 1e-3}}}},
-                        .needs = Requirement::plane},
+                        .needs = Requirement::plane,
+                        .steady = true},
           .budget = {.reason_against = "a force, not a torque"},
           .keys = {key::slope}};
 }

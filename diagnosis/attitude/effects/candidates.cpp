@@ -449,7 +449,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
   }
   if (context.platform.slides() && only_slides_out(runs) &&
       std::erase_if(all.list, [](const Candidate& c) {
-        return c.effect.kind == "table_slope" || c.effect.kind == "sliding_spring";
+        return c.effect.how.steady && c.effect.how.needs == Requirement::plane;
       }) > 0) {
     all.remark =
         "it slides straight on and only becomes slower: friction cannot be told from a slope or a "
