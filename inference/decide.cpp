@@ -24,8 +24,7 @@ class Judge {
   bool is_significant(size_t trial, const std::vector<double>& significance) const {
     const std::vector<size_t>& candidates = trials_[trial].candidates;
     for (size_t i = 0; i < candidates.size(); ++i) {
-      if (!all_[candidates[i]].has_strength) continue;
-      if (significance[i] < limits_.min_significance) return false;
+      if (significance[i] < limits_.min_significance) return false;  // one without a size is not
     }
     return true;
   }

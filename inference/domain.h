@@ -37,7 +37,7 @@ struct CandidateTraits {
   bool is_linear = true;
   // Whether it changes faster than averages show.
   bool is_fast = false;
-  // Whether its size is a number of standard errors, so that its significance can be asked.
+  // Whether it has strengths, in which it is linear.
   bool has_strength = true;
   size_t parameters = 0;
   // Whether it stands at a place of which one recording alone may leave several open.
@@ -50,7 +50,8 @@ struct Explanation {
   // Natural logarithm of the evidence, with the prior odds of the candidates, but for a constant
   // that all trials on the same runs share.
   double log_evidence = 0.0;
-  // Of each candidate: √(θᵀ C⁻¹ θ) of the parameters in which it is linear.
+  // Of each candidate: √(θᵀ C⁻¹ θ) of the parameters that are its size; not a number for one that
+  // has none.
   std::vector<double> significance = {};
   std::vector<double> joint_significance = {};  // with what was held out, where that was weighed
   std::string objection = {};                   // why it is forbidden; empty: nothing

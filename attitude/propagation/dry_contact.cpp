@@ -77,8 +77,8 @@ std::optional<DryContact::Stretch> DryContact::ends_within(const CollocationStep
   return std::nullopt;
 }
 
-// What slips leaves its start at the first stage. What sticks has no polynomial of its own that
-// could tell whether the step is too long: the last Legendre term of f₊ does, relative to the
+// While the contact slips, the rate has to leave zero by the first stage. While it sticks, the rate
+// does not show whether the step is too long: the last Legendre term of f₊ does, relative to the
 // friction.
 bool DryContact::resolves(const CollocationStep& step, const ZeroOrderHold& held) const {
   if (held.slip != Slip::sticks) {

@@ -104,10 +104,6 @@ Key Key::vectors3(std::string name, std::string what) {
   return key_of(Type::vectors, std::move(name), std::move(what));
 }
 
-Key Key::matrix3(std::string name, std::string what) {
-  return key_of(Type::matrix, std::move(name), std::move(what));
-}
-
 Key Key::numbers(std::string name, Range range, std::string what) {
   Key key = key_of(Type::numbers, std::move(name), std::move(what));
   key.range = range;
@@ -229,8 +225,6 @@ std::string expected_of(const Key& key) {
       return "an array of 3 numbers";
     case Key::Type::vectors:
       return "an array of arrays of 3 numbers";
-    case Key::Type::matrix:
-      return "an array of 3 rows of 3 numbers";
     case Key::Type::table:
       return "a table";
     case Key::Type::tables:

@@ -26,7 +26,6 @@ struct Key {
     choice,   // one text of `choices`
     vector,   // three numbers
     vectors,  // an array of such
-    matrix,   // three rows of three numbers
     table,
     tables,  // an array of tables, or one table
     other,   // checked by its reader alone
@@ -83,12 +82,11 @@ struct Key {
   static Key vector3(std::string name, std::string what);
   static Key vector3_or(std::string name, const Vec3& otherwise_SI, std::string what);
   static Key vectors3(std::string name, std::string what);
-  static Key matrix3(std::string name, std::string what);
   static Key numbers(std::string name, Range range, std::string what);
   static Key texts(std::string name, std::string what);
   static Key table(std::string name, std::vector<Key> keys, std::string what);
   static Key tables(std::string name, std::vector<Key> keys, std::string what);
-  // What its reader takes apart by itself.
+  // A value of several forms, which its reader takes apart.
   static Key other(std::string name, unsigned forms, std::string what);
 
   // For keys that a table can do without and that have no constant for a default.

@@ -161,10 +161,6 @@ class Misreading {
         expect(!items(value).empty() && std::ranges::all_of(items(value), is_vector), value, key,
                full);
         break;
-      case Key::Type::matrix:
-        expect(items(value).size() == 3 && std::ranges::all_of(items(value), is_vector), value, key,
-               full);
-        break;
       case Key::Type::table:
         expect(value.is_table(), value, key, full);
         if (value.is_table()) table(value, key.keys, full);

@@ -230,7 +230,7 @@ struct NumbersKey : TypedKey<NumbersKey> {
   operator Key() const;
 };
 
-// What its reader takes apart by itself; `forms` as Key::Form.
+// A value of several forms (Key::Form), which its reader takes apart.
 struct OtherKey : TypedKey<OtherKey> {
   unsigned forms;
 

@@ -35,8 +35,8 @@ struct Answer {
 
 // The answer to recordings about which the nominal model was fitted. Every effect is scored, the
 // best sets are fitted, compared, weighed with what was held out, and decided about with the noise
-// of the readings. Where more than noise is left, it counts as noise: as loud as what the best
-// explanation leaves, which is found anew until it falls no further. Names then have to predict
+// of the readings. Where more than noise is left, it counts as noise. Its level is the residual of
+// the best explanation, and the search is repeated while that falls. Names then have to predict
 // stretches, each from fits to others. `data` gains the noise that the readings show about the best
 // explanation, and `nominal_fit` is fitted with it.
 Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOptions& options,

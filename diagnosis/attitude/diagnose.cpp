@@ -111,8 +111,8 @@ std::vector<std::string> warnings_of(const RecordedData& data,
   return warnings;
 }
 
-// What the stretches say of every name that stands beside the rest.
-void say_what_stretches_say(const Answer& answer, Diagnosis& d) {
+// Adds how much better the stretches are predicted with each name that stands beside the rest.
+void say_gains_over_stretches(const Answer& answer, Diagnosis& d) {
   if (!answer.beside) return;
   for (size_t i = 0; i < d.effects.size(); ++i) {
     d.warnings.push_back(
@@ -122,8 +122,8 @@ void say_what_stretches_say(const Answer& answer, Diagnosis& d) {
   }
 }
 
-// Whether what was held out can say anything of the names, and of the noise.
-void say_what_held_out_tells(Diagnosis& d) {
+// Adds a warning where held-out data do not test the names, or scatter less than the noise.
+void say_limits_of_held_out(Diagnosis& d) {
   constexpr double as_well = 0.9, too_quiet_sigma = -5.0;
   const double before = d.holdout->chi2_per_sample_before, after = d.holdout->chi2_per_sample_after;
   if (!d.effects.empty() && after > as_well * before) {
@@ -209,8 +209,8 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
   }
   say_how_well(nominal_fit, answer, data, options.limits, d);
   d.warnings = warnings_of(data, answer.decision);
-  say_what_stretches_say(answer, d);
-  say_what_held_out_tells(d);
+  say_gains_over_stretches(answer, d);
+  say_limits_of_held_out(d);
   for (const std::string& text : contradicted_beliefs(answer.chosen(), options.limits.decision)) {
     d.warnings.push_back(text);
   }

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "inference/estimator/evidence.h"
 #include "inference/estimator/forward_model.h"
@@ -205,7 +206,7 @@ double significance_of(const LightTrial& trial, const LightCandidates& all, size
     }
     ++column;
   }
-  if (at.empty()) return 0.0;
+  if (at.empty()) return std::numeric_limits<double>::quiet_NaN();
   const Eigen::MatrixXd C = Eigen::MatrixXd(trial.fit.shared_posterior())(at, at);
   const Eigen::Map<const Eigen::VectorXd> theta(value.data(),
                                                 static_cast<Eigen::Index>(value.size()));

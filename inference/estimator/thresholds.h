@@ -213,9 +213,9 @@ struct Thresholds {
 
   // Names beside something that stays unexplained, which counts as noise.
   struct Discrepancy {
-    // Stretches into which all recordings are cut, about, and the standard errors by which each
-    // name must predict them better than its absence; and by which one explanation is told from
-    // another: 95 %.
+    // Number of stretches into which all recordings are cut, about; standard errors by which each
+    // name must predict them better than its absence; and those by which two explanations differ
+    // (95 %).
     size_t stretches = 16;
     double min_sigma = 3.0, min_rival_sigma = 1.645;
     // χ² of what was held out over that without the name, beyond which it is no name.

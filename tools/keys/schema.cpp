@@ -110,8 +110,6 @@ Json plain_schema(const Key& key, double to_SI, Definitions& definitions) {
       schema["minItems"] = 1;
       return schema;
     }
-    case Key::Type::matrix:
-      return array_of(vector_schema(), 3);
     case Key::Type::table:
       return object_schema(key.keys, definitions);
     case Key::Type::tables: {

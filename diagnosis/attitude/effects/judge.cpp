@@ -4,6 +4,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 
 #include "inference/estimator/evidence.h"
 
@@ -102,14 +104,24 @@ std::string objection_to(const Trial& trial, const Candidates& all) {
   return sum_objection(trial.fit.best.model);
 }
 
-// Of the strengths under the first key that has any: without it the effect would be another one, as
-// a spring without stiffness is a slope.
+// The key without which the effect is none, or another one, as a spring without stiffness is a
+// slope: the first that has strengths, or else the moment of inertia of what swings. Empty: the
+// effect has no size.
+std::string key_of_size(const Candidate& c) {
+  for (size_t p = 0; p < c.scale.size(); ++p) {
+    if (c.is_strength(p)) return c.start.parameters[p].key;
+  }
+  for (const EffectKey& key : c.effect.keys) {
+    if (key.times_inertia && !key.is_fixed) return key.key;
+  }
+  return "";
+}
+
+// In standard errors; not a number for an effect that has no size.
 double significance(const Trial& trial, const Candidates& all, size_t which) {
   const Candidate& c = all[trial.candidates[which]];
-  const auto has_strength = std::ranges::find_if(c.start.parameters, [&](const Parameter& p) {
-    return c.is_strength(static_cast<size_t>(&p - c.start.parameters.data()));
-  });
-  if (has_strength == c.start.parameters.end()) return 0.0;
+  const std::string size = key_of_size(c);
+  if (size.empty()) return std::numeric_limits<double>::quiet_NaN();
   const std::vector<Eigen::Index> where = shared_indices(trial, which);
   const Eigen::MatrixXd covariance = trial.fit.shared_posterior();
   std::vector<std::pair<Eigen::Index, double>> linear;
@@ -117,8 +129,9 @@ double significance(const Trial& trial, const Candidates& all, size_t which) {
   for (size_t p = 0; p < c.scale.size(); ++p) {
     if (!c.is_fitted(p)) continue;
     const Eigen::Index at = where[k++];
-    const bool is_other = !c.empirical() && c.start.parameters[p].key != has_strength->key;
-    if (c.searched[p] || is_other) continue;
+    // An empirical law has one size under many keys, and a shape that is searched.
+    const bool is_size = c.empirical() ? !c.searched[p] : c.start.parameters[p].key == size;
+    if (!is_size) continue;
     linear.emplace_back(
         at, trial.fit.best.model.disturbances[trial.disturbances[which]].parameters[p].value);
   }
