@@ -152,7 +152,8 @@ struct OneAxis {
       end_rad = 2.0 * centre_rad - end_rad;
     }
   }
-  Trajectory at(std::span<const double> times_s, const std::vector<Variable>& variables = {}) const {
+  Trajectory at(std::span<const double> times_s,
+                const std::vector<Variable>& variables = {}) const {
     const AttitudeModel all = model();
     const Dynamics dynamics(all);
     return propagate(dynamics, state_of(all, turned(start_rad, {0, 0, 1})), times_s, {}, variables);
@@ -163,7 +164,8 @@ struct OneAxis {
 TEST(Sticking, AboutOneAxisLosesFourTimesFrictionOverStiffnessACycle) {
   const OneAxis swing;
   std::vector<double> times_s;
-  for (double part = 0.31; part < 9.0; part += 0.37) times_s.push_back(part * swing.half_period_s());
+  for (double part = 0.31; part < 9.0; part += 0.37)
+    times_s.push_back(part * swing.half_period_s());
   const Trajectory t = swing.at(times_s);
   for (size_t i = 0; i < times_s.size(); ++i) {
     EXPECT_NEAR(heading_rad(t.states[i].lab_from_body), swing.angle_rad(times_s[i]), 1e-8) << i;
@@ -177,7 +179,8 @@ TEST(Sticking, AboutOneAxisLosesFourTimesFrictionOverStiffnessACycle) {
 TEST(Sticking, AboutOneAxisDerivativesCrossReversals) {
   const OneAxis swing;
   std::vector<double> times_s;
-  for (double part = 0.31; part < 9.0; part += 0.37) times_s.push_back(part * swing.half_period_s());
+  for (double part = 0.31; part < 9.0; part += 0.37)
+    times_s.push_back(part * swing.half_period_s());
   const Trajectory t = swing.at(times_s, {Variable::of(1, 0), Variable::of(0, 0)});
   const auto difference = [&](double OneAxis::*which, double relative, double time_s) {
     OneAxis more = swing, less = swing;

@@ -88,8 +88,8 @@ TEST(Decide, ANameThatPredictsWorseIsNotSaid) {
 TEST(Decide, ANameThatIsUnlikelyIsNotSaid) {
   const std::vector<CandidateTraits> all = {{.name = "first"},
                                             {.name = "law", .is_empirical = true}};
-  const std::vector<Explanation> trials = {
-      explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0), explanation({1}, 104.4, 1.0)};
+  const std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
+                                           explanation({1}, 104.4, 1.0)};
   const auto judged = [&](const Thresholds::Decision& limits) {
     return decide(
         trials, all, [](size_t) { return 0.0; }, limits);
@@ -103,8 +103,8 @@ TEST(Decide, ANameThatIsUnlikelyIsNotSaid) {
 
 // Two that explain as much are one answer: the first with the second in its place.
 TEST(Decide, ANameThatIsNotToldFromAnotherIsSaidWithIt) {
-  const Decision d = decided({explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
-                              explanation({1}, 99.9, 1.0)});
+  const Decision d = decided(
+      {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0), explanation({1}, 99.9, 1.0)});
   EXPECT_EQ(d.finding, Finding::named);
   EXPECT_NEAR(d.confidence, 1.0 / (1.0 + std::exp(-0.1)), 1e-6);
 }
