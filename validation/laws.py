@@ -377,6 +377,9 @@ NOT_INJECTED = {
     "sliding_drag": "the laboratories have no table to slide on",
     "sliding_air_drag": "the laboratories have no table to slide on",
     "sliding_spring": "the laboratories have no table to slide on",
+    "body_force": "the laboratories have no table to slide on",
+    "thrust_saturation": "the laboratories have no table to slide on",
+    "mass_error": "diagnose does not screen it",
     "empirical_torque": "a function without a law; the benchmark has unknown laws of its own",
 }
 

@@ -64,7 +64,7 @@ struct Parametrisation {
 // What must be there for an effect to show at all.
 enum class Requirement {
   none,
-  command,             // torques commanded
+  command,             // torques commanded, or forces
   charge,              // a current
   field,               // a magnetic field
   gravity,             // weight on a support
@@ -76,6 +76,7 @@ enum class Requirement {
   wheel,               // the measured speed of one
   lamps,               // the measured current of some, and not always the same
   plane,               // a platform that slides: the effect is a force
+  thrust,              // the same, and forces commanded
 };
 
 // What has to be scanned before a fit can find it.
@@ -101,6 +102,11 @@ struct LeastSum {
   std::string objection;  // what the report says of a model that does
 };
 
+// The effect is a force on a platform that slides.
+inline bool is_force(Requirement needs) {
+  return needs == Requirement::plane || needs == Requirement::thrust;
+}
+
 struct DisturbanceContext;  // attitude/disturbances/kind.h
 
 struct Screening {
@@ -119,6 +125,7 @@ struct Screening {
   // By how much a fitted disturbance changes the platform's inertia, of which there is a limit to
   // what is credible; null: not at all.
   Mat3 (*inertia_change_kg_m2)(const Disturbance&) = nullptr;
+  bool changes_mass = false;  // its first parameter is what the platform's mass is more [kg]
   std::optional<LeastSum> least_sum = {};
   std::vector<Likeness> alike = {};
 };

@@ -31,9 +31,7 @@ RatesOfPiece rates_of_piece(const Observation& seen) {
 }
 
 bool is_commanded_torque(const Schedule& schedule) {
-  return std::any_of(schedule.held.begin(), schedule.held.end(), [](const ZeroOrderHold& held) {
-    return held.command_body_N_m != Vec3::Zero();
-  });
+  return std::ranges::any_of(schedule.held, &ZeroOrderHold::commands_torque);
 }
 
 // The integral from the first time to each, by the trapezoidal rule with the slopes' correction

@@ -139,6 +139,8 @@ Dynamics::Command Dynamics::broadcast(const ZeroOrderHold& held, const Lanes& ti
   const ContinuedTorque& light = held.light_body;
   const Lanes t = time_s - light.from_s;
   Command command{.torque_body_N_m = held.command_body_N_m.cast<Lanes>(),
+                  .force_lab_N = held.force_lab_N.cast<Lanes>(),
+                  .force_body_N = held.force_body_N.cast<Lanes>(),
                   .battery_current_A = held.battery_current_A,
                   .led_current_A = held.led_current_A,
                   .lamps_as_stated = held.lamps_as_stated,
@@ -165,6 +167,8 @@ Dynamics::Command Dynamics::gather(const std::array<ZeroOrderHold, Lanes::count>
     const Vec3 light_N_m = lane.light_body.at(time_s[i]), wheel_rad_s = lane.wheel.at(time_s[i]);
     for (int k = 0; k < 3; ++k) {
       command.torque_body_N_m[k].set(i, lane.command_body_N_m[k]);
+      command.force_lab_N[k].set(i, lane.force_lab_N[k]);
+      command.force_body_N[k].set(i, lane.force_body_N[k]);
       command.light_body_N_m[k].set(i, light_N_m[k]);
       command.wheel_rad_s[k].set(i, wheel_rad_s[k]);
       command.wheel_rad_s2[k].set(i, lane.wheel.acceleration_rad_s2[k]);
@@ -185,16 +189,19 @@ EvaluationContext<T> Dynamics::begin(const T& time_s, const Command& command, co
   const Vec3Of<T> zero = Vec3Of<T>::Constant(T(0.0));
   const QuatOf<T> attitude(y[0], y[1], y[2], y[3]);
   const Vec3Of<T> rate(y[4], y[5], y[6]);
-  Vec3Of<T> position = zero, velocity = zero;
+  const Mat3Of<T> lab_from_body = attitude.toRotationMatrix();
+  Vec3Of<T> position = zero, velocity = zero, commanded = zero;
   for (int i = 0; translation_ >= 0 && i < 2; ++i) {
     position[i] = y[translation_ + i];
     velocity[i] = y[translation_ + 2 + i];
+    commanded[i] = command.force_lab_N[i];
+    for (int k = 0; k < 2; ++k) commanded[i] += lab_from_body(i, k) * command.force_body_N[k];
   }
   return {.platform = platform,
           .environment = environment,
           .time_s = time_s,
           .attitude = attitude,
-          .lab_from_body = attitude.toRotationMatrix(),
+          .lab_from_body = lab_from_body,
           .rate_body_rad_s = rate,
           .charge_drawn_C = y[component::charge],
           .mass_kg = platform.mass_kg,
@@ -205,6 +212,7 @@ EvaluationContext<T> Dynamics::begin(const T& time_s, const Command& command, co
           .gravity_gradient_1_s2 = environment.gravity_gradient_1_s2,
           .illumination = 1.0,
           .command_body_N_m = command.torque_body_N_m.template cast<T>(),
+          .command_lab_N = commanded,
           .battery_current_A = command.battery_current_A,
           .current_is_measured = model_.schedule.current_is_measured,
           .led_current_A = command.led_current_A,
@@ -241,6 +249,7 @@ void Dynamics::run_stages(const std::vector<size_t>& order, EvaluationContext<T>
   now.magnetic_field_body_T = now.to_body(now.magnetic_field_lab_T);
   now.up_body = now.to_body(now.up_lab);
   now.torque_body_N_m += now.command_body_N_m;
+  now.force_lab_N += now.command_lab_N;
   for (; d != order.end(); ++d) act(*d);
 }
 
@@ -354,6 +363,7 @@ Dynamics::Instants Dynamics::at(const Lanes& time_s,
   solve(now, y, result.rates.data());
   for (const size_t d : instruments_) act(d);
   result.command_body_N_m = now.command_body_N_m;
+  result.command_lab_N = now.command_lab_N;
   result.mass_offset_body_m = now.mass_offset_body_m;
   result.battery_current_A = now.battery_current_A;
   result.array_power_W = now.array_power_W;

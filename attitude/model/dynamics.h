@@ -96,6 +96,7 @@ class Dynamics {
     std::vector<Vec3Of<Lanes>> torque_body_N_m;  // of each disturbance, in the model's order
     std::vector<Vec3Of<Lanes>> force_lab_N;      // the same
     Vec3Of<Lanes> command_body_N_m;              // as it acts
+    Vec3Of<Lanes> command_lab_N;                 // the same
     Vec3Of<Lanes> mass_offset_body_m;
     Lanes battery_current_A;
     Lanes array_power_W;
@@ -132,7 +133,7 @@ class Dynamics {
   };
   // ZeroOrderHold values as lanes.
   struct Command {
-    Vec3Of<Lanes> torque_body_N_m;
+    Vec3Of<Lanes> torque_body_N_m, force_lab_N, force_body_N;
     Lanes battery_current_A;
     Lanes led_current_A, lamps_as_stated;
     Vec3Of<Lanes> light_body_N_m;

@@ -27,7 +27,7 @@ void check_inertia(const Mat3& inertia_kg_m2, const InputLocation& where, const 
 namespace {
 
 namespace platform_key {
-constexpr NumberKey mass("mass_kg", Range::positive(), "of all that turns");
+constexpr UncertainNumberKey mass("mass_kg", Range::positive(), "of all that turns");
 constexpr OtherKey inertia("inertia_kg_m2", Key::an_array | Key::a_table,
                            "3 × 3, symmetric, positive, body axes, about the centre of rotation");
 // About the one axis that is free.
@@ -79,6 +79,10 @@ bool breaks_within_sigma(const Mat3& inertia_kg_m2, const Mat3& sigma_kg_m2) {
 
 }  // namespace
 
+double mass_sigma_kg(const Settings& platform) {
+  return platform.has(platform_key::mass) ? platform.get(platform_key::mass).sigma : 0.0;
+}
+
 Mat3 inertia_sigma_kg_m2(const Settings& platform) {
   if (!has_sigma(platform)) return Mat3::Zero();
   const Settings both = platform.table(platform_key::inertia);
@@ -95,8 +99,9 @@ Platform read_platform(const Settings& settings) {
   if (platform.topology == Topology::one_axis) {
     platform.axis = Vec3::Unit(static_cast<Eigen::Index>(settings.get(platform_key::axis)));
   }
-  platform.mass_kg = platform.has_air_bearing() ? settings.get(platform_key::mass)
-                                                : settings.get_or(platform_key::mass, 1.0);
+  if (platform.has_air_bearing() || settings.has(platform_key::mass)) {
+    platform.mass_kg = settings.get(platform_key::mass).value;
+  }
   platform.inertia_kg_m2 = read_inertia(settings, platform);
   if (settings.has(platform_key::inertia) &&
       !breaks_within_sigma(platform.inertia_kg_m2, inertia_sigma_kg_m2(settings))) {

@@ -49,15 +49,19 @@ struct Platform {
 // `inertia_kg_m2` may be one number, the moment about that axis, and both it and `mass_kg` default
 // to one: torques are then per unit of inertia, and forces of a planar platform, which turns about
 // z, per unit of mass. A free platform needs no mass either.
-// `inertia_kg_m2` may be { value, sigma }, see inertia_sigma_kg_m2(). InputError when the mass is
-// not positive, the inertia not symmetric, not positive definite or against the triangle inequality
-// (the largest principal moment exceeds the sum of the others: no body has such an inertia).
+// `mass_kg` and `inertia_kg_m2` may be { value, sigma }, see mass_sigma_kg() and
+// inertia_sigma_kg_m2(). InputError when the mass is not positive, the inertia not symmetric, not
+// positive definite or against the triangle inequality (the largest principal moment exceeds the
+// sum of the others: no body has such an inertia).
 Platform read_platform(const Settings& settings);
 Key platform_table();
 
 // The sigmas of [platform] inertia_kg_m2 = { value, sigma }, an entry each; zero where none is
 // given.
 Mat3 inertia_sigma_kg_m2(const Settings& platform);
+
+// The sigma of [platform] mass_kg = { value, sigma }; zero where none is given.
+double mass_sigma_kg(const Settings& platform);
 
 // Throws the same complaint as read_platform() without a place in a file; `key` names the value.
 void check_inertia(const Mat3& inertia_kg_m2, const InputLocation& where, const std::string& key);

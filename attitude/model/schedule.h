@@ -40,6 +40,9 @@ enum class Slip : int64_t { by_rate, backward, sticks, forward };
 
 struct ZeroOrderHold {
   Vec3 command_body_N_m = Vec3::Zero();
+  // Forces on a platform that slides; they add up.
+  Vec3 force_lab_N = Vec3::Zero();
+  Vec3 force_body_N = Vec3::Zero();
   double battery_current_A = 0.0;   // positive discharges
   double led_current_A = 0.0;       // through lamps in the laboratory, where it is known
   double lamps_as_stated = 1.0;     // 1: it is not, and they shine as the model states; else 0
@@ -47,6 +50,10 @@ struct ZeroOrderHold {
   WheelSpeeds wheel = {};
   Slip slip = Slip::by_rate;
 
+  bool commands_torque() const { return command_body_N_m != Vec3::Zero(); }
+  bool commands_force() const {
+    return force_lab_N != Vec3::Zero() || force_body_N != Vec3::Zero();
+  }
   bool operator==(const ZeroOrderHold&) const = default;
 };
 

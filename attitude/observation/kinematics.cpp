@@ -143,10 +143,11 @@ std::vector<Left> what_is_left(const Observation& seen, const Prediction* about)
 std::vector<char> jumps_of(const Observation& seen) {
   std::vector<char> jumps(seen.blocks(), 0);
   const Schedule& schedule = seen.schedule;
-  Vec3 last = Vec3::Zero();
+  ZeroOrderHold last;
   for (size_t c = 0; c < schedule.time_s.size(); ++c) {
-    const Vec3& now = schedule.held[c].command_body_N_m;
-    const bool same = now == last;
+    const ZeroOrderHold& now = schedule.held[c];
+    const bool same = now.command_body_N_m == last.command_body_N_m &&
+                      now.force_lab_N == last.force_lab_N && now.force_body_N == last.force_body_N;
     last = now;
     if (same || schedule.time_s[c] <= seen.time_s.front()) continue;
     const auto next = std::lower_bound(seen.time_s.begin(), seen.time_s.end(), schedule.time_s[c]);

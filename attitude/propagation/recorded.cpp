@@ -177,6 +177,7 @@ void RecordedRun::record(const Look& look, const std::vector<double>& y, const P
                  .gyro_rad_s = in_lane(now.gyro_rad_s, lane),
                  .camera_error_rad = in_lane(now.camera_error_rad, lane),
                  .command_body_N_m = in_lane(now.command_body_N_m, lane),
+                 .command_lab_N = in_lane(now.command_lab_N, lane),
                  .battery_current_A = now.battery_current_A[lane],
                  .array_power_W = now.array_power_W[lane]});
   const bool is_last = states_.size() + 1 == rows_;

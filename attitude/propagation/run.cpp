@@ -46,11 +46,16 @@ constexpr NumberKey initial_time(
     "of the first row; commands, measured series and laws in time count in it");
 constexpr TextKey commands(
     "commands",
-    "CSV: `t_s` and any of `command_x_N_m`, `…_y_…`, `…_z_…`, `battery_current_A`, "
+    "CSV: `t_s` and any of `command_x_N_m`, `…_y_…`, `…_z_…`, `command_x_N`, `command_y_N` (of "
+    "what slides), `battery_current_A`, "
     "`led_current_A`, each row held until the next (zero-order hold); *or*",
     {.usually = "none"});
 constexpr NumberKey time("time_s", {}, "rising");
 constexpr Vec3Key torque("torque_N_m", {0.0, 0.0, 0.0}, "commanded, body axes");
+constexpr NumbersKey force("force_N", {}, "commanded of what slides, lab x and y",
+                           {.usually = "0, 0", .size = 2});
+constexpr NumbersKey force_body("force_body_N", {}, "the same along body x and y",
+                                {.usually = "0, 0", .size = 2});
 constexpr NumberKey battery_current("battery_current_A", 0.0, {}, "drawn");
 constexpr NumberKey led_current("led_current_A", Range::not_negative(),
                                 "of lamps; not given: they shine as ever", {.optional = true});
@@ -91,6 +96,12 @@ std::filesystem::path beside_experiment(const Settings& settings, const std::str
   return std::filesystem::path(settings.where().file).parent_path() / name;
 }
 
+Vec3 in_plane(const Settings& command, const NumbersKey& key) {
+  if (!command.has(key)) return Vec3::Zero();
+  const std::vector<double> two = command.get(key);
+  return {two[0], two[1], 0.0};
+}
+
 Schedule read_schedule(const Settings& settings) {
   if (settings.has(propagate_key::commands)) {
     // An empty list takes those of the file away.
@@ -117,6 +128,8 @@ Schedule read_schedule(const Settings& settings) {
     }
     before_s = time_s;
     ZeroOrderHold held{.command_body_N_m = command.get(propagate_key::torque),
+                       .force_lab_N = in_plane(command, propagate_key::force),
+                       .force_body_N = in_plane(command, propagate_key::force_body),
                        .battery_current_A = command.get(propagate_key::battery_current)};
     if (command.has(propagate_key::led_current)) {
       held.led_current_A = command.get(propagate_key::led_current);
@@ -195,6 +208,15 @@ Disturbance uncertain_inertia(const Mat3& sigma_kg_m2, const DisturbanceContext&
   return error;
 }
 
+// The same of the mass.
+Disturbance uncertain_mass(double sigma_kg, const DisturbanceContext& context) {
+  const auto kind = std::ranges::find_if(
+      disturbance_kinds(), [](const DisturbanceKind& k) { return k.screening.changes_mass; });
+  Disturbance error = make_disturbance_of(kind->name, {{kind->keys.front().name, {0.0}}}, context);
+  error.parameters.front().sigma = sigma_kg;
+  return error;
+}
+
 }  // namespace
 
 DisturbanceContext NominalModel::context() const {
@@ -222,6 +244,9 @@ NominalModel read_attitude_model(const Settings& root) {
   const DisturbanceContext context{model.platform, model.environment, camera ? &*camera : nullptr};
   model.disturbances = read_own_disturbances(root, context);
   if (model.platform.slides()) model.disturbances.push_back(translation());
+  if (const double sigma_kg = mass_sigma_kg(platform); sigma_kg > 0.0) {
+    model.disturbances.push_back(uncertain_mass(sigma_kg, context));
+  }
   if (const Mat3 sigma = inertia_sigma_kg_m2(platform); sigma.maxCoeff() > 0.0) {
     nominal.uncertain_inertia = model.disturbances.size();
     model.disturbances.push_back(uncertain_inertia(sigma, context));

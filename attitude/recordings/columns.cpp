@@ -163,9 +163,10 @@ constexpr const char* angle_names[] = {"angle_rad", "roll_rad", "pitch_rad", "ya
                                        "heading_rad"};
 constexpr const char* event_names[] = {"thruster", "impulse", "event"};
 // What Recording::schedule() makes use of.
-constexpr const char* schedule_names[] = {"command_x_N_m",     "command_y_N_m", "command_z_N_m",
-                                          "wheel_x_rad_s",     "wheel_y_rad_s", "wheel_z_rad_s",
-                                          "battery_current_A", "led_current_A"};
+constexpr const char* schedule_names[] = {
+    "command_x_N_m", "command_y_N_m",    "command_z_N_m",     "command_x_N",
+    "command_y_N",   "command_body_x_N", "command_body_y_N",  "wheel_x_rad_s",
+    "wheel_y_rad_s", "wheel_z_rad_s",    "battery_current_A", "led_current_A"};
 
 // 0, 1 or 2: x, y or z.
 size_t index_of(const Vec3& axis) {

@@ -25,6 +25,10 @@ constexpr std::string_view known_channels[] = {
     "command_x_N_m",
     "command_y_N_m",
     "command_z_N_m",
+    "command_x_N",
+    "command_y_N",
+    "command_body_x_N",
+    "command_body_y_N",
     "battery_current_A",
     "array_power_W",
     "array_voltage_V",
@@ -290,6 +294,8 @@ const Channel* Recording::find(std::string_view name) const {
 
 Schedule Recording::schedule() const {
   const Channel* command[3] = {find("command_x_N_m"), find("command_y_N_m"), find("command_z_N_m")};
+  const Channel* force_lab[2] = {find("command_x_N"), find("command_y_N")};
+  const Channel* force_body[2] = {find("command_body_x_N"), find("command_body_y_N")};
   const Channel* current = find("battery_current_A");
   Schedule schedule;
   schedule.current_is_measured = current != nullptr;
@@ -305,6 +311,10 @@ Schedule Recording::schedule() const {
   };
   for (size_t i = 0; i < rows(); ++i) {
     for (int k = 0; k < 3; ++k) update(command[k], i, held.command_body_N_m[k]);
+    for (int k = 0; k < 2; ++k) {
+      update(force_lab[k], i, held.force_lab_N[k]);
+      update(force_body[k], i, held.force_body_N[k]);
+    }
     update(current, i, held.battery_current_A);
     lamps.hold(i, held);
     for (; next < knots.size() && knots[next].from_s <= time_s[i]; ++next) held.wheel = knots[next];
@@ -358,8 +368,10 @@ Schedule read_command_file(const std::filesystem::path& path) {
     throw InputError({path.string(), static_cast<int>(line)}, "t_s", "times that do not rise",
                      "commands in order of time");
   }
-  for (const char* name : {"command_x_N_m", "command_y_N_m", "command_z_N_m", "battery_current_A",
-                           "led_current_A", "wheel_x_rad_s", "wheel_y_rad_s", "wheel_z_rad_s"}) {
+  for (const char* name :
+       {"command_x_N_m", "command_y_N_m", "command_z_N_m", "command_x_N", "command_y_N",
+        "command_body_x_N", "command_body_y_N", "battery_current_A", "led_current_A",
+        "wheel_x_rad_s", "wheel_y_rad_s", "wheel_z_rad_s"}) {
     if (recording.find(name) != nullptr) return recording.schedule();
   }
   throw InputError({path.string(), 0}, "header", "no command",

@@ -41,7 +41,9 @@ struct Machine {
   }
   bool has_three_rates() const { return has_all({"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"}); }
   bool is_commanded() const {
-    return has("command_x_N_m") || has("command_y_N_m") || has("command_z_N_m");
+    return std::ranges::any_of(recordings.front().schedule().held, [](const ZeroOrderHold& held) {
+      return held.commands_torque() || held.commands_force();
+    });
   }
   void observe_as(Topology topology, const Vec3& axis = Vec3::UnitZ()) {
     platform.topology = topology;

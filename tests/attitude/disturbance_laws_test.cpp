@@ -103,6 +103,9 @@ std::map<std::string, Entries> examples() {
       {"sliding_friction", {{"coefficient", node(2e-3)}}},
       {"sliding_drag", {{"coefficient_kg_s", node(0.3)}}},
       {"sliding_air_drag", {{"coefficient_kg_m", node(2.0)}}},
+      {"body_force", {{"force_N", numbers({0.2, -0.1})}}},
+      {"thrust_saturation", {{"loss_at_one_newton", node(0.8)}}},
+      {"mass_error", {{"delta_kg", node(0.05)}}},
       {"sliding_spring", {{"stiffness_N_per_m", node(0.7)}, {"pull_N", numbers({0.1, -0.2})}}},
       {"camera_misalignment", {{"misalignment_rad", numbers({1e-3, 2e-3, -1e-3})}}},
       {"marker_positions", {{"marker", node(2)}, {"error_m", numbers({2e-4, -1e-4, 3e-4})}}},
@@ -125,13 +128,15 @@ std::vector<std::string> kind_names() {
 AttitudeModel model_with(const std::string& kind) {
   AttitudeModel model = bench_model();
   model.schedule.append(0.0, {.command_body_N_m = {1e-4, -2e-4, 3e-4},
+                              .force_lab_N = {0.3, -0.2, 0.0},
+                              .force_body_N = {0.1, 0.4, 0.0},
                               .battery_current_A = 2.0,
                               .led_current_A = 0.3,
                               .lamps_as_stated = 0.0,
                               .wheel = {0.0, {20.0, -10.0, 30.0}, {0.3, 0.2, -0.1}}});
   // Forces act on what slides.
   const DisturbanceKind* known = find_kind(kind);
-  if (known != nullptr && known->screening.needs == Requirement::plane) {
+  if (known != nullptr && is_force(known->screening.needs)) {
     model.platform.topology = Topology::planar;
     model.disturbances.push_back(translation());
   }
@@ -284,6 +289,8 @@ TEST_P(EveryDisturbance, DerivativesAgreeWithCentralDifferences) {
 TEST(Disturbances, DerivativesAgreeWhenAllActTogether) {
   AttitudeModel model = bench_model();
   model.schedule.append(0.0, {.command_body_N_m = {1e-4, -2e-4, 3e-4},
+                              .force_lab_N = {0.3, -0.2, 0.0},
+                              .force_body_N = {0.1, 0.4, 0.0},
                               .battery_current_A = 2.0,
                               .led_current_A = 0.3,
                               .lamps_as_stated = 0.0,

@@ -36,11 +36,59 @@ Place end_of(const std::string& disturbance) {
   return {result.recording.find("x_m")->values.back(), result.recording.find("y_m")->values.back()};
 }
 
+// With a force commanded after one second.
+Place end_of_commanded(const std::string& command, const std::string& disturbance) {
+  const std::string acting = disturbance.empty() ? "" : "[[disturbance]]\n" + disturbance;
+  const PropagationResult result =
+      propagate(run_of(puck + "[[propagate.command]]\ntime_s = 1\n" + command + acting));
+  return {result.recording.find("x_m")->values.back(), result.recording.find("y_m")->values.back()};
+}
+
 TEST(Sliding, FreelyItGoesStraight) {
   const PropagationResult result = propagate(run_of(puck));
   EXPECT_NEAR(result.recording.find("x_m")->values.back(), 0.1 + 0.3 * 5, 1e-12);
   EXPECT_NEAR(result.recording.find("y_m")->values.back(), -0.2 + 0.4 * 5, 1e-12);
   EXPECT_EQ(result.recording.find("velocity_x_m_s"), nullptr);
+}
+
+// A force that is commanded in lab axes accelerates evenly from its time on.
+TEST(Sliding, ForceCommandedInTheLaboratoryAcceleratesIt) {
+  const Place end = end_of_commanded("force_N = [0.4, -0.2]\n", "");
+  EXPECT_NEAR(end.x, 0.1 + 0.3 * 5 + 0.5 * 0.4 / 2.0 * 16, 1e-10);
+  EXPECT_NEAR(end.y, -0.2 + 0.4 * 5 - 0.5 * 0.2 / 2.0 * 16, 1e-10);
+}
+
+// Of a platform that turns evenly by ω t the acceleration f/m turns with it: two integrations of
+// (cos ω t, sin ω t) from rest at t = 0 give (1 − cos ω t, ω t − sin ω t)/ω².
+TEST(Sliding, ForceFixedInTheBodyTurnsWithIt) {
+  const double turn_rad = 0.5 * 5, a_m_s2 = 0.6 / 2.0;
+  const double along = a_m_s2 * (1.0 - std::cos(turn_rad)) / 0.25;
+  const double across = a_m_s2 * (turn_rad - std::sin(turn_rad)) / 0.25;
+  const std::string turning = "initial_rate_rad_s = [0, 0, 0.5]\n";
+  const std::string acting = "[[disturbance]]\nkind = \"body_force\"\nforce_N = [0.6, 0]\n";
+  const PropagationResult own = propagate(run_of(puck + turning + acting));
+  const PropagationResult commanded = propagate(
+      run_of(puck + turning + "[[propagate.command]]\ntime_s = 0\nforce_body_N = [0.6, 0]\n"));
+  for (const PropagationResult* result : {&own, &commanded}) {
+    EXPECT_NEAR(result->recording.find("x_m")->values.back(), 0.1 + 0.3 * 5 + along, 1e-8);
+    EXPECT_NEAR(result->recording.find("y_m")->values.back(), -0.2 + 0.4 * 5 + across, 1e-8);
+  }
+}
+
+TEST(Sliding, ThrustersThatGiveLessAccelerateLess) {
+  const std::string command = "force_N = [0.4, -0.2]\n";
+  const Place gain = end_of_commanded(command, "kind = \"actuator_gain\"\ngain_error = -0.25\n");
+  EXPECT_NEAR(gain.x, 0.1 + 0.3 * 5 + 0.5 * 0.75 * 0.4 / 2.0 * 16, 1e-10);
+  const Place axes =
+      end_of_commanded(command, "kind = \"actuator_gain\"\ngain_error = [-0.25, 0.5, 7]\n");
+  EXPECT_NEAR(axes.x, gain.x, 1e-10);
+  EXPECT_NEAR(axes.y, -0.2 + 0.4 * 5 - 0.5 * 1.5 * 0.2 / 2.0 * 16, 1e-10);
+  const Place saturated =
+      end_of_commanded(command, "kind = \"thrust_saturation\"\nloss_at_one_newton = 2.5\n");
+  EXPECT_NEAR(saturated.x, 0.1 + 0.3 * 5 + 0.5 * 0.2 / 2.0 * 16, 1e-8);
+  EXPECT_NEAR(saturated.y, -0.2 + 0.4 * 5 - 0.5 * (0.2 / 1.5) / 2.0 * 16, 1e-8);
+  const Place heavier = end_of_commanded(command, "kind = \"mass_error\"\ndelta_kg = 2\n");
+  EXPECT_NEAR(heavier.x, 0.1 + 0.3 * 5 + 0.5 * 0.4 / 4.0 * 16, 1e-10);
 }
 
 TEST(Sliding, DownASlopeItAccelerates) {

@@ -19,16 +19,21 @@ namespace {
 using Names = std::set<std::string>;
 
 // What a recording of motion cannot reveal, or nobody can forget: see the reasons in their files.
-const Names not_screened = {"empirical_torque",     "helmholtz_cage", "orbit",
-                            "planet_light",         "power_balance",  "radiation_pressure",
-                            "stepper_quantization", "wheel_control"};
+const Names not_screened = {
+    "empirical_torque", "helmholtz_cage", "mass_error",         "orbit",
+    "planet_light",     "power_balance",  "radiation_pressure", "stepper_quantization",
+    "wheel_control"};
 // Instruments exert no torque; an orbit is where others do, in which alone a planet shines; lamps
 // press at an instant's current.
-const Names not_ranked = {
-    "attitude_latency", "camera_misalignment", "gyro_bias",        "gyro_misalignment",
-    "gyro_scale",       "lamp_pressure",       "marker_positions", "orbit",
-    "planet_light",     "sliding_air_drag",    "sliding_drag",     "sliding_friction",
-    "sliding_spring",   "table_slope"};
+const Names not_ranked = {"attitude_latency",    "body_force",
+                          "camera_misalignment", "gyro_bias",
+                          "gyro_misalignment",   "gyro_scale",
+                          "lamp_pressure",       "marker_positions",
+                          "mass_error",          "orbit",
+                          "planet_light",        "sliding_air_drag",
+                          "sliding_drag",        "sliding_friction",
+                          "sliding_spring",      "table_slope",
+                          "thrust_saturation"};
 Names all_names() {
   Names names;
   for (const DisturbanceKind& kind : disturbance_kinds()) names.insert(kind.name);

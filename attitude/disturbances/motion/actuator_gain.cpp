@@ -1,4 +1,4 @@
-// Actuators give another torque than commanded: T = gain_error × command.
+// Actuators give another torque or force than commanded: T = gain_error × command.
 //
 // gain_error: one number, or one for each body axis; 0.1 is 10 % too much.
 #include "attitude/disturbances/kind.h"
@@ -8,20 +8,24 @@ namespace {
 
 constexpr ScalarKey common_gain(
     "gain_error", {},
-    "e: actuators give (1 + e) of the command; one number, or one for each body axis");
+    "e: actuators give (1 + e) of the command; one number, or one for each body axis: of what "
+    "slides x and y are those of its forces, z that of its torque");
 constexpr VectorKey axis_gain{common_gain.name};
 
-struct CommonGain final : TorqueLaw<CommonGain> {
+struct CommonGain final : LawOf<CommonGain> {
   template <class T>
-  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
-    return own[common_gain] * now.command_body_N_m;
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
+    now.torque_body_N_m += own[common_gain] * now.command_body_N_m;
+    now.force_lab_N += own[common_gain] * now.command_lab_N;
   }
 };
 
-struct AxisGain final : TorqueLaw<AxisGain> {
+struct AxisGain final : LawOf<AxisGain> {
   template <class T>
-  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
-    return own[axis_gain].cwiseProduct(now.command_body_N_m);
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
+    const Vec3Of<T> gain = own[axis_gain];
+    now.torque_body_N_m += gain.cwiseProduct(now.command_body_N_m);
+    now.force_lab_N += now.lab_from_body * gain.cwiseProduct(now.to_body(now.command_lab_N));
   }
 };
 
@@ -36,7 +40,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 DisturbanceKind kind() {
   return {.name = "actuator_gain",
-          .summary = "actuators give more or less torque than commanded",
+          .summary = "actuators give more or less torque or force than commanded",
           .read = read,
           .screening =
               {.parametrisations =

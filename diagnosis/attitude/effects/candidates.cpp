@@ -99,8 +99,8 @@ double mean_square_action(const Disturbance& disturbance, const AttitudeModel& n
                           const std::vector<ReadMotion>& motions) {
   AttitudeModel model = nominal;
   model.disturbances = {disturbance};
-  const bool is_force = find_kind(disturbance.kind) != nullptr &&
-                        find_kind(disturbance.kind)->screening.needs == Requirement::plane;
+  const bool pushes = find_kind(disturbance.kind) != nullptr &&
+                      is_force(find_kind(disturbance.kind)->screening.needs);
   const Platform& platform = model.platform;
   if (platform.slides()) model.disturbances.push_back(translation());
   double sum = 0.0, count = 0.0;
@@ -114,9 +114,9 @@ double mean_square_action(const Disturbance& disturbance, const AttitudeModel& n
       if (platform.slides()) {
         std::copy(state.extra.end() - 4, state.extra.end(), own.extra.end() - 4);
       }
-      Vec3 action = is_force ? disturbance_forces_lab_N(model, own).front()
-                             : disturbance_torques_body_N_m(model, own).front();
-      if (!is_force && platform.turns_about_one_axis()) {
+      Vec3 action = pushes ? disturbance_forces_lab_N(model, own).front()
+                           : disturbance_torques_body_N_m(model, own).front();
+      if (!pushes && platform.turns_about_one_axis()) {
         action = platform.axis.dot(action) * platform.axis;
       }
       sum += action.squaredNorm();
@@ -170,7 +170,7 @@ void scale_to_machine(const NominalModel& nominal, const std::vector<Observation
       platform.mass_kg * std::sqrt(square_m2_s4 / static_cast<double>(motions.size()));
   if (!(torque_N_m > 0.0) && !(force_N > 0.0)) return;
   for (Candidate& c : candidates) {
-    const double expected = c.effect.how.needs == Requirement::plane ? force_N : torque_N_m;
+    const double expected = is_force(c.effect.how.needs) ? force_N : torque_N_m;
     if (!(expected > 0.0)) continue;
     std::vector<double> actions(c.start.parameters.size(), 0.0);
     for (size_t p = 0; p < c.start.parameters.size(); ++p) {
@@ -241,7 +241,8 @@ CoveredMotion covered_by(const std::vector<Observation>& runs) {
         dimmest_A = std::min(dimmest_A, held.led_current_A);
         brightest_A = std::max(brightest_A, held.led_current_A);
       }
-      covered.has_commands = covered.has_commands || held.command_body_N_m.norm() > 0.0;
+      covered.has_commands = covered.has_commands || held.commands_torque();
+      covered.has_forces = covered.has_forces || held.commands_force();
       covered.has_wheel = covered.has_wheel || held.wheel != WheelSpeeds{};
     }
     // Light that is always the same pushes as a draught does.
@@ -375,7 +376,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
   const auto has_channel = [&](Requirement channel) {
     switch (channel) {
       case Requirement::command:
-        return covered.has_commands;
+        return covered.has_commands || covered.has_forces;
       case Requirement::charge:
         return covered.charge_C != 0.0;
       case Requirement::field:
@@ -396,6 +397,8 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
         return covered.has_lamps;
       case Requirement::plane:
         return context.platform.slides();
+      case Requirement::thrust:
+        return covered.has_forces;
       case Requirement::none:
         break;
     }
@@ -432,8 +435,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     return seen.sees_some_attitude() || seen.has_gyro;
   });
   if (context.platform.slides() && !sees_turn) {
-    std::erase_if(all.list,
-                  [](const Candidate& c) { return c.effect.how.needs != Requirement::plane; });
+    std::erase_if(all.list, [](const Candidate& c) { return !is_force(c.effect.how.needs); });
   }
   // A law of the heading cannot be told from a constant where the heading hardly changes.
   if (!context.platform.has_air_bearing() && !turns(runs)) {

@@ -25,11 +25,12 @@ struct EmpiricalLaw {
 // What the recordings cover, by which the laws are scaled.
 struct CoveredMotion {
   double duration_s = 0.0;
-  double tilt_rad = 0.0;    // the largest
-  double rate_rad_s = 0.0;  // the largest; 0: no rates were recorded
-  double charge_C = 0.0;    // 0: no current was recorded
-  bool has_commands = false;
-  bool has_wheel = false;  // the speed of one was recorded
+  double tilt_rad = 0.0;      // the largest
+  double rate_rad_s = 0.0;    // the largest; 0: no rates were recorded
+  double charge_C = 0.0;      // 0: no current was recorded
+  bool has_commands = false;  // of torques
+  bool has_forces = false;    // that are commanded
+  bool has_wheel = false;     // the speed of one was recorded
   // Of lamps, the largest in all recordings, and whether it changes within one.
   double led_current_A = 0.0;
   bool has_lamps = false;

@@ -1,0 +1,42 @@
+// The mass is not the nominal one: m + δ.
+//
+// delta_kg: δ. The whole must remain positive.
+#include "attitude/disturbances/kind.h"
+
+namespace photorque::kinds::mass_error {
+namespace {
+
+constexpr ScalarKey delta("delta_kg", {}, "by which the mass differs; the whole stays positive");
+
+struct MassError final : LawOf<MassError> {
+  template <class T>
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
+    now.mass_kg += own[delta];
+  }
+};
+
+Disturbance read(const Settings& settings, const DisturbanceContext& context) {
+  const PlacedParameters read = scalar_parameter(settings, delta);
+  const double mass_kg = context.platform.mass_kg + read.parameters.front().value;
+  if (!(mass_kg > 0.0)) {
+    throw settings.error(delta.name, "a mass of " + std::to_string(mass_kg) + " kg with it",
+                         "a mass above zero");
+  }
+  return make_disturbance<MassError>({read}, Stage::conditions);
+}
+
+}  // namespace
+
+DisturbanceKind kind() {
+  return {.name = "mass_error",
+          .summary = "the mass is not the one stated",
+          .read = read,
+          .screening = {.reason_against = "a weight looks like its lever, and a force that is "
+                                          "commanded like its gain: see `static_unbalance` and "
+                                          "`actuator_gain`",
+                        .changes_mass = true},
+          .budget = {.reason_against = "no torque of its own"},
+          .keys = {delta}};
+}
+
+}  // namespace photorque::kinds::mass_error

@@ -1,0 +1,42 @@
+// A force that turns with what slides: F = R f, as a leaking thruster or a current of air from the
+// platform itself exerts it.
+//
+// force_N[2]: f along body x and y.
+#include "attitude/disturbances/kind.h"
+
+namespace photorque::kinds::body_force {
+namespace {
+
+constexpr KeyOf<2> force_body{"force_N"};
+
+namespace key {
+constexpr NumbersKey force("force_N", {}, "along body x and y", {.has_error = true, .size = 2});
+}  // namespace key
+
+struct BodyForce final : ForceLaw<BodyForce> {
+  template <class T>
+  Vec3Of<T> force(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
+    return now.lab_from_body *
+           Vec3Of<T>(own.element(force_body, 0), own.element(force_body, 1), T(0.0));
+  }
+};
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<BodyForce>({array_parameter(settings, force_body.name, 2)});
+}
+
+}  // namespace
+
+DisturbanceKind kind() {
+  return {.name = "body_force",
+          .summary = "a constant force that turns with what slides",
+          .read = read,
+          .screening = {.parametrisations = {{"a constant force acts that turns with the platform: "
+                                              "a leaking thruster, a hose, a fan on board",
+                                              {{force_body.name, {0.0, 0.0}, 1e-2}}}},
+                        .needs = Requirement::plane},
+          .budget = {.reason_against = "a force, not a torque"},
+          .keys = {key::force}};
+}
+
+}  // namespace photorque::kinds::body_force

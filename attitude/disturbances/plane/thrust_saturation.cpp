@@ -1,0 +1,47 @@
+// Thrusters that give less the more they are asked for, on each body axis of what slides:
+// F = c / (1 + k |c| / 1 N) in place of the commanded c.
+//
+// loss_at_one_newton: k ≥ 0; the largest thrust is 1/k newton.
+#include "attitude/disturbances/kind.h"
+
+namespace photorque::kinds::thrust_saturation {
+namespace {
+
+constexpr ScalarKey loss("loss_at_one_newton", Range::not_negative(),
+                         "k in F = c/(1 + k |c|/1 N), c the commanded force along a body axis; the "
+                         "largest thrust is 1/k newton");
+
+// Rounds the corner of |c| at no command.
+constexpr double least_N = 1e-9;
+
+struct ThrustSaturation final : ForceLaw<ThrustSaturation> {
+  template <class T>
+  Vec3Of<T> force(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
+    Vec3Of<T> lost = now.to_body(now.command_lab_N);
+    for (int k = 0; k < 3; ++k) {
+      const T part = own[loss] * sqrt(lost[k] * lost[k] + T(least_N * least_N));
+      lost[k] *= -part / (1.0 + part);
+    }
+    return now.lab_from_body * lost;
+  }
+};
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<ThrustSaturation>({scalar_parameter(settings, loss)});
+}
+
+}  // namespace
+
+DisturbanceKind kind() {
+  return {.name = "thrust_saturation",
+          .summary = "thrusters give less than commanded, and ever less of large commands",
+          .read = read,
+          .screening = {.parametrisations = {{"the thrusters saturate: large commands are met with "
+                                              "less than small ones",
+                                              {EffectKey::not_negative(loss.name, 1.0)}}},
+                        .needs = Requirement::thrust},
+          .budget = {.reason_against = "a force, not a torque"},
+          .keys = {loss}};
+}
+
+}  // namespace photorque::kinds::thrust_saturation
