@@ -50,7 +50,8 @@ TEST_F(OpticalTruth, TorqueMapOverTiltsNeedsNoReceiver) {
 }
 
 TEST_F(OpticalTruth, SunlightOnAFarSceneIsRefused) {
-  const std::string file = plate("[0, 0, -1]", "", "f 1 2 3 4\n", "centre_of_rotation_m = [10000, 0, 0]\n");
+  const std::string file =
+      plate("[0, 0, -1]", "", "f 1 2 3 4\n", "centre_of_rotation_m = [10000, 0, 0]\n");
   const Outcome traced = run("trace " + file + " --out " + at("o"));
   EXPECT_EQ(traced.status, 2);
   EXPECT_THAT(traced.err, HasSubstr("from the body's origin"));

@@ -1,5 +1,6 @@
 // The program: reads the command line, runs one verb, turns exceptions into exit statuses.
 #include <signal.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <array>
@@ -75,9 +76,14 @@ int run(int argc, char** argv, Interruption& interruption) {
 // The last resort: one line and a documented status where a library, or this program, would end by
 // a signal. Calls nothing but what is allowed in a handler.
 [[noreturn]] void end_after_fault(int) {
-  constexpr std::string_view line =
-      "numerical failure: a fault of the program ended this run; please report its command and "
-      "files\n";
+  // Libraries that do not check what they allocate end here too.
+  constexpr size_t some = size_t{256} << 20;
+  const bool has_memory = ::mmap(nullptr, some, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS,
+                                 -1, 0) != MAP_FAILED;
+  const std::string_view line =
+      has_memory ? "numerical failure: a fault of the program ended this run; please report its "
+                   "command and files\n"
+                 : "numerical failure: not enough memory\n";
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
   ::_exit(3);
 }
