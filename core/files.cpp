@@ -2,12 +2,15 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/random.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <charconv>
+#include <cstdio>
+#include <cstring>
 #include <fstream>
 
 #include "core/errors.h"
@@ -27,6 +30,26 @@ std::string host_mark() {
     mark += std::isalnum(static_cast<unsigned char>(*c)) != 0 ? *c : '-';
   }
   return mark + ".part";
+}
+
+// Nobody can put a link in the place of a name that cannot be known before.
+std::string unpredictable() {
+  uint64_t bits = 0;
+  if (::getrandom(&bits, sizeof bits, 0) != static_cast<ssize_t>(sizeof bits)) {
+    throw NumericalError("the system gives no random bytes for the names of temporary files");
+  }
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(bits));
+  return text;
+}
+
+// A new file of nobody else's: neither a link nor what is there already.
+void make_own_file(const fs::path& path, const fs::path& wanted) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  if (file < 0) {
+    throw InputError({wanted.string()}, "", std::strerror(errno), "a path that can be written");
+  }
+  ::close(file);
 }
 
 // The process of this machine that a temporary name belongs to.
@@ -145,8 +168,8 @@ std::optional<std::string> read_file_beside(const fs::path& folder, const std::s
 
 fs::path temporary_beside(const fs::path& path) {
   fs::path temporary = path;
-  temporary.replace_filename("." + path.stem().string() + "." + std::to_string(::getpid()) +
-                             host_mark() + path.extension().string());
+  temporary.replace_filename("." + path.stem().string() + "." + unpredictable() + "." +
+                             std::to_string(::getpid()) + host_mark() + path.extension().string());
   return temporary;
 }
 
@@ -186,6 +209,7 @@ void write_file_whole(const fs::path& path, const std::function<void(const fs::p
   make_folders(folder);
   std::error_code failure;
   try {
+    make_own_file(temporary, path);
     write(temporary);
     if (!reaches_disk(temporary)) {
       throw InputError({path.string()}, "", "a write that failed", "space and permission");

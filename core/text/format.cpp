@@ -46,6 +46,16 @@ std::string with_true_minus(const std::string& ascii) {
 
 }  // namespace
 
+namespace {
+
+// U+0080 to U+009F, which some terminals obey as they do an escape.
+bool is_high_control(std::string_view character) {
+  return character.size() > 1 && character[0] == '\xC2' &&
+         static_cast<unsigned char>(character[1]) < 0xA0;
+}
+
+}  // namespace
+
 std::string clean_text(std::string_view text) {
   std::string clean;
   while (!text.empty()) {
@@ -53,7 +63,7 @@ std::string clean_text(std::string_view text) {
     const auto lead = static_cast<unsigned char>(text.front());
     if (bytes == 0) {
       clean += "\uFFFD";
-    } else if (lead < 0x20 || lead == 0x7F) {
+    } else if (lead < 0x20 || lead == 0x7F || is_high_control(text)) {
       clean += ' ';
     } else {
       clean += text.substr(0, bytes);

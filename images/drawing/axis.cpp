@@ -161,10 +161,13 @@ Ticks log_ticks(double low, double high, int at_most) {
 
 AxisRange drawable(AxisRange interval) {
   auto [low, high] = interval;
+  // Beyond these the steps between ticks are infinite, or lose their digits.
+  constexpr double least = 1e-280, most = 1e280;
   if (!std::isfinite(low) || !std::isfinite(high)) return {0.0, 1.0};
   if (low > high) std::swap(low, high);
   const double magnitude = std::max(std::abs(low), std::abs(high));
-  if (magnitude == 0.0) return {-1.0, 1.0};
+  if (magnitude < least) return {-1.0, 1.0};
+  if (magnitude > most) return {-most, most};
   if (high - low > 1e-9 * magnitude) return {low, high};
   const double middle = low + 0.5 * (high - low);
   return {middle - 0.1 * magnitude, middle + 0.1 * magnitude};

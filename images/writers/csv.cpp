@@ -6,6 +6,7 @@
 // Numbers read back as the same doubles; NaN is an empty cell, infinities are "inf" and "-inf".
 #include "core/files.h"
 #include "core/text/format.h"
+#include "core/text/parse.h"
 #include "images/drawing/map.h"
 #include "images/writers/kind.h"
 
@@ -25,6 +26,12 @@ std::string preamble(const std::string& title, const Provenance& provenance) {
 
 std::string quoted_where_needed(const std::string& cell) {
   std::string clean = clean_text(cell);
+  // Spreadsheets take what begins so for a formula, in quotes too, unless it is a number; the
+  // apostrophe makes it a text.
+  if (!clean.empty() && std::string_view("=+-@").find(clean.front()) != std::string_view::npos &&
+      clean != "-" && !number_in(clean)) {
+    clean.insert(clean.begin(), '\'');
+  }
   // A leading '#' would read as a comment.
   if (clean.find_first_of(",\"") == std::string::npos && !clean.starts_with('#')) return clean;
   std::string quoted = "\"";

@@ -33,7 +33,14 @@ fs::path module_path() {
 const PictureFunctions& load() {
   const fs::path path = module_path();
   void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (module == nullptr) fail(path, dlerror());
+  if (module == nullptr) {
+    const std::string why = dlerror();
+    for (const char* sign : {"failed to map", "annot allocate memory", "annot create"}) {
+      if (why.find(sign) == std::string::npos) continue;
+      throw NumericalError("not enough memory for " + std::string(file_name) + " (" + why + ")");
+    }
+    fail(path, why);
+  }
   const auto entry = reinterpret_cast<PictureEntry*>(dlsym(module, picture_entry));
   if (entry == nullptr) fail(path, "another library");
   const PictureFunctions& functions = *entry();

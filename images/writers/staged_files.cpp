@@ -96,8 +96,11 @@ StagedFiles::StagedFiles(const fs::path& folder)
     made_ = p;
   }
   make_folders(folder);
-  fs::create_directory(path_, failure);
-  if (failure) throw InputError({folder.string()}, "", failure.message(), "a writable folder");
+  // Of this run alone: a folder that is there already, or a link, is another's.
+  if (!fs::create_directory(path_, failure)) {
+    throw InputError({folder.string()}, "", failure ? failure.message() : "a folder of that name",
+                     "a writable folder");
+  }
 }
 
 StagedFiles::~StagedFiles() {

@@ -33,8 +33,8 @@ inline constexpr NumberKey reference_temperature("reference_temperature_K", Rang
 inline constexpr NumberKey saturation_1("saturation_1_A", Range::not_negative(),
                                         "I₁; not both I₁ and I₂ are 0");
 inline constexpr NumberKey saturation_2("saturation_2_A", Range::not_negative(), "I₂");
-inline constexpr NumberKey ideality_1("ideality_1", Range::positive(), "n₁");
-inline constexpr NumberKey ideality_2("ideality_2", Range::positive(), "n₂");
+inline constexpr NumberKey ideality_1("ideality_1", Range{0.01, 100.0}, "n₁");
+inline constexpr NumberKey ideality_2("ideality_2", Range{0.01, 100.0}, "n₂");
 inline constexpr NumberKey series("series_ohm", series_ohm_range, "R_s");
 inline constexpr NumberKey shunt("shunt_ohm", Range::positive(), "R_sh");
 inline constexpr NumberKey breakdown_fraction("breakdown_fraction", {0.0, 7.0},

@@ -130,9 +130,9 @@ void locate_hits(const TraceableScene::Data& scene, int depth, HitBuffer& buffer
     const double nx = buffer.plane[0][i], ny = buffer.plane[1][i], nz = buffer.plane[2][i];
     const double facing = nx * dx + ny * dy + nz * dz;
     const double t = (buffer.plane[3][i] - nx * ox - ny * oy - nz * oz) / facing;
-    hits.position_m[0][i] = ox + t * dx;
-    hits.position_m[1][i] = oy + t * dy;
-    hits.position_m[2][i] = oz + t * dz;
+    hits.position_m[0][i] = scene.centre_m.x() + (ox + t * dx);
+    hits.position_m[1][i] = scene.centre_m.y() + (oy + t * dy);
+    hits.position_m[2][i] = scene.centre_m.z() + (oz + t * dz);
     hits.cosine[i] = std::min(std::abs(facing), 1.0);
     buffer.facing[i] = static_cast<float>(facing);
   }

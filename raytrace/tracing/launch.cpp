@@ -25,7 +25,7 @@ RayPlacement::RayPlacement(const RigidTransform& body_from_emitter,
     for (size_t k = 0; k < 3; ++k) {
       rotation_[i][k] = static_cast<float>(rotation(row, static_cast<Eigen::Index>(k)));
     }
-    offset_m_[i] = static_cast<float>(offset_m[row]);
+    offset_m_[i] = static_cast<float>(offset_m[row] - scene.centre_m[row]);
   }
 }
 

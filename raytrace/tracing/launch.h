@@ -41,11 +41,12 @@ class RayPlacement {
   float start_z_m_;  // of the plane before the scene, 0 if there is none
   float landing_z_m_;
   std::array<std::array<float, 3>, 3> rotation_;
-  std::array<float, 3> offset_m_;  // in the body frame, of the emitter's (0, 0, start_z)
+  std::array<float, 3>
+      offset_m_;  // from the scene's centre in body axes, of the emitter's (0, 0, start_z)
 };
 
-// A ray as Embree takes it. Its single-precision origin and direction ARE the ray: everything later
-// is computed in double precision from them.
+// A ray as Embree takes it, from the scene's centre in body axes. Its single-precision origin and
+// direction ARE the ray: everything later is computed in double precision from them.
 struct alignas(32) Ray {
   float origin_m[3];
   float direction[3];

@@ -80,7 +80,13 @@ void find_in_packets(const TraceableScene::Data& scene, std::span<const ShadowRa
 std::vector<TriangleCorners> triangles_above(const Scene& scene, const Vec3& plane_point_m,
                                              const Vec3& plane_normal) {
   // Below this height a triangle lies in the plane as far as single precision can tell.
-  const double min_m = 1e-6 * scene.radius_m();
+  Eigen::AlignedBox3d box;
+  for (const Instance& instance : scene.instances) {
+    for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
+      box.extend(instance.body_from_mesh * vertex);
+    }
+  }
+  const double min_m = box.isEmpty() ? 0.0 : 1e-6 * 0.5 * box.diagonal().norm();
   std::vector<TriangleCorners> above;
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
@@ -153,6 +159,10 @@ double shadow_ray_offset_m(const TraceableScene& scene) {
 
 double scene_diameter_m(const TraceableScene& scene) {
   return 2.0 * scene.data().radius_m;
+}
+
+const Vec3& scene_centre_m(const TraceableScene& scene) {
+  return scene.data().centre_m;
 }
 
 }  // namespace photorque

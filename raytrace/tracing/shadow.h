@@ -39,9 +39,9 @@ class Shaft {
   double radius_m_, widening_;  // of the shaft: radius_m_ + widening_ · along, within the ends
 };
 
-// A straight line from a point to another, or until it has left the scene. Body frame.
+// A straight line from a point to another, or until it has left the scene. Body axes.
 struct ShadowRay {
-  float origin_m[3];
+  float origin_m[3];   // from scene_centre_m()
   float direction[3];  // unit length
   float length_m;
 };
@@ -57,5 +57,7 @@ void find_shadows(const TraceableScene& scene, std::span<const ShadowRay> rays,
 // seen from any point of it.
 double shadow_ray_offset_m(const TraceableScene& scene);
 double scene_diameter_m(const TraceableScene& scene);
+// Where shadow rays count from, in the body frame: the middle of the scene.
+const Vec3& scene_centre_m(const TraceableScene& scene);
 
 }  // namespace photorque

@@ -64,7 +64,7 @@ void add_instance(TraceableScene::Data& data, const Instance& instance) {
   }
   std::vector<Vec3> placed(mesh.vertices_m.size());
   for (size_t i = 0; i < placed.size(); ++i) {
-    placed[i] = instance.body_from_mesh * mesh.vertices_m[i];
+    placed[i] = instance.body_from_mesh * mesh.vertices_m[i] - data.centre_m;
     for (int k = 0; k < 3; ++k)
       vertices[3 * i + static_cast<size_t>(k)] = static_cast<float>(placed[i][k]);
   }
@@ -122,8 +122,8 @@ void bound(TraceableScene::Data& data) {
   if (box.isEmpty()) return;
   data.centre_m = box.center();
   data.radius_m = 0.5 * box.diagonal().norm();
-  // Single precision rounds a coordinate x by up to 6e-8 |x|.
-  data.ray_offset_m = 5e-7 * (data.centre_m.cwiseAbs().maxCoeff() + data.radius_m);
+  // Single precision rounds a coordinate x by up to 6e-8 |x|; rays count from the centre.
+  data.ray_offset_m = 5e-7 * data.radius_m;
 }
 
 }  // namespace
@@ -143,9 +143,9 @@ TraceableScene::TraceableScene(Scene scene, bool leak_safe) : data_(std::make_un
   data_->embree = rtcNewScene(data_->device);
   rtcSetSceneFlags(data_->embree, leak_safe ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
   rtcSetSceneBuildQuality(data_->embree, RTC_BUILD_QUALITY_MEDIUM);
+  bound(*data_);
   for (const Instance& instance : data_->scene.instances) add_instance(*data_, instance);
   note_bsdfs(*data_);
-  bound(*data_);
   rtcCommitScene(data_->embree);
   if (rtcGetDeviceError(data_->device) != RTC_ERROR_NONE) {
     throw NumericalError("Embree could not build its hierarchy");

@@ -9,8 +9,8 @@
 
 namespace photorque {
 
-// The plane of a triangle in the body frame: points p with normal · p = offset_m. The normal is of
-// unit length on the front side.
+// The plane of a triangle: points p from the scene's centre_m with normal · p = offset_m, in body
+// axes. The normal is of unit length on the front side.
 struct TrianglePlane {
   double normal[3];
   double offset_m;
@@ -33,8 +33,10 @@ struct TraceableScene::Data {
   std::vector<uint8_t> black;  // 1: the side absorbs everything and does nothing else
   // Null where fractions are the same at every angle; empty if they are so everywhere.
   std::vector<const AlbedoLaw*> albedo_law;
-  bool reemits = false;          // whether heat radiation leaves any surface
-  Vec3 centre_m = Vec3::Zero();  // of a sphere that holds the scene
+  bool reemits = false;  // whether heat radiation leaves any surface
+  // Of a sphere that holds the scene. Embree's vertices and rays count from here in single
+  // precision, so that the distance of the scene from the body's origin costs none of it.
+  Vec3 centre_m = Vec3::Zero();
   double radius_m = 0.0;
   // How far a ray that leaves a surface starts above it: beyond single-precision rounding of any
   // point of the scene, below any feature.

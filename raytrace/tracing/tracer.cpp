@@ -170,7 +170,7 @@ void BatchTracer::escape(const Ray& ray, const double* power_W) {
 void BatchTracer::leave(const Ray& ray, double power_W) {
   const Vec3 direction(ray.direction[0], ray.direction[1], ray.direction[2]);
   const Vec3 origin(ray.origin_m[0], ray.origin_m[1], ray.origin_m[2]);
-  sums_->power_balance.release(origin, direction, power_W);
+  sums_->power_balance.release(context_.scene->centre_m + origin, direction, power_W);
 }
 
 // What is still under way at the depth limit.

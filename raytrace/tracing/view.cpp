@@ -19,7 +19,7 @@ Ray nearby_ray(const TraceableScene::Data& scene, const Sight& sight, size_t ind
   const Vec3 origin = sight.origin_m + std::max(0.0, ahead) * sight.direction;
   Ray ray{};
   for (int k = 0; k < 3; ++k) {
-    ray.origin_m[k] = static_cast<float>(origin[k]);
+    ray.origin_m[k] = static_cast<float>(origin[k] - scene.centre_m[k]);
     ray.direction[k] = static_cast<float>(sight.direction[k]);
   }
   ray.sample = static_cast<uint32_t>(index);

@@ -190,7 +190,8 @@ class ShadedSampler {
     const Vec3 start = at + ray_offset_m_ * lamp_.normal_emitter();
     const Vec3 between = from - start;
     const double length = between.norm();
-    const Vec3 origin = body_from_emitter_ * start + lamp_.body_from_emitter().translation_m;
+    const Vec3 origin = body_from_emitter_ * start + lamp_.body_from_emitter().translation_m -
+                        scene_centre_m(plane_.scene());
     const Vec3 direction = body_from_emitter_ * (between / length);
     ShadowRay& ray = shadow_[count_++];
     for (int k = 0; k < 3; ++k) {

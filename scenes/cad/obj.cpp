@@ -116,6 +116,10 @@ class ObjReader {
       of.push_back(vertex_of(words_[i]));
       corners.push_back(vertices_[of.back()]);
     }
+    if (crosses_itself(corners)) {
+      throw wrong("f", "a face whose edges cross each other",
+                  "corners in order round the face (or two faces)");
+    }
     if (part_ == nullptr) begin_part();
     for (const auto& [a, b, c] : triangles_of(corners)) {
       if (++triangles_ > most_triangles) {

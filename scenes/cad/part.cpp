@@ -1,5 +1,6 @@
 #include "scenes/cad/part.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -111,6 +112,34 @@ std::vector<std::array<uint32_t, 3>> triangles_of(const std::vector<Vec3>& corne
     return fan;
   }
   return EarClipper(flattened(corners, normal)).clip();
+}
+
+bool crosses_itself(const std::vector<Vec3>& corners) {
+  const size_t count = corners.size();
+  Vec3 normal = mean_normal(corners), largest = Vec3::Zero();
+  double size2 = 0.0;
+  for (size_t i = 0; i < count; ++i) {
+    const Vec3 &a = corners[i], &b = corners[(i + 1) % count], &c = corners[(i + 2) % count];
+    const Vec3 corner = (b - a).cross(c - b);
+    if (corner.squaredNorm() > largest.squaredNorm()) largest = corner;
+    size2 = std::max(size2, (b - a).squaredNorm());
+  }
+  constexpr double rounding = 1e-9;  // of the longest edge
+  if (normal.norm() <= rounding * largest.norm()) normal = largest;
+  if (count < 4 || !(normal.stableNorm() > 0.0) || !normal.allFinite()) return false;
+  const std::vector<Vec2> flat = flattened(corners, normal);
+  const auto apart = [&](const Vec2& a, const Vec2& b, const Vec2& p, const Vec2& q) {
+    const double from = turn(a, b, p), to = turn(a, b, q), least = rounding * size2;
+    return (from > least && to < -least) || (from < -least && to > least);
+  };
+  for (size_t i = 0; i < count; ++i) {
+    const Vec2 &a = flat[i], &b = flat[(i + 1) % count];
+    for (size_t j = i + 2; j < count; ++j) {
+      const Vec2 &p = flat[j], &q = flat[(j + 1) % count];
+      if (apart(a, b, p, q) && apart(p, q, a, b)) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace photorque::cad

@@ -39,10 +39,14 @@ std::vector<Part> read_stl(std::string_view bytes, const std::string& file,
 std::vector<Part> read_obj(std::string_view text, const std::string& file, const std::string& name);
 
 // The triangles of a polygon without holes, as places in `corners`, in its own order of corners. A
-// polygon that is not quite plane is cut as it is seen along its mean normal (Newell's); one that
-// crosses itself gives some triangles that overlap. Fewer than three corners give none; corners in
-// one line give triangles without area.
-// Source: D. Eberly, "Triangulation by Ear Clipping" (2002).
+// polygon that is not quite plane is cut as it is seen along its mean normal (Newell's). Fewer than
+// three corners give none; corners in one line give triangles without area. Source: D. Eberly,
+// "Triangulation by Ear Clipping" (2002).
 std::vector<std::array<uint32_t, 3>> triangles_of(const std::vector<Vec3>& corners);
+
+// Whether two edges of a polygon cross, as it is seen along its mean normal, or against its largest
+// corner where that is zero: it has no inside, and triangles_of() would cover some of it twice.
+// Edges that only touch do not cross.
+bool crosses_itself(const std::vector<Vec3>& corners);
 
 }  // namespace photorque::cad

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -83,20 +85,27 @@ std::vector<Part> read_binary(std::string_view bytes, const std::string& file,
   return {std::move(part)};
 }
 
-// Reads the words of a text file one by one.
+bool same_word(std::string_view word, std::string_view keyword) {
+  return std::ranges::equal(word, keyword, [](char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) == b;
+  });
+}
+
+// Reads the words of a text file one by one. Keywords may be in capitals, and line ends are blanks,
+// but that a name ends at the end of its line.
 class TextReader {
  public:
   TextReader(std::string_view text, const std::string& file, const std::string& name)
       : lines_(lines_of(text)), name_(name), where_{file} {}
 
   std::vector<Part> read() {
-    while (next_line()) {
-      const std::string_view word = words_[0];
-      if (word == "solid") {
+    while (has_word()) {
+      if (is_next("solid")) {
         begin();
-      } else if (word == "endsolid") {
+      } else if (is_next("endsolid")) {
         end();
-      } else if (word == "facet") {
+        read_name("solid");
+      } else if (is_next("facet")) {
         read_facet();
       } else {
         throw wrong("facet, solid or endsolid");
@@ -107,26 +116,40 @@ class TextReader {
   }
 
  private:
-  InputError wrong(const std::string& expected) const {
-    return {where_, "", words_.empty() ? "the end of the file" : in_quotes(words_[0]), expected};
+  InputError wrong(const std::string& expected) {
+    const std::string found = has_word() ? in_quotes(words_[word_]) : "the end of the file";
+    return {where_, "", found, expected};
   }
 
-  // The next line that says something.
-  bool next_line() {
-    words_.clear();
-    while (line_ < lines_.size() && words_.empty()) {
+  bool has_word() {
+    while (word_ == words_.size() && line_ < lines_.size()) {
       words_ = words_of(trimmed(lines_[line_++]));
+      word_ = 0;
       where_.line = static_cast<int>(line_);
     }
-    return !words_.empty();
+    return word_ < words_.size();
+  }
+
+  bool is_next(std::string_view keyword) { return has_word() && same_word(words_[word_], keyword); }
+
+  void expect(const char* keyword) {
+    if (!is_next(keyword)) throw wrong(keyword);
+    ++word_;
+  }
+
+  // What follows a keyword on its line, up to `end` or the end of the solid.
+  std::string read_name(std::string_view end) {
+    std::string name;
+    for (++word_; word_ < words_.size(); ++word_) {
+      if (same_word(words_[word_], end) || same_word(words_[word_], "endsolid")) break;
+      name += (name.empty() ? "" : " ") + std::string(words_[word_]);
+    }
+    return name;
   }
 
   void begin() {
     end();
-    std::string name;
-    for (size_t i = 1; i < words_.size(); ++i) {
-      name += (name.empty() ? "" : " ") + std::string(words_[i]);
-    }
+    const std::string name = read_name("facet");
     part_.emplace(Part{name.empty() ? name_ : name, name_, {}});
     pool_.emplace(part_->mesh);
   }
@@ -137,32 +160,29 @@ class TextReader {
     part_.reset();
   }
 
-  void expect_line(const char* first, const char* second = nullptr) {
-    if (!next_line() || words_[0] != first ||
-        (second != nullptr && (words_.size() < 2 || words_[1] != second))) {
-      throw wrong(std::string(first) + (second == nullptr ? "" : std::string(" ") + second));
-    }
-  }
-
   Vec3 read_corner() {
-    expect_line("vertex");
-    if (words_.size() != 4) {
-      throw InputError(where_, "vertex", std::to_string(words_.size() - 1) + " values", "three");
-    }
+    expect("vertex");
     Vec3 at;
-    for (size_t k = 0; k < 3; ++k) {
-      at[static_cast<Eigen::Index>(k)] = require_number(words_[k + 1], where_, "vertex");
+    for (int k = 0; k < 3; ++k, ++word_) {
+      if (!has_word() || is_next("vertex") || is_next("endloop")) {
+        throw InputError(where_, "vertex", std::to_string(k) + " values", "three");
+      }
+      at[k] = require_number(words_[word_], where_, "vertex");
     }
     return at;
   }
 
   void read_facet() {
     if (!part_) throw wrong("solid");
-    expect_line("outer", "loop");
+    constexpr int most_normal_words = 4;  // "normal" and its three numbers
+    expect("facet");
+    for (int k = 0; k < most_normal_words && has_word() && !is_next("outer"); ++k) ++word_;
+    expect("outer");
+    expect("loop");
     std::array<uint32_t, 3> triangle{};
     for (uint32_t& corner : triangle) corner = pool_->add(read_corner());
-    expect_line("endloop");
-    expect_line("endfacet");
+    expect("endloop");
+    expect("endfacet");
     if (++triangles_ > most_triangles) {
       throw InputError(where_, "facets", "more", "at most " + std::to_string(most_triangles));
     }
@@ -170,7 +190,7 @@ class TextReader {
   }
 
   std::vector<std::string_view> lines_, words_;
-  size_t line_ = 0, triangles_ = 0;
+  size_t line_ = 0, word_ = 0, triangles_ = 0;
   std::string name_;
   InputLocation where_;
   std::optional<Part> part_;
@@ -178,14 +198,23 @@ class TextReader {
   std::vector<Part> parts_;
 };
 
+// Text begins with "solid", as many binary files do too: those hold zeros.
+bool is_text(std::string_view bytes) {
+  const std::string_view start = bytes.substr(0, 1000);
+  return start.find('\0') == std::string_view::npos &&
+         same_word(trimmed(start).substr(0, 5), "solid");
+}
+
 }  // namespace
 
 std::vector<Part> read_stl(std::string_view bytes, const std::string& file,
                            const std::string& name) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());
   std::vector<Part> parts;
   if (has_binary_length(bytes)) {
     parts = read_binary(bytes, file, name);
-  } else if (trimmed(bytes.substr(0, 1000)).starts_with("solid")) {
+  } else if (is_text(bytes)) {
     parts = TextReader(bytes, file, name).read();
   } else {
     const bool has_count = bytes.size() >= header_bytes + count_bytes;

@@ -135,7 +135,8 @@ inline constexpr Vec3Key position(
     "position_m", "lab axes, away from `target_m`",
     {.usually = "south-east of the scene, where `render` also sees the lamps"});
 inline constexpr Vec3Key target("target_m", {0.0, 0.0, 0.0}, "what is in the middle");
-inline constexpr NumberKey field_of_view("field_of_view_deg", {0.0, pi, true, true},
+inline constexpr NumberKey field_of_view("field_of_view_deg",
+                                         {1e-3 * degree_rad, 179.0 * degree_rad},
                                          "across the width", {.usually = "34.4"});
 inline constexpr IntegerKey width("width", 16, 16384, "pixels", {.optional = true});
 inline constexpr IntegerKey height("height", 16, 16384, "pixels", {.optional = true});

@@ -100,11 +100,28 @@ void add(const Mesh& mesh, MeshClosure& closure) {
   if (open.size() <= max_open_edges) closure.t_junctions += count_t_junctions(mesh, open);
 }
 
+// A sheet that is drawn from both sides has no open edge, and nothing inside.
+bool has_volume(const Mesh& mesh) {
+  constexpr double rounding = 1e-9;
+  double six_volumes = 0.0, two_areas = 0.0;
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Vec3 to = mesh.vertices_m[i] - mesh.vertices_m[mesh.triangles[0][0]];
+    const Vec3 cross =
+        (mesh.vertices_m[j] - mesh.vertices_m[i]).cross(mesh.vertices_m[k] - mesh.vertices_m[i]);
+    six_volumes += to.dot(cross);
+    two_areas += cross.norm();
+  }
+  return std::abs(six_volumes) > rounding * std::pow(two_areas, 1.5);
+}
+
 }  // namespace
 
 MeshClosure closure_of(const Scene& scene) {
   MeshClosure closure;
-  for (const Mesh& mesh : scene.meshes) add(mesh, closure);
+  for (const Mesh& mesh : scene.meshes) {
+    add(mesh, closure);
+    if (!has_volume(mesh)) closure.encloses.back() = 0;
+  }
   return closure;
 }
 

@@ -24,7 +24,7 @@ struct MeshClosure {
   // has at least: meant to be closed, it seems. (Not of every sheet: of a disc in many rings the
   // rim has fewer. For notices alone.)
   size_t almost_closed = 0;
-  std::vector<uint8_t> encloses;  // per mesh: closed or almost
+  std::vector<uint8_t> encloses;  // per mesh: closed or almost, round a volume
 };
 
 // Meshes with more than 100,000 open edges are not searched for T-junctions.

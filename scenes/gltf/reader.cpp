@@ -1,5 +1,6 @@
 #include "scenes/gltf/reader.h"
 
+#include <cmath>
 #include <map>
 #include <set>
 #include <sstream>
@@ -8,6 +9,7 @@
 #include "core/constants.h"
 #include "core/files.h"
 #include "core/provenance.h"
+#include "scenes/gltf/coincident.h"
 #include "scenes/gltf/geometry.h"
 #include "scenes/gltf/mesh_closure.h"
 #include "scenes/gltf/nodes.h"
@@ -69,6 +71,10 @@ class Assembly {
     }
     add_notices(closure);
     if (options_.picture) apply_pictures();
+    check_resolution();
+    for (std::string& line : separate_coincident_faces(model_.scene)) {
+      model_.notices.push_back(std::move(line));
+    }
     return std::move(model_);
   }
 
@@ -138,6 +144,33 @@ class Assembly {
     instance.back_surface = optics.back_surface;
     model_.scene.instances.push_back(std::move(instance));
     material_indices_.push_back(material);
+  }
+
+  // Rays count from the middle of the scene in single precision, which rounds to 6e-8 of its size.
+  void check_resolution() {
+    constexpr double too_small = 1e-6;  // of the scene's size
+    Eigen::AlignedBox3d all;
+    double least_m = INFINITY;
+    const Instance* smallest = nullptr;
+    for (const Instance& instance : model_.scene.instances) {
+      Eigen::AlignedBox3d box;
+      for (const Vec3& vertex : model_.scene.meshes[instance.mesh].vertices_m) {
+        box.extend(instance.body_from_mesh * vertex);
+      }
+      all.extend(box);
+      const double size_m = box.diagonal().norm();
+      if (size_m >= least_m) continue;
+      least_m = size_m;
+      smallest = &instance;
+    }
+    if (smallest == nullptr || least_m >= too_small * all.diagonal().norm()) return;
+    std::ostringstream found;
+    found.precision(3);
+    found << "\"" << smallest->path << "\", " << least_m << " m long in a scene of "
+          << all.diagonal().norm() << " m";
+    throw document_.wrong("", found.str(),
+                          "parts of at least 1e-6 of the scene, which rays resolve to 6e-8 (leave "
+                          "out what is far away)");
   }
 
   // Every instance whose colour comes from a picture becomes one for each step of it.

@@ -81,8 +81,10 @@ IntensityTable unfold(const StoredPlanes& stored, PlaneSymmetry symmetry,
                       const InputLocation& where);
 
 // Types A (pole `vertical`) and B (`horizontal`): latitude and longitude about an axis across the
-// beam; angles that start at 0 stand for both sides. Throws InputError at `where` for angles beyond
-// a sphere's.
+// beam, which is H = V = 0. H counts clockwise seen from above (LM-63-2002, definitions). From the
+// beam, V runs towards the emitter's x and H towards its y: upwards and to the right for a type A
+// that looks horizontally. Angles that start at 0 stand for both sides. Throws InputError at
+// `where` for angles beyond a sphere's.
 IntensityTable sideways_table(Pole pole, const StoredPlanes& stored, const InputLocation& where);
 
 // Throws InputError unless ascending polar angles lie in 0 to 180 degrees.

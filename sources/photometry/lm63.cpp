@@ -40,6 +40,11 @@ class NumberStream {
     return {file_, static_cast<int>(std::min(line_ + 1, lines_.size()))};
   }
 
+  // Of the line that follows the last number.
+  InputLocation line_after() const {
+    return {file_, static_cast<int>(std::min(line_ + 2, lines_.size()))};
+  }
+
   double next(const char* what) {
     const std::string_view word = next_word();
     if (word.empty()) throw InputError(where(), what, "the end of the file", "a number");
@@ -60,6 +65,14 @@ class NumberStream {
 
   // The next word if it is a number.
   std::optional<double> left_over() { return number_in(next_word()); }
+
+  // How many words are left.
+  size_t left() const {
+    NumberStream rest = *this;
+    size_t words = 0;
+    while (!rest.next_word().empty()) ++words;
+    return words;
+  }
 
  private:
   std::string_view next_word() {
@@ -145,6 +158,7 @@ IesHeader read_header(NumberStream& stream, PhotometricFile& file) {
   const double lamps = stream.next("number of lamps");
   const double lumens = stream.next("lumens per lamp");
   const double multiplier = stream.next("candela multiplier");
+  const InputLocation multiplier_at = stream.where();
   header.vertical = stream.count("number of vertical angles", 2, 100000);
   header.horizontal = stream.count("number of horizontal angles", 1, 100000);
   header.type = stream.count("photometric type", 1, 3);
@@ -153,15 +167,23 @@ IesHeader read_header(NumberStream& stream, PhotometricFile& file) {
   const double length_m = unit_m * stream.next("length");
   file.opening = read_opening(width_m, length_m, unit_m * stream.next("height"), file);
   require_opening(file.opening, stream.where());
+  const size_t table = header.vertical + header.horizontal + header.vertical * header.horizontal;
+  if (stream.left() == table) {
+    throw InputError(stream.line_after(), "ballast factor", "no such line",
+                     "a line with the ballast factor, the ballast-lamp factor and the input watts");
+  }
   const double ballast = stream.next("ballast factor");
+  const InputLocation ballast_at = stream.where();
   const double future = stream.next("ballast-lamp factor");
   file.input_power_W = stream.next("input watts");
   // Since 2019 the second factor is the kind of test instead.
   const bool is_factor = file.format.find("2019") == std::string::npos && future > 0.0;
   header.factor = multiplier * ballast * (is_factor ? future : 1.0);
   if (!(header.factor > 0.0)) {
-    throw InputError(stream.where(), "candela multiplier", shortest(header.factor),
-                     "factors whose product is > 0");
+    const bool is_ballast = multiplier > 0.0;
+    throw InputError(is_ballast ? ballast_at : multiplier_at,
+                     is_ballast ? "ballast factor" : "candela multiplier",
+                     shortest(is_ballast ? ballast : multiplier), "a number > 0");
   }
   if (lumens >= 0.0 && std::isfinite(lamps * lumens)) file.stated_flux_lm = lamps * lumens;
   return header;

@@ -16,15 +16,15 @@ namespace {
 Mat3 emitter_from_pole(Pole pole) {
   Mat3 axes;
   switch (pole) {
-    case Pole::vertical:  // azimuth from the beam towards +x
-      axes.col(0) = Vec3::UnitZ();
-      axes.col(1) = Vec3::UnitX();
-      axes.col(2) = Vec3::UnitY();
-      break;
-    case Pole::horizontal:  // azimuth from the beam towards +y
+    case Pole::vertical:  // azimuth from the beam towards +y
       axes.col(0) = Vec3::UnitZ();
       axes.col(1) = Vec3::UnitY();
       axes.col(2) = Vec3::UnitX();
+      break;
+    case Pole::horizontal:  // azimuth from the beam towards +x
+      axes.col(0) = Vec3::UnitZ();
+      axes.col(1) = Vec3::UnitX();
+      axes.col(2) = Vec3::UnitY();
       break;
     case Pole::beam:
       axes.col(0) = Vec3::UnitX();
@@ -196,8 +196,8 @@ void TabulatedIntensity::directions(const FractionBlock& polar, const FractionBl
     const double c = sine * std::cos(azimuth_rad), s = sine * std::sin(azimuth_rad);
     const double along = 1.0 - rise;
     const bool beam = pole == Pole::beam, vertical = pole == Pole::vertical;
-    direction[0][i] = beam ? c : vertical ? s : along;
-    direction[1][i] = beam ? -s : vertical ? along : s;
+    direction[0][i] = beam ? c : vertical ? along : s;
+    direction[1][i] = beam ? -s : vertical ? s : along;
     direction[2][i] = beam ? along : c;
   }
 }

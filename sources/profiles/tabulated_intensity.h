@@ -13,8 +13,8 @@ namespace photorque {
 // the beam, x and y across):
 enum class Pole {
   beam,        // +z: type C of LM-63, C planes and γ of EULUMDAT
-  vertical,    // +y: type A, latitude V and longitude H
-  horizontal,  // +x: type B, latitude H and longitude V
+  vertical,    // +x: type A, latitude V and longitude H
+  horizontal,  // +y: type B, latitude H and longitude V
 };
 
 // Intensity I(polar, azimuth) ≥ 0 of any one unit, at least one value > 0. Between the angles of a

@@ -92,6 +92,18 @@ TEST_F(FilesInAFolder, LeftoversOfTheDeadGoAndThoseOfTheLivingStay) {
   EXPECT_TRUE(fs::exists(folder_ / ".of_the_user.part"));
 }
 
+// Whoever may write beside a result cannot lay a link where its temporary will be.
+TEST_F(FilesInAFolder, TemporariesAreNewAndOfNamesThatCannotBeForeseen) {
+  const fs::path file = folder_ / "map.csv";
+  EXPECT_NE(temporary_beside(file), temporary_beside(file));
+  std::ofstream(folder_ / "victim") << "own";
+  write_file_whole(file, [&](const fs::path& temporary) {
+    EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(temporary)));
+    std::ofstream(temporary) << "new";
+  });
+  EXPECT_EQ(read_file(file), "new");
+}
+
 TEST_F(FilesInAFolder, FoldersAreMadeWithThoseAboveThemOrNameWhatIsInTheWay) {
   make_folders(folder_ / "a" / "b" / "");
   EXPECT_TRUE(fs::is_directory(folder_ / "a" / "b"));

@@ -81,6 +81,11 @@ TEST(RunPage, NamesNeverBecomeMarkup) {
 TEST(RunPage, NeedsNoNetwork) {
   const std::string html = page_html({});
   EXPECT_EQ(count(html, "default-src 'none'"), 1u);
+  EXPECT_EQ(count(html, "script-src 'unsafe-inline'"), 0u);
+  std::smatch nonce;
+  const std::string head = html.substr(0, 1000);
+  ASSERT_TRUE(std::regex_search(head, nonce, std::regex("script-src 'nonce-([0-9a-f]{32})'")));
+  EXPECT_EQ(count(html, "<script nonce=\"" + nonce[1].str() + "\">"), 1u);
   EXPECT_FALSE(std::regex_search(std::string(page_style()), std::regex("url\\(|@import")));
   EXPECT_EQ(count(html, " src=") + count(html, "<link"), 0u);
   EXPECT_GT(page_script().size(), 100'000u);

@@ -95,7 +95,8 @@ TEST(Drawable, MakesEveryIntervalUsable) {
   const double nan = std::nan("");
   for (const AxisRange& range :
        {AxisRange{5, 5}, AxisRange{0, 0}, AxisRange{2, 1}, AxisRange{nan, 1},
-        AxisRange{-1e-300, 1e-300}, AxisRange{1361, 1361 * (1 + 1e-15)}, AxisRange{-4e7, -4e7}}) {
+        AxisRange{-1e-300, 1e-300}, AxisRange{1361, 1361 * (1 + 1e-15)}, AxisRange{-4e7, -4e7},
+        AxisRange{0, 5e-324}}) {
     const AxisRange usable = drawable(range);
     EXPECT_LT(usable.low, usable.high);
     EXPECT_GE(linear_ticks(usable.low, usable.high, 8).values.size(), 2u);
@@ -104,6 +105,13 @@ TEST(Drawable, MakesEveryIntervalUsable) {
       EXPECT_GE(usable.high, std::max(range.low, range.high));
     }
   }
+}
+
+// Of numbers from one end of floating point to the other.
+TEST(Drawable, StepsStayFinite) {
+  const AxisRange usable = drawable({-1.7e308, 1.7e308});
+  EXPECT_TRUE(std::isfinite(usable.high - usable.low));
+  EXPECT_GE(linear_ticks(usable.low, usable.high, 8).values.size(), 2u);
 }
 
 TEST(HorizontalAxis, NumbersNeverTouch) {

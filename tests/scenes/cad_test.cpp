@@ -100,6 +100,48 @@ TEST(Stl, TextAndBinaryOfOneBodyAreTheSame) {
   EXPECT_EQ(all.triangles, binary.triangles + 1);
 }
 
+// Keywords in capitals, a byte order mark, all on one line, and a name that holds keywords.
+TEST(Stl, DialectsOfTextAreTheSameSquare) {
+  const std::string plain =
+      "solid square\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\n"
+      "endloop\nendfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 0\n"
+      "vertex 0 1 0\nendloop\nendfacet\nendsolid square\n";
+  std::string upper = plain, one_line = plain, two = plain + plain;
+  for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  std::ranges::replace(one_line, '\n', ' ');
+  std::ranges::replace(two, '\n', ' ');
+  for (const std::string& text :
+       {plain, upper, one_line, "\xEF\xBB\xBF" + plain, "\xEF\xBB\xBF" + upper, "\n " + plain}) {
+    const GltfModel model = stl(text);
+    ASSERT_EQ(model.scene.meshes.size(), 1u) << text;
+    EXPECT_EQ(model.scene.meshes[0].triangles.size(), 2u) << text;
+    EXPECT_EQ(model.scene.meshes[0].vertices_m.size(), 4u) << text;
+    EXPECT_NEAR(extent_of(model.scene).area_m2, 1.0, 1e-12) << text;
+  }
+  EXPECT_EQ(stl(two).scene.instances.size(), 2u);
+}
+
+// A binary file may begin with "solid"; where its length is wrong, that is what is said.
+TEST(Stl, ABinaryFileThatBeginsWithSolidIsBinary) {
+  std::string binary = tetrahedron_stl();
+  binary.replace(0, 10, "solid tetr");
+  EXPECT_EQ(stl(binary).scene.meshes[0].triangles.size(), 4u);
+  EXPECT_THAT(refusal_of([&] { stl(binary + "xx"); }), HasSubstr("expected 84 + 50 × 4 bytes"));
+}
+
+TEST(Obj, AFaceThatCrossesItselfIsRefused) {
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 3 0.2 0.1\n";
+  for (const char* face : {"f 1 2 4 3\n", "f 1 3 2 4\n", "f 1 3 2 4 5\n"}) {
+    EXPECT_THAT(
+        refusal_of([&] { read_cad_bytes(corners + face, "part.obj", CadFormat::obj, {1.0}); }),
+        HasSubstr("part.obj:6: f: found a face whose edges cross each other"));
+  }
+  // A quad that is not plane, one that is hollow, and one with a corner twice.
+  for (const char* face : {"f 1 2 5 4\n", "f 1 2 3 3\n", "f 4 1 2 3 2\n"}) {
+    read_cad_bytes(corners + face, "part.obj", CadFormat::obj, {1.0});
+  }
+}
+
 TEST(Cad, AxesAndUnitsAreAsAsked) {
   // One triangle with a normal along z of the file.
   const std::string text = "v 0 0 0\nv 3 0 0\nv 0 4 0\nf 1 2 3\n";

@@ -7,13 +7,11 @@
 namespace photorque {
 namespace {
 
-// A square in the plane z = `height_m`, looking up, from (x, 0) to (x + 1, 1).
-Mesh square(double x, double height_m, bool other_diagonal) {
+// A square in the plane z = 0, looking up, from (0, 0) to (1, 1).
+Mesh unit_square() {
   Mesh mesh;
-  mesh.vertices_m = {
-      {x, 0, height_m}, {x + 1, 0, height_m}, {x + 1, 1, height_m}, {x, 1, height_m}};
+  mesh.vertices_m = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-  if (other_diagonal) mesh.triangles = {{0, 1, 3}, {1, 2, 3}};
   return mesh;
 }
 
@@ -55,29 +53,6 @@ Beam lamp_at(const Vec3& position_m) {
   return {"lamp", nullptr, {Quat::Identity(), position_m}, {}};
 }
 
-TEST(CoincidentFaces, AreFoundWhereTheyOverlapAndLookTheSameWay) {
-  const auto pairs = [](double x, double height_m) {
-    const auto found = coincident_faces(scene_of({square(0, 0, false), square(x, height_m, true)}));
-    return found.empty() ? size_t{0} : found.front().triangles;
-  };
-  EXPECT_EQ(pairs(0.0, 0.0), 4u);  // each triangle over both of the other
-  EXPECT_GE(pairs(0.5, 0.0), 1u);
-  EXPECT_EQ(pairs(1.0, 0.0), 0u);   // side by side
-  EXPECT_EQ(pairs(0.0, 1e-3), 0u);  // one above the other
-}
-
-TEST(CoincidentFaces, OfPartsThatStandOnEachOtherAreNone) {
-  Mesh below = square(0, 0, false);
-  for (auto& triangle : below.triangles) std::swap(triangle[1], triangle[2]);
-  EXPECT_TRUE(coincident_faces(scene_of({square(0, 0, false), below})).empty());
-}
-
-TEST(Doubts, NameCoincidentFaces) {
-  const auto lines = doubts_about(scene_of({square(0, 0, false), square(0, 0, false)}), {}, {});
-  ASSERT_EQ(lines.size(), 1u);
-  EXPECT_THAT(lines[0], testing::HasSubstr("part0 and part1 (2 pairs of triangles)"));
-}
-
 TEST(Doubts, NameLampsInsideClosedParts) {
   const Scene scene = scene_of({cube()});
   const std::vector<Beam> inside = {lamp_at({0.3, -0.9, 0.5})};
@@ -97,10 +72,10 @@ TEST(Doubts, NameLampsInsideClosedParts) {
 }
 
 TEST(Doubts, NamePartsThatSinglePrecisionDoesNotResolve) {
-  Mesh tiny = square(0, 0, false);
+  Mesh tiny = unit_square();
   for (Vec3& vertex : tiny.vertices_m) vertex = 1e-6 * vertex + Vec3(0, 0, 5);
-  EXPECT_TRUE(doubts_about(scene_of({square(0, 0, false)}), {}, {}).empty());
-  Mesh far = square(0, 0, false);
+  EXPECT_TRUE(doubts_about(scene_of({unit_square()}), {}, {}).empty());
+  Mesh far = unit_square();
   for (Vec3& vertex : far.vertices_m) vertex += Vec3(1e3, 0, 0);
   const auto lines = doubts_about(scene_of({tiny, far}), {}, {});
   ASSERT_EQ(lines.size(), 1u);

@@ -317,18 +317,19 @@ TEST(GltfGeometry, TextureCoordinatesThatAreNotFiniteAreDropped) {
 
 TEST(GltfGeometry, SharesMeshesBetweenNodesAndMaterials) {
   TestModel model = triangle_model();
-  const json primitive = model.json["meshes"][0]["primitives"][0];
   model.json["materials"] = {{{"name", "a"}}, {{"name", "b"}}};
-  model.json["meshes"][0]["primitives"] = {primitive, primitive};
+  const json mesh = model.json["meshes"][0];
+  model.json["meshes"].push_back(mesh);
   model.json["meshes"][0]["primitives"][0]["material"] = 0;
-  model.json["meshes"][0]["primitives"][1]["material"] = 1;
-  model.add_node({{"mesh", 0}, {"translation", {1, 0, 0}}});
+  model.json["meshes"][1]["primitives"][0]["material"] = 1;
+  model.add_node({{"mesh", 0}, {"translation", {9, 0, 0}}});
+  model.add_node({{"mesh", 1}, {"translation", {18, 0, 0}}});
   const Scene scene = model.read().scene;
   EXPECT_EQ(scene.meshes.size(), 1u);
-  ASSERT_EQ(scene.instances.size(), 4u);
+  ASSERT_EQ(scene.instances.size(), 3u);
   EXPECT_EQ(scene.instances[0].material, "a");
-  EXPECT_EQ(scene.instances[1].material, "b");
-  EXPECT_EQ(scene.instances[2].node, "node_1");
+  EXPECT_EQ(scene.instances[1].node, "node_1");
+  EXPECT_EQ(scene.instances[2].material, "b");
   EXPECT_EQ(scene.surfaces.size(), 2u);
 }
 

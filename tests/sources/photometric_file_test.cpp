@@ -223,8 +223,53 @@ TEST(IesFile, OfTypesAAndBComesBackAsWritten) {
                        : table_direction(Pole::horizontal, 100 * deg, 10 * deg);
     const GoniometerAngles at = table_angles(file.table.pole, d);
     EXPECT_NEAR(TabulatedIntensity(file.table).at(at.polar_rad, at.azimuth_rad), 5.0, 1e-9);
-    EXPECT_LT(d.x(), 0.0);
-    EXPECT_GT(d.y(), 0.0);
+    EXPECT_GT(d.x(), 0.0);
+    EXPECT_LT(d.y(), 0.0);
+  }
+}
+
+// LM-63-2002, definitions: horizontal angles count clockwise seen from above, so that the
+// directions of H = 30, of V = 30 and of the beam are left-handed.
+TEST(IesFile, OfTypesAAndBCountHorizontalAnglesClockwise) {
+  constexpr double sine = 0.5, cosine = 0.86602540378443865;
+  for (const char* type : {"2", "3"}) {
+    for (const bool along_v : {false, true}) {
+      const std::string angles = "-60 -30 0 30 60\n", dark = "0 0 0 0 0\n";
+      const std::string planes = along_v ? dark + dark + "0 0 0 1000 0\n" + dark + dark
+                                         : dark + dark + dark + "0 0 1000 0 0\n" + dark;
+      const PhotometricFile file =
+          read_ies(std::string("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 5 5 ") + type +
+                       " 2 0 0 0\n1 1 10\n" + angles + angles + planes,
+                   "");
+      // In the emitter's frame, which looks along z with C0 along x and C90 along −y.
+      const Vec3 expected = along_v ? Vec3(sine, 0.0, cosine) : Vec3(0.0, sine, cosine);
+      const TabulatedIntensity intensity(file.table);
+      const auto at = [&](const Vec3& direction) {
+        const GoniometerAngles angle = table_angles(file.table.pole, direction);
+        return intensity.at(angle.polar_rad, angle.azimuth_rad);
+      };
+      EXPECT_NEAR(at(expected), 1000.0, 1e-6) << type;
+      EXPECT_NEAR(at({-expected.x(), -expected.y(), cosine}), 0.0, 1e-6) << type;
+    }
+  }
+}
+
+TEST(IesFile, NamesTheMissingBallastLine) {
+  const std::string head = "IESNA:LM-63-2002\nTILT=NONE\n1 900 1 3 1 1 2 0 0 0\n";
+  for (const char* angles : {"0 45 90\n", "90 120 180\n", "0\n45\n90\n"}) {
+    try {
+      read_ies(head + angles + "0\n120 90 30\n", "lamp.ies");
+      ADD_FAILURE() << "read";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("lamp.ies:4: ballast factor"));
+      EXPECT_THAT(error.what(), testing::HasSubstr("no such line"));
+    }
+  }
+  try {
+    read_ies(head + "0 1 10\n0 45 90\n0\n120 90 30\n", "lamp.ies");
+    ADD_FAILURE() << "read";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("lamp.ies:4: ballast factor: found 0"));
   }
 }
 

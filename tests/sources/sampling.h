@@ -35,9 +35,9 @@ inline Vec3 table_direction(Pole pole, double polar_rad, double azimuth_rad) {
   const double up = std::sin(polar_rad) * std::sin(azimuth_rad), along = std::cos(polar_rad);
   switch (pole) {
     case Pole::vertical:
-      return {up, along, across};
-    case Pole::horizontal:
       return {along, up, across};
+    case Pole::horizontal:
+      return {up, along, across};
     case Pole::beam:
       break;
   }

@@ -103,7 +103,7 @@ TEST_F(Limits, LinksOutOfTheModelsFolderAreFollowedOnlyWhenAllowed) {
   EXPECT_EQ(allowed.status, 0) << allowed.err;
 }
 
-TEST_F(Limits, CoincidentFacesAreALoudWarning) {
+TEST_F(Limits, CoincidentFacesAreNamed) {
   nlohmann::json model =
       nlohmann::json::parse(file_text(shipped_scenes / "dumbbell" / "dumbbell.gltf"));
   size_t with_mesh = 0;
@@ -126,8 +126,7 @@ TEST_F(Limits, CoincidentFacesAreALoudWarning) {
       write("e.toml", file_text(shipped_scenes / "dumbbell" / "dumbbell.toml"));
   const Outcome got = run("trace " + experiment + quick_run + " --out " + at("o"));
   ASSERT_EQ(got.status, 0) << got.err;
-  EXPECT_THAT(got.out, HasSubstr("WARNING: faces lie in each other"));
-  EXPECT_THAT(file_text(at("o/summary.json")), HasSubstr("faces lie in each other"));
+  EXPECT_THAT(got.out, HasSubstr("twin\" lie in each other and face alike: only the first"));
 }
 
 TEST_F(Limits, SelftestPasses) {

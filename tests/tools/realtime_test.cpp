@@ -132,6 +132,22 @@ TEST(Packets, AreRefusedForWhatTheySay) {
   EXPECT_TRUE(admitted(header_of(PHOTORQUE_HELLO, 1, 0), 5, 3 * second_ns));
 }
 
+// Of what came before the hello nothing counts, from another address or, of a program that was
+// started again, from the same. A hello that is only repeated begins nothing.
+TEST(Packets, ASessionBeginsWithItsHello) {
+  Gate gate(this_run, 0.5, 2 * second_ns);
+  const photorque_header hello = header_of(PHOTORQUE_HELLO, 1, 0);
+  EXPECT_TRUE(gate.admit(bytes_of(hello), 5, 0)->begins_session);
+  EXPECT_FALSE(gate.admit(bytes_of(hello), 5, 0)->begins_session);
+  EXPECT_TRUE(gate.admit(bytes_of(command_of(900, 0.1)), 5, 0));
+  EXPECT_FALSE(gate.is_silent(2 * second_ns));
+  EXPECT_TRUE(gate.is_silent(2 * second_ns + 1));
+  EXPECT_TRUE(gate.admit(bytes_of(hello), 6, 3 * second_ns)->begins_session);
+  EXPECT_TRUE(gate.admit(bytes_of(command_of(2, 0.1)), 6, 3 * second_ns));
+  EXPECT_TRUE(gate.admit(bytes_of(hello), 6, 3 * second_ns)->begins_session);
+  EXPECT_TRUE(gate.admit(bytes_of(command_of(2, 0.1)), 6, 3 * second_ns));
+}
+
 struct Fates {
   std::vector<double> delays_s;  // NaN: lost
   double lost = 0.0;             // fraction

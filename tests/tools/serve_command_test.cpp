@@ -277,6 +277,56 @@ TEST_F(Paced, CommandsEndWhenTheyAreNotRenewed) {
   EXPECT_GT(rows[1][0] - rows[0][0], 0.6);
 }
 
+// A client vanishes without goodbye: its torque ends after silence_s, and the next client's
+// commands act from its first on, though it counts from the start.
+TEST_F(Paced, ControlEndsWithTheSession) {
+  const std::string experiment = write("p.toml", served_platform);
+  serve_to(experiment + " --set propagate.duration_s=3 --set serve.silence_s=0.3 --out " + at("s"),
+           [&](ServeClient& first) {
+             first.follow([](const auto&) { return ClientTorque{0, 0, 1e-4}; }, 100);
+             std::this_thread::sleep_for(std::chrono::milliseconds(900));
+             ServeClient second(port_when_known());
+             second.follow([](const auto&) { return ClientTorque{0, 0, -2e-4}; });
+           });
+  ASSERT_EQ(outcome_.status, 0) << outcome_.err;
+  auto rows = rows_of(files("s").at("commands.csv"));
+  ASSERT_FALSE(rows.empty());
+  if (rows.front()[3] == 0.0) rows.erase(rows.begin());
+  ASSERT_GE(rows.size(), 3u);
+  EXPECT_EQ(rows[0][3], 1e-4);
+  EXPECT_EQ(rows[1][3], 0.0);
+  EXPECT_EQ(rows[2][3], -2e-4);
+  EXPECT_GT(rows[2][0] - rows[1][0], 0.2);
+  const json summary = json::parse(files("s").at("summary.json"));
+  EXPECT_EQ(summary.at("sessions").at("value").get<double>(), 2.0);
+  EXPECT_GE(summary.at("silences_of_client").at("value").get<double>(), 1.0);
+  EXPECT_EQ(summary.at("commands_overtaken").at("value").get<double>(), 0.0);
+  const std::string events = content(files("s").at("session_events.csv"));
+  EXPECT_THAT(events, testing::HasSubstr("the client is silent for 0.3 s: no torque"));
+  EXPECT_THAT(outcome_.out, testing::HasSubstr("a session begins, from 127.0.0.1:"));
+}
+
+// Ten ticks a second, and tens of thousands of packets: a tick reads so many of them and no more.
+TEST_F(Paced, ReadsABoundedNumberOfPacketsATick) {
+  const std::string experiment = write("p.toml", served_platform);
+  std::atomic<bool> over = false;
+  std::thread flood;
+  serve_to(experiment + " --set serve.rate_Hz=10 --set propagate.duration_s=1 --out " + at("s"),
+           [&](ServeClient& client) {
+             flood = std::thread([&] {
+               const ServeClient stranger(port_when_known());
+               while (!over) stranger.send_bytes("nonsense", 8);
+             });
+             client.follow([](const auto&) { return ClientTorque{0, 0, 0}; }, 1);
+           });
+  over = true;
+  flood.join();
+  ASSERT_EQ(outcome_.status, 0) << outcome_.err;
+  const json summary = json::parse(files("s").at("summary.json"));
+  EXPECT_GT(summary.at("ticks_at_packet_limit").at("value").get<double>(), 0.0);
+  EXPECT_LE(summary.at("packets_refused").at("value").get<double>(), 12 * 256.0);
+}
+
 TEST_F(Paced, KeepsTheClockAndTellsItsDeadlines) {
   const std::string experiment = write("p.toml", served_platform);
   const auto begin = std::chrono::steady_clock::now();

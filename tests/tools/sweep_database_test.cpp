@@ -53,6 +53,16 @@ class SweepDatabase : public SweepTest {
   }
 };
 
+// SQLite would write through it, into whatever file of the user's a stranger's folder names.
+TEST_F(SweepDatabase, ALinkIsRefused) {
+  fs::create_directories(at("out"));
+  fs::create_symlink(at("victim"), database());
+  const Outcome outcome = sweep("", "out");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, testing::HasSubstr("a link"));
+  EXPECT_FALSE(fs::exists(at("victim")));
+}
+
 TEST_F(SweepDatabase, LosesNothingByTwentyKills) {
   experiment(std::regex_replace(std::string(forty), std::regex("count = 40"), "count = 600"));
   const std::string whole = reference();

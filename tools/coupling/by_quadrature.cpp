@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/constants.h"
 #include "core/parallel.h"
 #include "receivers/gather/bodies/sunlit_body.h"
 #include "tools/coupling/direction_map.h"
@@ -77,7 +78,7 @@ class SunlitDirections final : public LightDirections {
     constexpr size_t fresh = 16;
     constexpr uint64_t rays = 1 << 19;
     const std::vector<RigidTransform> attitudes = fresh_directions(fresh, sun_);
-    std::vector<double> square(fresh, 0.0), noise(fresh, 0.0);
+    std::vector<double> square(fresh, 0.0), noise(fresh, 0.0), emitted_W(fresh, 0.0);
     parallel_for(fresh, threads, [&](size_t i) {
       const OpticalResult result = run_.run(attitudes[i], {}, rays);
       const WrenchEstimate traced =
@@ -86,24 +87,32 @@ class SunlitDirections final : public LightDirections {
       const Vec3 difference = traced.mean.torque_N_m - own.tail<3>().matrix();
       square[i] = difference.squaredNorm() / 3.0;
       noise[i] = traced.torque_error_N_m().squaredNorm() / 3.0;
+      emitted_W[i] = result.power_balance.emitted_W;
     });
     double squares = 0.0, noises = 0.0;
     for (size_t i = 0; i < fresh; ++i) {
       squares += square[i] / fresh;
       noises += noise[i] / fresh;
     }
-    const double largest_N_m = std::max(largest_torque_N_m(table), 1e-300);
+    // Of all the light at the largest arm. Rays are single precision: a torque that is zero by
+    // symmetry is so to 1e-7 of this.
+    const double arm_m = run_.experiment().scene.radius_m() + table.about_body_m.norm();
+    const double scale_N_m = arm_m * *std::ranges::max_element(emitted_W) / speed_of_light_m_s;
+    const double rounding_N_m = 1e-7 * scale_N_m;
+    const double largest_N_m = std::max(largest_torque_N_m(table), 1e-6 * scale_N_m);
     console.line("  by quadrature over lit pieces, with all that bounces: torque error " +
                  show(stated_N_m / largest_N_m) + " of the largest (rms); rays in " +
                  std::to_string(fresh) + " fresh directions differ by " +
                  show(std::sqrt(squares) / largest_N_m) + ", of which " +
                  show(std::sqrt(noises) / largest_N_m) + " is their own noise");
     constexpr double loud = 3.0;  // of a root mean square over 48 numbers
-    const double sigmas = std::sqrt(squares / std::max(noises + stated_N_m * stated_N_m, 1e-300));
+    const double sigmas =
+        std::sqrt(squares / (noises + stated_N_m * stated_N_m + rounding_N_m * rounding_N_m));
     if (sigmas > loud) {
       warnings.push_back("torques by quadrature and by rays differ by " + show(sigmas) +
                          " standard errors (rms) in " + std::to_string(fresh) +
-                         " fresh directions");
+                         " fresh directions: parts too small for the rays, or light through gaps; "
+                         "compare with trace.direct = \"rays\"");
     }
   }
 

@@ -1,9 +1,16 @@
 // The program: reads the command line, runs one verb, turns exceptions into exit statuses.
+#include <signal.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <array>
 #include <csignal>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <string_view>
 #include <system_error>
 
 #include "core/errors.h"
@@ -66,6 +73,21 @@ int run(int argc, char** argv, Interruption& interruption) {
   return run_command(line.command, {verbs, &interruption});
 }
 
+// The last resort: one line and a documented status where a library, or this program, would end by
+// a signal. Calls nothing but what is allowed in a handler.
+[[noreturn]] void end_after_fault(int) {
+  // Libraries that do not check what they allocate end here too.
+  constexpr size_t some = size_t{256} << 20;
+  const bool has_memory = ::mmap(nullptr, some, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS,
+                                 -1, 0) != MAP_FAILED;
+  const std::string_view line =
+      has_memory ? "numerical failure: a fault of the program ended this run; please report its "
+                   "command and files\n"
+                 : "numerical failure: not enough memory\n";
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
+  ::_exit(3);
+}
+
 // Where memory ends in a thread or a destructor no exception reaches main().
 [[noreturn]] void end_without_memory() {
   try {
@@ -77,15 +99,33 @@ int run(int argc, char** argv, Interruption& interruption) {
     std::fputs("numerical failure: not enough memory for another thread\n", stderr);
     std::_Exit(3);
   } catch (...) {
-    std::abort();
+    end_after_fault(SIGABRT);
   }
-  std::abort();
+  end_after_fault(SIGABRT);
+}
+
+// Where nothing has its own handler yet, as sanitizers do. On a stack of its own, since the
+// ordinary one may be at its end.
+void catch_faults() {
+  alignas(16) static std::array<std::byte, 1 << 16> room;
+  const stack_t stack{room.data(), 0, room.size()};
+  ::sigaltstack(&stack, nullptr);
+  for (const int fault : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) {
+    struct sigaction had {
+    }, wanted{};
+    wanted.sa_handler = end_after_fault;
+    wanted.sa_flags = SA_ONSTACK | static_cast<int>(SA_RESETHAND);
+    if (::sigaction(fault, nullptr, &had) == 0 && had.sa_handler == SIG_DFL) {
+      ::sigaction(fault, &wanted, nullptr);
+    }
+  }
 }
 
 }  // namespace
 }  // namespace photorque
 
 int main(int argc, char** argv) {
+  photorque::catch_faults();
   std::set_terminate(photorque::end_without_memory);
   // A file beyond the limit of its size is a write that fails, not an end.
   std::signal(SIGXFSZ, SIG_IGN);

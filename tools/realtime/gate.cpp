@@ -13,8 +13,12 @@ static_assert(sizeof(photorque_header) == 48);
 static_assert(sizeof(photorque_command_packet) == 72);
 static_assert(sizeof(photorque_measurement_packet) == 256);
 
-Gate::Gate(uint64_t run, double max_torque_N_m, int64_t takeover_ns)
-    : run_(run), max_torque_N_m_(max_torque_N_m), takeover_ns_(takeover_ns) {}
+Gate::Gate(uint64_t run, double max_torque_N_m, int64_t silence_ns)
+    : run_(run), max_torque_N_m_(max_torque_N_m), silence_ns_(silence_ns) {}
+
+bool Gate::is_silent(int64_t now_ns) const {
+  return client_ && now_ns - last_heard_ns_ > silence_ns_;
+}
 
 uint64_t Gate::refused_in_all() const {
   return std::accumulate(refused_.begin(), refused_.end(), uint64_t{0});
@@ -53,7 +57,7 @@ std::optional<Refusal> Gate::stands_against(const ClientPacket& packet, uint64_t
   const bool is_hello = packet.kind == PHOTORQUE_HELLO;
   if (header.run != run_ && !(is_hello && header.run == 0)) return Refusal::run;
   if (!client_ || *client_ != sender) {
-    const bool is_free = !client_ || now_ns - last_heard_ns_ > takeover_ns_;
+    const bool is_free = !client_ || is_silent(now_ns);
     return is_hello && is_free ? std::optional<Refusal>{} : Refusal::stranger;
   }
   // A program that began anew at the same address counts from the start.
@@ -70,6 +74,10 @@ std::optional<ClientPacket> Gate::admit(std::span<const std::byte> bytes, uint64
     ++refused_[static_cast<size_t>(*fault)];
     return {};
   }
+  const bool begins_anew = has_commanded_ && packet.command.header.run == 0;
+  packet.begins_session = packet.kind == PHOTORQUE_HELLO && (client_ != sender || begins_anew);
+  if (packet.begins_session) has_commanded_ = false;
+  if (packet.kind == PHOTORQUE_COMMAND) has_commanded_ = true;
   client_ = sender;
   last_sequence_ = packet.command.header.sequence;
   last_heard_ns_ = now_ns;

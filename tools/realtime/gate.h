@@ -31,15 +31,16 @@ inline constexpr std::array<const char*, static_cast<size_t>(Refusal::count)> re
 
 // A packet that says what it is: its kind, and what it commands.
 struct ClientPacket {
+  bool begins_session = false;  // a hello of another client, or of one that commanded before
   photorque_packet_kind kind = PHOTORQUE_HELLO;
   photorque_command_packet command{};  // a hello and a goodbye have its header alone
 };
 
 // One client at a time: whoever said hello first, until it says goodbye or has been silent for
-// `takeover_ns`.
+// `silence_ns`. Sequence numbers count from the hello of a session.
 class Gate {
  public:
-  Gate(uint64_t run, double max_torque_N_m, int64_t takeover_ns);
+  Gate(uint64_t run, double max_torque_N_m, int64_t silence_ns);
 
   // `bytes` as they came from `sender` (a number for its address). Never throws; nothing of a
   // refused packet is used, and nobody is told.
@@ -47,6 +48,8 @@ class Gate {
                                     int64_t now_ns);
 
   std::optional<uint64_t> client() const { return client_; }
+  // Whether there is a client, and nothing came from it for longer than `silence_ns`.
+  bool is_silent(int64_t now_ns) const;
   const std::array<uint64_t, refusal_names.size()>& refused() const { return refused_; }
   uint64_t refused_in_all() const;
 
@@ -57,8 +60,9 @@ class Gate {
 
   uint64_t run_;
   double max_torque_N_m_;
-  int64_t takeover_ns_;
+  int64_t silence_ns_;
   std::optional<uint64_t> client_;
+  bool has_commanded_ = false;  // since its hello
   uint64_t last_sequence_ = 0;
   int64_t last_heard_ns_ = 0;
   std::array<uint64_t, refusal_names.size()> refused_{};

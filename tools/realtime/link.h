@@ -88,6 +88,8 @@ class SimulatedLink {
     return on_the_way_.empty() ? std::numeric_limits<double>::infinity()
                                : on_the_way_.front().due_s;
   }
+  // Whatever is on its way never arrives.
+  void clear() { on_the_way_.clear(); }
   const LinkFate& fate() const { return fate_; }
 
  private:

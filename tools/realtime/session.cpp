@@ -1,5 +1,6 @@
 #include "tools/realtime/session.h"
 
+#include <time.h>
 #include <unistd.h>
 #include <algorithm>
 #include <cmath>
@@ -31,6 +32,9 @@ constexpr NumberKey client_timeout(
     "for the first hello and, in lockstep, for every answer; then the run ends with status 3");
 constexpr NumberKey max_torque("max_torque_N_m", usual.max_torque_N_m, Range::positive(),
                                "commands beyond are refused");
+constexpr NumberKey silence("silence_s", usual.silence_s, {0.01, 1e6},
+                            "paced: a client of which nothing came for longer has no torque any "
+                            "more, and another may take over");
 constexpr NumberKey hold("hold_s", Range::positive(),
                          "a command that is not renewed for so long becomes zero",
                          {.usually = "never"});
@@ -67,6 +71,7 @@ ServeSettings read_serve(const Settings& root) {
   serve.wait_for_client = s.get(serve_key::wait_for_client);
   serve.client_timeout_s = s.get(serve_key::client_timeout);
   serve.max_torque_N_m = s.get(serve_key::max_torque);
+  serve.silence_s = s.get(serve_key::silence);
   serve.hold_s = s.get_or(serve_key::hold, std::numeric_limits<double>::infinity());
   serve.deadline_s = s.get_or(serve_key::deadline, 1.0 / serve.rate_Hz);
   serve.on_miss = static_cast<OnMiss>(s.get(serve_key::on_miss));
@@ -87,8 +92,20 @@ enum LinkStream : uint64_t { stream_to_client = 0x70, stream_from_client };
 
 constexpr int64_t never_ns = std::numeric_limits<int64_t>::max();
 
+// What a paced tick reads at most, so that a flood of packets cannot hold it up: about as many as
+// the system keeps for a socket by default. The rest stays for the next tick.
+constexpr size_t packets_a_tick = 256;
+// Events that are told; beyond, they are counted.
+constexpr size_t most_events = 1000;
+
 int64_t in_ns(double seconds) {
   return std::llround(1e9 * seconds);
+}
+
+void sleep_until(int64_t until_ns) {
+  constexpr int64_t second_ns = 1'000'000'000;
+  const timespec until{until_ns / second_ns, until_ns % second_ns};
+  ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
 }
 
 // Another for every run, so that packets for one that is over are told apart. Not zero.
@@ -98,16 +115,20 @@ uint64_t run_number() {
 
 }  // namespace
 
-Session::Session(const ServeSettings& settings, UdpSocket socket, uint64_t seed, double start_s)
+Session::Session(const ServeSettings& settings, UdpSocket socket, uint64_t seed, double start_s,
+                 std::function<void(const std::string&)> report)
     : settings_(settings),
       socket_(std::move(socket)),
       start_s_(start_s),
       run_(run_number()),
       gate_(run_, settings.max_torque_N_m,
-            settings.mode == ServeSettings::Mode::paced ? in_ns(2.0) : never_ns),
+            settings.mode == ServeSettings::Mode::paced ? in_ns(settings.silence_s) : never_ns),
       clock_(1.0 / settings.rate_Hz, settings.deadline_s, settings.on_miss),
       to_client_(settings.to_client, seed, stream_to_client),
-      from_client_(settings.from_client, seed, stream_from_client) {}
+      from_client_(settings.from_client, seed, stream_from_client),
+      report_(std::move(report)),
+      events_(Table::of("session_events", "Clients that came, fell silent or left",
+                        {"time_s", "event"})) {}
 
 // Seconds since the start: by the clock, or those of the tick.
 double Session::now_s() const {
@@ -117,6 +138,8 @@ double Session::now_s() const {
 ZeroOrderHold Session::tick(const LiveRow& row) {
   tick_ = row.index;
   tick_s_ = row.time_s - start_s_;
+  if (packets_of_tick_ >= packets_a_tick) ++full_ticks_;
+  packets_of_tick_ = 0;
   if (tick_ == 0) meet_client();
   const int64_t computing_ns = tick_ == 0 ? 0 : monotonic_ns() - returned_ns_;
   bool is_late = false;
@@ -135,6 +158,7 @@ ZeroOrderHold Session::tick(const LiveRow& row) {
     await_answer();
   }
   command(now_s());
+  if (is_paced()) end_after_silence();
   ZeroOrderHold held;
   if (acting_.header.sequence != 0) {
     held.command_body_N_m =
@@ -166,7 +190,7 @@ void Session::wait_until_due(size_t tick) {
     if (std::isfinite(next_s)) {
       until_ns = std::min(due_ns, monotonic_ns() + std::max<int64_t>(0, in_ns(next_s - now_s())));
     }
-    take_in(until_ns);
+    if (!take_in(until_ns)) sleep_until(until_ns);
     send_arrived(now_s(), false);
   }
 }
@@ -212,8 +236,9 @@ void Session::await_answer() {
   const int64_t give_up_ns = monotonic_ns() + in_ns(settings_.client_timeout_s);
   constexpr int64_t again_ns = 200'000'000;
   answered_ = false;
+  int64_t until_ns = 0;
   while (!answered_ && !client_left_) {
-    const int64_t until_ns = std::min(give_up_ns, monotonic_ns() + again_ns);
+    if (monotonic_ns() >= until_ns) until_ns = std::min(give_up_ns, monotonic_ns() + again_ns);
     take_in(until_ns);
     const int64_t now_ns = monotonic_ns();
     if (now_ns >= give_up_ns && !answered_ && !client_left_) {
@@ -226,18 +251,28 @@ void Session::await_answer() {
   }
 }
 
-// Takes one packet in, waiting for it until `until_ns`; whether one was there.
+// Takes one packet in, waiting for it until `until_ns`; whether one was there and the tick may have
+// it.
 bool Session::take_in(int64_t until_ns) {
+  if (is_paced() && packets_of_tick_ >= packets_a_tick) return false;
   const std::optional<ReceivedBytes> got = socket_.receive(until_ns);
   if (!got) return false;
+  ++packets_of_tick_;
   const std::span<const std::byte> bytes(got->bytes.data(), std::min(got->size, got->bytes.size()));
   const std::optional<ClientPacket> packet = gate_.admit(bytes, got->sender, monotonic_ns());
   if (!packet) return true;
   ++received_;
+  fell_silent_ = false;
   if (packet->kind == PHOTORQUE_HELLO) client_left_ = false;
+  if (packet->begins_session) {
+    ++sessions_;
+    end_command();
+    note("a session begins, from " + UdpSocket::text_of(got->sender));
+  }
   if (packet->kind == PHOTORQUE_GOODBYE) {
     client_left_ = true;
-    acting_ = {};
+    end_command();
+    note("the client says goodbye: no torque");
   }
   if (packet->kind != PHOTORQUE_COMMAND) return true;
   if (is_paced()) {
@@ -249,6 +284,28 @@ bool Session::take_in(int64_t until_ns) {
     ++unanswered_;
   }
   return true;
+}
+
+// Nothing of one session acts in the next: neither its last command nor those on their way.
+void Session::end_command() {
+  acting_ = {};
+  from_client_.clear();
+}
+
+void Session::note(const std::string& event) {
+  if (events_.columns.front().size() >= most_events) return;
+  events_.row().set("time_s", start_s_ + tick_s_).set("event", event);
+  report_("  at " + shortest(start_s_ + tick_s_) + " s: " + event);
+}
+
+// The safe command of a client that has vanished without a goodbye: no torque.
+void Session::end_after_silence() {
+  if (!gate_.is_silent(monotonic_ns())) return;
+  std::ranges::fill(acting_.torque_body_N_m, 0.0);
+  if (fell_silent_) return;
+  fell_silent_ = true;
+  ++silences_;
+  note("the client is silent for " + shortest(settings_.silence_s) + " s: no torque");
 }
 
 // The newest command that has come through the link acts from now on.
@@ -302,6 +359,9 @@ Product Session::product() const {
     product.quantities.push_back({name, {static_cast<double>(value), 0.0}});
   };
   if (!is_paced()) put("ticks", tick_ + 1);
+  put("sessions", sessions_);
+  if (is_paced()) put("silences_of_client", silences_);
+  if (is_paced()) put("ticks_at_packet_limit", full_ticks_);
   put("packets_sent", sent_);
   put("packets_received", received_);
   put("packets_refused", gate_.refused_in_all());
@@ -316,13 +376,14 @@ Product Session::product() const {
         .set("packets", static_cast<double>(gate_.refused()[i]));
   }
   product.tables.push_back(std::move(table));
+  product.tables.push_back(events_);
   return product;
 }
 
 Key serve_table() {
   using namespace serve_key;
-  return serve.of({mode, rate, address, port, wait_for_client, client_timeout, max_torque, hold,
-                   deadline, on_miss, spin, realtime_priority, send_truth,
+  return serve.of({mode, rate, address, port, wait_for_client, client_timeout, max_torque, silence,
+                   hold, deadline, on_miss, spin, realtime_priority, send_truth,
                    to_client.of(link_keys()), from_client.of(link_keys())});
 }
 

@@ -27,6 +27,7 @@ struct ServeSettings {
   int port = 0;
   bool wait_for_client = true;  // before the first tick
   double client_timeout_s = 60.0;
+  double silence_s = 2.0;  // after which the torque of a paced run's client ends
   double max_torque_N_m = 1.0;
   double hold_s = 0.0;  // after which a command that is not renewed ends; infinity: never
   double deadline_s = 0.0;
@@ -39,8 +40,8 @@ struct ServeSettings {
 
 // Reads [serve], which may be absent: mode ("paced", "lockstep"), rate_Hz (160), address
 // ("127.0.0.1"), port (4160; 0: any), wait_for_client (true), client_timeout_s (60), max_torque_N_m
-// (1), hold_s (none), deadline_s (a step), on_miss ("catch_up", "slip", "stop"), spin_s (50e-6),
-// realtime_priority (0), send_truth (false), and the links [serve.to_client] and
+// (1), silence_s (2), hold_s (none), deadline_s (a step), on_miss ("catch_up", "slip", "stop"),
+// spin_s (50e-6), realtime_priority (0), send_truth (false), and the links [serve.to_client] and
 // [serve.from_client].
 ServeSettings read_serve(const Settings& root);
 Key serve_table();
@@ -49,7 +50,9 @@ Key serve_table();
 class Session {
  public:
   // `seed` of the simulated links; `start_s` is the run's initial time.
-  Session(const ServeSettings& settings, UdpSocket socket, uint64_t seed, double start_s);
+  // `report` gets one line for every event (a session begins, its client falls silent or leaves).
+  Session(const ServeSettings& settings, UdpSocket socket, uint64_t seed, double start_s,
+          std::function<void(const std::string&)> report);
 
   // The run's LiveCommander. In order, at tick k:
   //   paced: waits until start + k steps, taking in what comes meanwhile; sends the measurement;
@@ -76,6 +79,9 @@ class Session {
   void send(const photorque_measurement_packet& packet, uint32_t flags);
   void await_answer();
   bool take_in(int64_t until_ns);
+  void end_command();
+  void note(const std::string& event);
+  void end_after_silence();
   void command(double now_s);
   photorque_measurement_packet packet_of(const LiveRow& row) const;
 
@@ -93,7 +99,11 @@ class Session {
   uint64_t tick_ = 0;
   double tick_s_ = 0.0;  // of the run, since its start
   int64_t returned_ns_ = 0;
-  bool client_left_ = false, answered_ = false;
+  bool client_left_ = false, answered_ = false, fell_silent_ = false;
+  size_t packets_of_tick_ = 0;
+  std::function<void(const std::string&)> report_;
+  Table events_;
+  uint64_t sessions_ = 0, silences_ = 0, full_ticks_ = 0;
   uint64_t sequence_ = 0, sent_ = 0, received_ = 0, overtaken_ = 0, unanswered_ = 0;
   Schedule acted_;
 };

@@ -83,6 +83,13 @@ UdpSocket::UdpSocket(const std::string& address, int port, int64_t spin_ns) : sp
   where_ = address + ":" + std::to_string(ntohs(own.sin_port));
 }
 
+std::string UdpSocket::text_of(uint64_t client) {
+  const sockaddr_in from = address_of(client);
+  char text[INET_ADDRSTRLEN] = {};
+  ::inet_ntop(AF_INET, &from.sin_addr, text, sizeof text);
+  return std::string(text) + ":" + std::to_string(ntohs(from.sin_port));
+}
+
 void UdpSocket::send(const photorque_measurement_packet& packet, uint64_t client) const {
   const sockaddr_in to = address_of(client);
   ::sendto(*socket_, &packet, sizeof packet, MSG_DONTWAIT | MSG_NOSIGNAL,

@@ -32,6 +32,7 @@ class UdpSocket {
   std::optional<ReceivedBytes> receive(int64_t until_ns) const;
   // For people: "127.0.0.1:4160".
   const std::string& where() const { return where_; }
+  static std::string text_of(uint64_t client);
 
  private:
   int64_t spin_ns_;

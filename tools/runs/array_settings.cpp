@@ -8,7 +8,7 @@
 namespace photorque {
 namespace {
 
-constexpr Range efficiency{0.0, 1.0, true, false};
+constexpr Range efficiency{1e-6, 1.0};
 
 namespace chain_key {
 constexpr NumberKey wall_plug("wall_plug_efficiency", efficiency, "light over mains",

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/constants.h"
 #include "receivers/gather/bodies/wrench.h"
 
 namespace photorque {
@@ -33,9 +34,12 @@ Estimate direct_bin_W(const FluxMapReceiver& map, const BinSums& sums, size_t bi
   return with_bound(estimate_from_replicates(values), bound_W);
 }
 
+// Rays are single precision: what cancels does so to this fraction of what was emitted.
+constexpr double ray_rounding = 1e-7;
+
 // `ray_W`: of one ray, on the mean.
 DirectLight compare(const FluxMapReceiver& map, const Gathered& gathered, const BinSums& rays,
-                    double ray_W) {
+                    double ray_W, double emitted_W) {
   constexpr double few = 100.0;     // rays: their scatter does not tell what chance does
   constexpr double well_lit = 0.3;  // relative error of the rays' bin at most
   DirectLight light;
@@ -47,7 +51,7 @@ DirectLight compare(const FluxMapReceiver& map, const Gathered& gathered, const 
   const double sigma =
       std::hypot(light.gathered_W.standard_error, light.rays_W.standard_error, chance_W);
   const double difference = light.gathered_W.value - light.rays_W.value;
-  light.difference_sigma = difference / (sigma + 1e-300);
+  light.difference_sigma = difference / (sigma + ray_rounding * emitted_W);
   int bins = 0;
   for (size_t bin = 0; bin < map.grid().bins(); ++bin) {
     const Estimate ray = direct_bin_W(map, rays, bin);
@@ -91,27 +95,22 @@ std::array<Estimate, 3> total_N_m(const TorqueMapReceiver& map, const BinSums& s
   return total;
 }
 
-DirectTorque compare(const TorqueMapReceiver& map, const Gathered& gathered, const BinSums& rays) {
+// `scale_N_m`: of all the light, at the largest arm.
+DirectTorque compare(const TorqueMapReceiver& map, const Gathered& gathered, const BinSums& rays,
+                     double scale_N_m) {
   DirectTorque torque{map.name(), total_N_m(map, gathered.direct), total_N_m(map, rays)};
-  double largest_N_m = 0.0;
-  for (const Estimate& axis : torque.gathered_N_m) {
-    largest_N_m = std::max(largest_N_m, std::abs(axis.value));
-  }
   for (size_t axis = 0; axis < 3; ++axis) {
     const Estimate &own = torque.gathered_N_m[axis], &by_rays = torque.rays_N_m[axis];
-    // Rays are single precision: a torque that is zero by symmetry is not so to all digits.
     const double sigma =
-        std::hypot(own.standard_error, by_rays.standard_error) + 1e-6 * largest_N_m;
-    if (sigma > 0.0) {
-      torque.worst_sigma =
-          std::max(torque.worst_sigma, std::abs(own.value - by_rays.value) / sigma);
-    }
+        std::hypot(own.standard_error, by_rays.standard_error) + ray_rounding * scale_N_m;
+    torque.worst_sigma = std::max(torque.worst_sigma, std::abs(own.value - by_rays.value) / sigma);
   }
   return torque;
 }
 
-DirectWrench compare(const WrenchReceiver& receiver, const Gathered& gathered,
-                     const BinSums& rays) {
+// `scale_N`: of all the light; `arm_m`: the largest.
+DirectWrench compare(const WrenchReceiver& receiver, const Gathered& gathered, const BinSums& rays,
+                     double scale_N, double arm_m) {
   BinSums own = rays;
   replace_direct(gathered, own);
   DirectWrench wrench{receiver.name(), receiver.direct(own), receiver.direct(rays)};
@@ -122,13 +121,11 @@ DirectWrench compare(const WrenchReceiver& receiver, const Gathered& gathered,
   };
   const auto mine = values(wrench.gathered), theirs = values(wrench.rays);
   for (Eigen::Index k = 0; k < 6; ++k) {
-    // Rays are single precision: what is zero by symmetry is not so to all digits.
-    const double largest = (k < 3 ? mine.head<3>() : mine.tail<3>()).matrix().norm();
+    const double scale = k < 3 ? scale_N : scale_N * arm_m;
     const double sigma =
-        std::sqrt(wrench.gathered.covariance(k, k) + wrench.rays.covariance(k, k)) + 1e-6 * largest;
-    if (sigma > 0.0) {
-      wrench.worst_sigma = std::max(wrench.worst_sigma, std::abs(mine[k] - theirs[k]) / sigma);
-    }
+        std::sqrt(wrench.gathered.covariance(k, k) + wrench.rays.covariance(k, k)) +
+        ray_rounding * scale;
+    wrench.worst_sigma = std::max(wrench.worst_sigma, std::abs(mine[k] - theirs[k]) / sigma);
   }
   return wrench;
 }
@@ -151,8 +148,11 @@ struct Wanted {
   GatherOptions options;
   bool weigh_cost;
   uint64_t rays;
+  double emitted_W;
   double ray_W;
   DirectRoute& route;
+
+  double force_N() const { return emitted_W / speed_of_light_m_s; }
 
   // Whether it is worth while; else says so.
   bool pays(const std::string& what, size_t pairs) const {
@@ -171,7 +171,8 @@ void gather_torques(const Wanted& wanted, const TorqueMapReceiver& map, BinSums&
   if (!wanted.pays("torque of direct light on " + map.name(), pairs)) return;
   const Gathered gathered =
       gather_torque(wanted.scene, wanted.lab_from_body, beams, map, wanted.options);
-  wanted.route.torques.push_back(compare(map, gathered, sums));
+  wanted.route.torques.push_back(
+      compare(map, gathered, sums, wanted.force_N() * wanted.experiment.scene.radius_m()));
   replace_direct(gathered, sums);
 }
 
@@ -181,7 +182,7 @@ void gather_light(const Wanted& wanted, const FluxMapReceiver& map, size_t place
   if (!wanted.pays("direct light on " + map.name(), map.grid().bins() * beams.size())) return;
   const Gathered gathered =
       gather_direct(wanted.scene, wanted.lab_from_body, beams, map, wanted.options);
-  wanted.route.gathered.push_back(compare(map, gathered, sums, wanted.ray_W));
+  wanted.route.gathered.push_back(compare(map, gathered, sums, wanted.ray_W, wanted.emitted_W));
   wanted.route.gathered.back().receiver = place;
   replace_direct(gathered, sums);
 }
@@ -198,7 +199,9 @@ void gather_wrench(const Wanted& wanted, const WrenchGather& bodies, const Wrenc
     return;
   }
   const Gathered gathered = bodies.wrench(wanted.lab_from_body, receiver, wanted.options);
-  wanted.route.wrenches.push_back(compare(receiver, gathered, sums));
+  wanted.route.wrenches.push_back(
+      compare(receiver, gathered, sums, wanted.force_N(),
+              wanted.experiment.scene.radius_m() + receiver.about_body_m().norm()));
   replace_direct(gathered, sums);
 }
 
@@ -220,6 +223,7 @@ DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scen
                        .target_error = effort.target_error.value_or(0.0)},
                       effort.direct == TraceEffort::Direct::automatic && !effort.target_error,
                       result.rays,
+                      result.power_balance.emitted_W,
                       result.power_balance.emitted_W / static_cast<double>(result.rays),
                       route};
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {

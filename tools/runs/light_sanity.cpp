@@ -1,5 +1,8 @@
 #include "tools/runs/light_sanity.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace photorque {
 namespace {
 
@@ -60,6 +63,13 @@ bool is_turned_inwards(const Scene& scene, const std::string& path) {
   return six_volumes_m3 < 0.0;
 }
 
+// A sun is nowhere: its light starts outside of everything.
+bool has_place(const std::vector<Beam>& beams) {
+  return std::ranges::any_of(beams, [](const Beam& beam) {
+    return !beam.aperture || !std::isinf(beam.aperture->radius_m);
+  });
+}
+
 double lit_W(const NamedReceiver& receiver, const BinSums& sums) {
   return receiver.flux_map->flux_map(sums).incident.power_W.value;
 }
@@ -85,7 +95,7 @@ std::vector<InputError> light_mistakes(const OpticalRun& run) {
       mistakes.push_back({source.where(), "scene.file",
                           "\"" + part + "\", whose faces look inwards: light falls on their backs",
                           "faces that look outwards (turn them where the model was made)"});
-    } else if (!part.empty()) {
+    } else if (!part.empty() && has_place(beams)) {
       mistakes.push_back(
           source.error("position_m", "a place inside of \"" + part + "\"", "one outside of it"));
     } else if (result.power_balance.escaped_W.value >= (1.0 - rounding) * emitted_W) {

@@ -74,19 +74,19 @@ size_t whole_wrench(Experiment& experiment) {
 // The largest disagreement, in standard errors, between the force and torque summed over surfaces
 // and the same from the rays alone.
 double momentum_disagreement(const PowerBalance& power_balance, const BinSums& sums,
-                             const WrenchReceiver& wrench) {
+                             const WrenchReceiver& wrench, double radius_m) {
   const WrenchEstimate surfaces = wrench_about(wrench.total(sums), Vec3::Zero());
   double worst = 0.0;
   for (int k = 0; k < 3; ++k) {
     const auto i = static_cast<size_t>(k);
-    const auto compare = [&](const Estimate& rays, double value, double error) {
+    const auto compare = [&](const Estimate& rays, double value, double error, double arm) {
       const double sigma = std::hypot(rays.standard_error, error);
-      const double rounding = 1e-7 * power_balance.emitted_W / speed_of_light_m_s;
+      const double rounding = 1e-7 * arm * power_balance.emitted_W / speed_of_light_m_s;
       worst = std::max(worst, std::abs(rays.value - value) / (sigma + rounding));
     };
-    compare(power_balance.force_N[i], surfaces.mean.force_N[k], surfaces.force_error_N()[k]);
+    compare(power_balance.force_N[i], surfaces.mean.force_N[k], surfaces.force_error_N()[k], 1.0);
     compare(power_balance.torque_N_m[i], surfaces.mean.torque_N_m[k],
-            surfaces.torque_error_N_m()[k]);
+            surfaces.torque_error_N_m()[k], radius_m);
   }
   return worst;
 }
@@ -188,6 +188,12 @@ double loud_sigma_of(int replicates) {
 }  // namespace
 
 std::vector<std::string> OpticalRun::warnings(const OpticalResult& result) const {
+  // The likely causes, and what to do.
+  constexpr const char* rarely_met =
+      ": few rays carry much of it; raise trace.rays until the figure falls";
+  constexpr const char* by_edges =
+      ": parts too small for the rays, or light through gaps; raise trace.rays, or compare with "
+      "trace.direct = \"rays\"";
   constexpr double lost = 1e-9;
   const double loud_sigma = loud_sigma_of(experiment_.file.trace.replicates);
   std::vector<std::string> lines = experiment_.warnings;
@@ -196,29 +202,30 @@ std::vector<std::string> OpticalRun::warnings(const OpticalResult& result) const
     lines.push_back("the power balance is off by " + show(power_balance.closure) +
                     " of what is emitted");
   }
-  const double momentum = momentum_disagreement(power_balance, result.sums[wrench_], wrench());
+  const double momentum = momentum_disagreement(power_balance, result.sums[wrench_], wrench(),
+                                                experiment_.scene.radius_m());
   if (momentum > loud_sigma) {
     lines.push_back("force or torque summed over surfaces and from the rays differ by " +
-                    show(momentum) + " standard errors");
+                    show(momentum) + " standard errors" + rarely_met);
   }
   for (const DirectLight& direct : result.direct.gathered) {
     const double difference = std::abs(direct.difference_sigma);
     if (difference <= loud_sigma) continue;
     lines.push_back("direct light on " + direct.name + ": gathered " +
                     show(direct.gathered_W, "W") + " and by rays " + show(direct.rays_W, "W") +
-                    " differ by " + show(difference) + " standard errors");
+                    " differ by " + show(difference) + " standard errors" + by_edges);
   }
   for (const DirectTorque& direct : result.direct.torques) {
     if (direct.worst_sigma <= loud_sigma) continue;
     lines.push_back("torque of direct light on " + direct.name +
                     ": gathered and by rays differ by " + show(direct.worst_sigma) +
-                    " standard errors");
+                    " standard errors" + by_edges);
   }
   for (const DirectWrench& direct : result.direct.wrenches) {
     if (direct.worst_sigma <= loud_sigma) continue;
     lines.push_back("force or torque of direct light on " + direct.name +
                     ": gathered and by rays differ by " + show(direct.worst_sigma) +
-                    " standard errors");
+                    " standard errors" + by_edges);
   }
   return lines;
 }
@@ -227,6 +234,14 @@ Provenance OpticalRun::provenance(const OpticalResult& result) const {
   Provenance stamped = provenance_;
   stamped.warnings = warnings(result);
   return stamped;
+}
+
+std::optional<size_t> OpticalRun::first_flux_map() const {
+  const auto& receivers = experiment_.receivers;
+  const auto found = std::ranges::find_if(
+      receivers, [](const NamedReceiver& receiver) { return receiver.flux_map != nullptr; });
+  if (found == receivers.end()) return std::nullopt;
+  return static_cast<size_t>(found - receivers.begin());
 }
 
 size_t OpticalRun::flux_map_index(const std::string& name) const {
@@ -267,7 +282,9 @@ Product OpticalRun::product(const OpticalResult& result) const {
       {"truncated_W", power_balance.truncated_W},
       {"ledger_closure", {power_balance.closure, 0.0}},
       {"momentum_disagreement_sigma",
-       {momentum_disagreement(power_balance, result.sums[wrench_], wrench()), 0.0}},
+       {momentum_disagreement(power_balance, result.sums[wrench_], wrench(),
+                              experiment_.scene.radius_m()),
+        0.0}},
   };
   for (const DirectLight& direct : result.direct.gathered) {
     product.quantities.push_back({"direct_on_" + direct.name + "_W", direct.gathered_W});
@@ -360,10 +377,10 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
   console.heading("Checks");
   console.line("  power: emitted = absorbed + escaped + truncated to " +
                show(power_balance.closure));
-  console.line(
-      "  momentum: surfaces and rays differ by at most " +
-      show(momentum_disagreement(power_balance, result.sums[run.wrench_index()], run.wrench())) +
-      " standard errors");
+  console.line("  momentum: surfaces and rays differ by at most " +
+               show(momentum_disagreement(power_balance, result.sums[run.wrench_index()],
+                                          run.wrench(), run.experiment().scene.radius_m())) +
+               " standard errors");
   const std::string inside = run.inside_light(result);
   if (!inside.empty()) console.line("  note: " + inside);
   for (const std::string& notice : result.direct.notices) console.line("  note: " + notice);

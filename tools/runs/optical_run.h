@@ -60,6 +60,8 @@ class OpticalRun {
 
   // The place of a receiver among experiment().receivers and TraceResult::sums.
   size_t wrench_index() const { return wrench_; }
+  // The place of the first receiver that is a flux map.
+  std::optional<size_t> first_flux_map() const;
   // The flux map called `name`, or the first one if `name` is empty. InputError if there is none.
   size_t flux_map_index(const std::string& name) const;
 

@@ -72,7 +72,8 @@ void OutputFolder::make() {
 // A page of bytes, as a full disk takes the name of a file but nothing in it.
 void OutputFolder::try_to_write() const {
   const fs::path trial = temporary_beside(path_ / "trial");
-  const int file = ::open(trial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  const int file =
+      ::open(trial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
   int error = file < 0 ? errno : 0;
   constexpr std::array<char, 4096> page{};
   if (file >= 0) {

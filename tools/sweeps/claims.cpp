@@ -49,7 +49,7 @@ Claims::Claim::~Claim() {
 }
 
 Claims::Claims(const std::filesystem::path& path)
-    : descriptor_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+    : descriptor_(::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666)) {
   if (descriptor_ < 0) {
     throw InputError({path.string()}, "", std::strerror(errno), "a file that can be written");
   }

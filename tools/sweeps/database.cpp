@@ -125,8 +125,17 @@ int RunDatabase::pragma(const std::string& name) const {
 }
 
 RunDatabase::RunDatabase(const std::filesystem::path& path) : path_(path) {
+  std::error_code none;
+  if (std::filesystem::is_symlink(path, none)) {
+    throw InputError({path.string()}, "", "a link", "a file of designs, or no such file");
+  }
+  // SQLite refuses links anywhere in a path; those to the folder are the user's own.
+  const std::filesystem::path place =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(path).parent_path(), none) /
+      path.filename();
   try {
-    if (sqlite3_open_v2(path.c_str(), &handle_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE,
+    if (sqlite3_open_v2(place.c_str(), &handle_,
+                        SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOFOLLOW,
                         nullptr) != SQLITE_OK) {
       fail();
     }

@@ -9,6 +9,7 @@
 #include "core/numerics/quadrature.h"
 #include "core/numerics/random.h"
 #include "core/numerics/root.h"
+#include "scenes/experiment/toml.h"
 #include "tools/sweeps/keys.h"
 
 namespace photorque {
@@ -85,14 +86,7 @@ std::string toml_text(const SettingsNode& node) {
   if (const auto* flag = std::get_if<bool>(&node.value)) return *flag ? "true" : "false";
   if (const auto* whole = std::get_if<int64_t>(&node.value)) return std::to_string(*whole);
   if (const auto* real = std::get_if<double>(&node.value)) return toml_number(*real);
-  if (const auto* text = std::get_if<std::string>(&node.value)) {
-    std::string quoted = "\"";
-    for (const char c : *text) {
-      if (c == '"' || c == '\\') quoted += '\\';
-      quoted += c;
-    }
-    return quoted + '"';
-  }
+  if (std::holds_alternative<std::string>(node.value)) return toml_value(node);
   std::string items;
   if (const auto* array = std::get_if<SettingsNode::Array>(&node.value)) {
     for (const SettingsNode& item : *array) items += (items.empty() ? "" : ", ") + toml_text(item);

@@ -112,7 +112,7 @@ TorqueMapRun over_attitudes(const Console& console, const std::shared_ptr<Optica
   if (!run.experiment().file.settings.has("torque_map")) {
     console.line("note: no [torque_map]: tilts to 30 deg towards eight headings");
   }
-  const size_t flux_map = array ? array->flux_map : run.flux_map_index("");
+  const std::optional<size_t> flux_map = array ? array->flux_map : run.first_flux_map();
 
   WrenchTable wrenches =
       make_wrench_table(WrenchTable::Angles::tilt_heading, grid.tilt_rad, grid.heading_rad);
@@ -132,8 +132,11 @@ TorqueMapRun over_attitudes(const Console& console, const std::shared_ptr<Optica
       set_node(wrenches, node, run.wrench().total(result.sums[run.wrench_index()]));
       std::optional<Estimate> electric;
       if (array) electric = evaluate(*array, run, result).power_W;
-      powers.add(grid.tilt_rad[t], grid.heading_rad[h],
-                 run.flux_map(flux_map).flux_map(result.sums[flux_map]).incident.power_W, electric);
+      if (flux_map) {
+        powers.add(grid.tilt_rad[t], grid.heading_rad[h],
+                   run.flux_map(*flux_map).flux_map(result.sums[*flux_map]).incident.power_W,
+                   electric);
+      }
       warnings.add(run.warnings(result), "tilt " + show(stated_deg(grid.tilt_rad[t])) +
                                              " deg, heading " +
                                              show(stated_deg(grid.heading_rad[h])) + " deg");
@@ -146,10 +149,12 @@ TorqueMapRun over_attitudes(const Console& console, const std::shared_ptr<Optica
   console.done();
 
   Product product = wrench_table_product(wrenches, "body");
-  product.tables.push_back(powers.table());
-  product.plots.push_back(powers.plot(grid.heading_rad.size(), grid.tilt_rad.size(), "on_receiver",
-                                      "power_on_receiver_over_tilt",
-                                      "Light on " + run.experiment().receivers[flux_map].name));
+  if (flux_map) {
+    product.tables.push_back(powers.table());
+    product.plots.push_back(powers.plot(grid.heading_rad.size(), grid.tilt_rad.size(),
+                                        "on_receiver", "power_on_receiver_over_tilt",
+                                        "Light on " + run.experiment().receivers[*flux_map].name));
+  }
   if (array) {
     product.plots.push_back(powers.plot(grid.heading_rad.size(), grid.tilt_rad.size(), "electric",
                                         "electric_power_over_tilt", "Electric power of the array"));

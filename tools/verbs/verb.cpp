@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +10,7 @@
 #include <memory>
 #include <mutex>
 
+#include "core/text/format.h"
 #include "core/text/parse.h"
 #include "tools/pages/pages.h"
 
@@ -38,7 +40,8 @@ void draw_bar(const std::string& what, double fraction) {
   const int filled = static_cast<int>(std::lround(width * fraction));
   std::string bar;
   for (int i = 0; i < width; ++i) bar += i < filled ? "█" : "·";
-  std::fprintf(stderr, "\r%s %s %3.0f %%\033[K", what.c_str(), bar.c_str(), 100.0 * fraction);
+  std::fprintf(stderr, "\r%s %s %3.0f %%\033[K", clean_text(what).c_str(), bar.c_str(),
+               100.0 * fraction);
   std::fflush(stderr);
 }
 
@@ -123,12 +126,25 @@ void Command::add_checkpoint(std::optional<double>& minutes) {
       .mistake = minutes_above_zero;
 }
 
+// Names come from strangers' files: of control characters only ends of lines and tabs reach a
+// terminal.
+static std::string clean_lines(const std::string& text) {
+  std::string clean;
+  for (size_t begin = 0; begin <= text.size();) {
+    const size_t end = std::min(text.find_first_of("\n\t", begin), text.size());
+    clean += clean_text(std::string_view(text).substr(begin, end - begin));
+    if (end < text.size()) clean += text[end];
+    begin = end + 1;
+  }
+  return clean;
+}
+
 Console terminal(const CommandOptions& options) {
   if (options.quiet || options.json) return Console();
   ConsoleSinks sinks;
   // At once, also into a pipe: a program may wait for the line that says where a run listens.
   sinks.line = [](const std::string& text) {
-    std::printf("%s\n", text.c_str());
+    std::printf("%s\n", clean_lines(text).c_str());
     std::fflush(stdout);
   };
   if (::isatty(STDERR_FILENO) != 0) {
@@ -140,7 +156,7 @@ Console terminal(const CommandOptions& options) {
   } else {
     const auto pace = std::make_shared<Pace>(std::chrono::seconds(10));
     sinks.note = [pace](const std::string& text) {
-      if (pace->due()) std::fprintf(stderr, "%s\n", text.c_str());
+      if (pace->due()) std::fprintf(stderr, "%s\n", clean_lines(text).c_str());
     };
   }
   return Console(std::move(sinks));

@@ -53,7 +53,7 @@ Facets::Facets(const Scene& scene) {
     inward_.push_back(fronts_look_inwards(faces));
   }
   first_.push_back(facets_.size());
-  find_free(scene.radius_m());
+  find_free(ball_about(facets_).radius_m);
 }
 
 // Of so many pairs of a facet and a corner it is worth looking at all; of more, at those of the

@@ -19,10 +19,10 @@ BandValues part_of(const BandValues& power_W, const BandValues& fraction) {
   return part;
 }
 
-Ray narrow(const OnwardRay& wide, uint32_t index) {
+Ray narrow(const OnwardRay& wide, uint32_t index, const Vec3& centre_m) {
   Ray ray{};
   for (int k = 0; k < 3; ++k) {
-    ray.origin_m[k] = static_cast<float>(wide.origin_m[k]);
+    ray.origin_m[k] = static_cast<float>(wide.origin_m[k] - centre_m[k]);
     ray.direction[k] = static_cast<float>(wide.direction[k]);
   }
   ray.sample = index;
@@ -33,7 +33,7 @@ Ray narrow(const OnwardRay& wide, uint32_t index) {
 
 ShadowRay probe(const TraceableScene& scene, const Vec3& at_m, const Vec3& normal,
                 double length_m) {
-  const Vec3 from = at_m + shadow_ray_offset_m(scene) * normal;
+  const Vec3 from = at_m - scene_centre_m(scene) + shadow_ray_offset_m(scene) * normal;
   ShadowRay ray{};
   for (int k = 0; k < 3; ++k) {
     ray.origin_m[k] = static_cast<float>(from[k]);
@@ -82,7 +82,7 @@ void OnwardLight::land(std::span<const OnwardRay> some, std::span<const double> 
                        const OnwardSink& sink, std::vector<OnwardRay>& next,
                        std::vector<double>& next_least_W) {
   narrow_.clear();
-  for (uint32_t i = 0; i < some.size(); ++i) narrow_.push_back(narrow(some[i], i));
+  for (uint32_t i = 0; i < some.size(); ++i) narrow_.push_back(narrow(some[i], i, scene_.centre_m));
   traced_ += some.size();
   find_hits(scene_, {narrow_, {}}, Coherence::incoherent, *buffer_);
   const int count = compact(*buffer_, kept_);

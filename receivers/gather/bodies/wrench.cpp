@@ -136,7 +136,7 @@ class FacetSampler {
     const Vec3 between = from - at - ray_offset_m_ * normal_emitter;
     const double length = between.norm();
     const Vec3 towards = body_from_emitter_ * (between / length);
-    const Vec3 origin = at_body + ray_offset_m_ * normal;
+    const Vec3 origin = at_body - scene_centre_m(light_.scene) + ray_offset_m_ * normal;
     rays_.push_back({at_body, -towards, power_W, index, static_cast<uint32_t>(replicate_), false});
     ShadowRay& ray = shadow_[count_++];
     for (int k = 0; k < 3; ++k) {

@@ -78,7 +78,8 @@ RunResult serve_experiment(const RunOptions& options, const Console& console) {
     print_serving(console, serve, socket.where());
     run.output_rate_Hz = run.options.tick_rate_Hz = serve.rate_Hz;
     run.model.schedule = {};
-    session = std::make_shared<Session>(serve, std::move(socket), run.seed, run.initial.time_s);
+    session = std::make_shared<Session>(serve, std::move(socket), run.seed, run.initial.time_s,
+                                        [console](const std::string& line) { console.line(line); });
     run.commander = [session](const LiveRow& row) { return session->tick(row); };
     take_priority(console, serve.realtime_priority);
   };

@@ -1,0 +1,25 @@
+// Faces that lie in each other: sheets drawn from both sides, parts back to back, doubled polygons.
+//
+// Two faces in one plane are one sheet to light. A ray meets whichever rounding puts first, and a
+// quadrature over surfaces meets both. Therefore faces that lie in each other are set apart along
+// their normals, in steps of 2e-6 of the scene's size (half the diagonal of its box): beyond the
+// rounding of rays, below any feature.
+// - Facing opposite ways: each moves towards its own front, so that light meets either from its own
+//   side. Solids that touch stay as they are: no light gets between them.
+// - Facing alike: one of them comes first, and shades the others: the outer one where their
+//   distances differ, else an open sheet before a solid, else the first of the file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "raytrace/scene.h"
+
+namespace photorque {
+
+// Sets faces apart that lie in each other within 1e-6 of the scene's size over more than a sliver,
+// in one part or in two, of the same corners or not. Meshes of several instances are copied where
+// they differ then. Returns one line for each of the few pairs of parts that have most.
+std::vector<std::string> separate_coincident_faces(Scene& scene);
+
+}  // namespace photorque

@@ -1,0 +1,217 @@
+// Faces that lie in each other are lit once. Expected forces are textbook formulas and silhouettes
+// that a rasteriser counts, which knows neither sides nor shadows.
+#include <gmock/gmock.h>
+
+#include "core/constants.h"
+#include "receivers/gather/bodies/sunlit_body.h"
+#include "scenes/cad/model.h"
+#include "scenes/gltf/coincident.h"
+#include "sources/lamps/kind.h"
+
+namespace photorque::coincidence {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr double irradiance_W_m2 = 1361.0, pressure_Pa = irradiance_W_m2 / speed_of_light_m_s;
+
+// F = P A cos θ [(1 − ρs) d − 2 (ρs cos θ + ρd/3) n]
+// Source: J. R. Wertz (ed.), Spacecraft Attitude Determination and Control (1978), eq. 17-37.
+Vec3 textbook_N(double diffuse, const Vec3& travel, const Vec3& normal) {
+  return -pressure_Pa * travel.dot(normal) * (travel - 2.0 / 3.0 * diffuse * normal);
+}
+
+Beam sun() {
+  SettingsNode::Table keys;
+  keys["irradiance_W_m2"] = {irradiance_W_m2};
+  keys["angular_radius_deg"] = {0.0};
+  keys["direction"] = {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}, {}};
+  const Settings settings(std::make_shared<const SettingsNode>(SettingsNode{std::move(keys), {}}));
+  for (const SourceKind& kind : all_source_kinds()) {
+    if (kind.name == "sun") return kind.make(settings, {.scene_radius_m = 2.0, .notice = {}})[0];
+  }
+  throw std::logic_error("no sun");
+}
+
+GltfModel model_of(const std::string& obj) {
+  return read_cad_bytes(obj, "part.obj", CadFormat::obj, {1.0});
+}
+
+std::vector<std::string> about_coincidence(const GltfModel& model) {
+  std::vector<std::string> lines;
+  for (const std::string& line : model.notices) {
+    if (line.find("lie in each other") != std::string::npos) lines.push_back(line);
+  }
+  return lines;
+}
+
+Scene black(Scene scene) {
+  for (OpticalSurface& surface : scene.surfaces) surface = grey_surface("black", 0.0, 0.0);
+  return scene;
+}
+
+WrenchSum sunlit(const Scene& scene, const Vec3& travel) {
+  const TraceableScene traceable(scene);
+  const Beam beam = sun();
+  SunlitEffort effort;
+  effort.scattered.rays = 1 << 14;
+  const auto body = SunlitBody::make(traceable, std::span(&beam, 1), Vec3::Zero(), effort);
+  const Quat body_from_lab = Quat::FromTwoVectors(-Vec3::UnitZ(), travel);
+  return body->wrench({body_from_lab.conjugate(), Vec3::Zero()}, INFINITY).total();
+}
+
+// Area of the shadow across `travel`, by the centres of small unit_squares.
+double silhouette_m2(const Scene& scene, const Vec3& travel) {
+  constexpr int side = 1501;
+  constexpr double half_m = 2.0, square_m = 2.0 * half_m / side;
+  const Vec3 x = travel.unitOrthogonal(), y = travel.cross(x);
+  std::vector<uint8_t> dark(static_cast<size_t>(side) * side, 0);
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    for (const auto& triangle : mesh.triangles) {
+      std::array<Vec2, 3> p;
+      for (size_t k = 0; k < 3; ++k) {
+        const Vec3 at = instance.body_from_mesh * mesh.vertices_m[triangle[k]];
+        p[k] = {at.dot(x), at.dot(y)};
+      }
+      const auto turn = [](const Vec2& a, const Vec2& b, const Vec2& c) {
+        return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+      };
+      const double way = turn(p[0], p[1], p[2]);
+      if (std::abs(way) < 1e-12) continue;  // seen from its edge
+      for (int i = 0; i < side; ++i) {
+        for (int j = 0; j < side; ++j) {
+          const Vec2 at(-half_m + (i + 0.5) * square_m, -half_m + (j + 0.5) * square_m);
+          if (turn(p[0], p[1], at) * way >= 0.0 && turn(p[1], p[2], at) * way >= 0.0 &&
+              turn(p[2], p[0], at) * way >= 0.0) {
+            dark[static_cast<size_t>(i) * side + static_cast<size_t>(j)] = 1;
+          }
+        }
+      }
+    }
+  }
+  return square_m * square_m * static_cast<double>(std::ranges::count(dark, 1));
+}
+
+const std::string unit_square = "v -0.5 -0.5 0\nv 0.5 -0.5 0\nv 0.5 0.5 0\nv -0.5 0.5 0\n";
+
+TEST(CoincidentFaces, FeelTheLightOnce) {
+  const std::string front = "f 1 2 3 4\n", back = "f 4 3 2 1\n";
+  const std::vector<std::pair<const char*, std::string>> sheets = {
+      {"shared corners", unit_square + "o a\n" + front + back},
+      {"another diagonal", unit_square + "o a\n" + front + "f 2 1 4 3\n"},
+      {"own corners", unit_square + "o a\n" + front + unit_square + "f 8 7 6 5\n"},
+      {"two parts", unit_square + "o a\n" + front + "o b\n" + back},
+      {"face alike", unit_square + "o a\n" + front + "o b\nf 2 3 4 1\n"},
+      {"polygon and its double", unit_square + "o a\n" + front + front},
+      {"four times", unit_square + "o a\n" + front + back + "o b\n" + back + front},
+      {"rounded", unit_square + "o a\n" + front +
+                      "v -0.5 -0.5 3e-7\nv 0.5 -0.5 -3e-7\nv 0.5 0.5 3e-7\nv -0.5 0.5 3e-7\n" +
+                      "f 8 7 6 5\n"},
+      {"partly", unit_square + "o a\n" + front +
+                     "v 0.2 -0.3 0\nv 1.1 -0.3 0\nv 1.1 0.9 0\nv 0.2 0.9 0\no b\nf 8 7 6 5\n"},
+      {"partly alike",
+       unit_square + "o a\n" + front +
+           "v 0.2 -0.3 0\nv 1.1 -0.3 0\nv 1.1 0.9 0\nv 0.2 0.9 0\no b\nf 5 6 7 8\n"},
+      {"on a box", unit_square + "v -0.5 -0.5 -1\nv 0.5 -0.5 -1\nv 0.5 0.5 -1\nv -0.5 0.5 -1\n" +
+                       "o box\nf 1 2 3 4\nf 8 7 6 5\nf 5 6 2 1\nf 6 7 3 2\nf 7 8 4 3\nf 8 5 1 4\n" +
+                       "o sheet\nv -0.3 -0.3 0\nv 0.4 -0.3 0\nv 0.4 0.3 0\nf 9 10 11\n"},
+  };
+  for (const auto& [what, obj] : sheets) {
+    const GltfModel model = model_of(obj);
+    EXPECT_FALSE(about_coincidence(model).empty()) << what;
+    const Scene scene = black(model.scene);
+    for (const Vec3& towards :
+         {Vec3(0, 0, -1), Vec3(0, 0, 1), Vec3(0.5, 0.3, -0.6), Vec3(-0.2, 0.7, 0.5)}) {
+      const Vec3 travel = towards.normalized();
+      const Vec3 force_N = sunlit(scene, travel).head<3>().matrix();
+      const double area_m2 = silhouette_m2(scene, travel);
+      EXPECT_NEAR(force_N.dot(travel) / pressure_Pa, area_m2, 4e-3) << what << towards;
+      EXPECT_LT(force_N.cross(travel).norm(), 1e-4 * force_N.norm()) << what;
+    }
+  }
+}
+
+TEST(CoincidentFaces, BackToBackHaveTheOpticsOfTheirOwnSides) {
+  for (const char* back : {"f 4 3 2 1\n", "f 3 2 1 4\n"}) {
+    GltfModel model =
+        model_of(unit_square + "o a\nusemtl cell\nf 1 2 3 4\no b\nusemtl white\n" + back);
+    EXPECT_THAT(about_coincidence(model),
+                ElementsAre(HasSubstr("4 triangles of \"a\" and \"b\" lie in each other back to "
+                                      "back")));
+    for (const Instance& instance : model.scene.instances) {
+      model.scene.surfaces[instance.front_surface] =
+          grey_surface("s", 0.0, instance.material == "white" ? 1.0 : 0.0);
+    }
+    for (const Vec3& towards : {Vec3(0, 0, -1), Vec3(0.3, 0.2, -0.8)}) {
+      const Vec3 down = towards.normalized(), up = -down;
+      const WrenchSum on_front = sunlit(model.scene, down), on_back = sunlit(model.scene, up);
+      const Vec3 black_N = textbook_N(0.0, down, Vec3::UnitZ());
+      const Vec3 white_N = textbook_N(1.0, up, -Vec3::UnitZ());
+      EXPECT_LT((on_front.head<3>().matrix() - black_N).norm(), 1e-5 * black_N.norm());
+      EXPECT_LT((on_back.head<3>().matrix() - white_N).norm(), 1e-5 * white_N.norm());
+    }
+  }
+}
+
+TEST(CoincidentFaces, OfSolidsThatTouchStayAndOthersAreNotTouched) {
+  const auto box = [](int first, double z) {
+    std::string text;
+    for (const double at : {z, z + 1.0}) {
+      const std::string height = " " + std::to_string(at) + "\n";
+      text += "v 0 0" + height + "v 1 0" + height + "v 1 1" + height + "v 0 1" + height;
+    }
+    for (const auto& face :
+         {std::array{4, 3, 2, 1}, std::array{5, 6, 7, 8}, std::array{1, 2, 6, 5},
+          std::array{2, 3, 7, 6}, std::array{3, 4, 8, 7}, std::array{4, 1, 5, 8}}) {
+      text += "f";
+      for (const int corner : face) text += " " + std::to_string(corner + first);
+      text += "\n";
+    }
+    return text;
+  };
+  const GltfModel touching = model_of("o a\n" + box(0, 0.0) + "o b\n" + box(8, 1.0));
+  EXPECT_THAT(about_coincidence(touching), IsEmpty());
+  for (const Mesh& mesh : touching.scene.meshes) EXPECT_EQ(mesh.vertices_m.size(), 8u);
+  // Neighbours in one plane, and sheets a millimetre apart.
+  EXPECT_THAT(
+      about_coincidence(model_of(unit_square + "v 1.5 -0.5 0\nv 1.5 0.5 0\no a\nf 1 2 3 4\nf 2 5 "
+                                               "6 3\no b\nv 0 0 0.001\nv 1 0 0.001\nv 0 1 "
+                                               "0.001\nf 7 8 9\n")),
+      IsEmpty());
+}
+
+// A mesh that two instances share is moved in one of them alone.
+TEST(CoincidentFaces, MoveTheInstanceThatLiesInAnother) {
+  Scene scene;
+  Mesh sheet;
+  sheet.vertices_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  sheet.triangles = {{0, 1, 2}};
+  scene.meshes.push_back(sheet);
+  for (const double z : {0.0, 3.0}) {
+    Instance instance;
+    instance.path = z == 0.0 ? "near" : "far";
+    instance.body_from_mesh.translation().z() = z;
+    scene.instances.push_back(instance);
+  }
+  sheet.triangles = {{0, 2, 1}};
+  scene.meshes.push_back(sheet);
+  Instance back;
+  back.path = "back";
+  back.mesh = 1;
+  scene.instances.push_back(back);
+  EXPECT_THAT(separate_coincident_faces(scene), ElementsAre(HasSubstr("\"near\" and \"back\"")));
+  EXPECT_NE(scene.instances[0].mesh, scene.instances[1].mesh);
+  EXPECT_EQ(scene.meshes[scene.instances[1].mesh].triangles[0], (std::array<uint32_t, 3>{0, 1, 2}));
+  const auto height_m = [&](size_t instance) {
+    const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
+    return mesh.vertices_m[mesh.triangles[0][0]].z();
+  };
+  EXPECT_GT(height_m(0), 0.0);
+  EXPECT_LT(height_m(2), 0.0);
+}
+
+}  // namespace
+}  // namespace photorque::coincidence

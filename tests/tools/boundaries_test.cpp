@@ -1,0 +1,118 @@
+// What strangers' numbers and names may do to a run: nothing but a result or one line.
+#include <algorithm>
+
+#include "tests/tools/command_test.h"
+
+namespace photorque {
+namespace {
+
+class Boundaries : public CommandTest {
+ protected:
+  // A plate in the light of a lamp of this name, and what else is to stand in the experiment.
+  std::string plate(const std::string& lamp, const std::string& more) const {
+    const std::filesystem::path tests = PHOTORQUE_SOURCE_DIR;
+    return write("p.toml", "[scene]\nfile = \"" + (tests / "scenes/stasis/stasis.gltf").string() +
+                               "\"\n[[source]]\nkind = \"led\"\nname = \"" + lamp +
+                               "\"\npower_W = 1.0\naperture_diameter_mm = 20\n"
+                               "profile = \"gaussian\"\nfwhm_deg = 6.0\nwavelength_nm = 730\n"
+                               "position_m = [0.02, 0, 1.0]\naim_m = [0, 0, 0]\n"
+                               "[[receiver]]\nnode = \"solar_array\"\nbins = [6, 6]\n"
+                               "[trace]\nrays = 4096\n" +
+                               more);
+  }
+};
+
+// Embree asserted at 1e-300 deg and found no end at 1e-30 deg.
+TEST_F(Boundaries, PicturesHaveALeastFieldOfView) {
+  const std::string experiment = plate("lamp", "[camera]\nwidth = 32\nheight = 24\n");
+  for (const char* angle : {"1e-300", "1e-30", "179.5"}) {
+    const Outcome outcome = run("render " + experiment +
+                                " --set camera.field_of_view_deg=" + angle + " --out " + at("o"));
+    EXPECT_EQ(outcome.status, 2) << angle;
+    EXPECT_THAT(outcome.err, testing::HasSubstr("field_of_view_deg")) << angle;
+  }
+  EXPECT_EQ(
+      run("render " + experiment + " --set camera.field_of_view_deg=0.001 --out " + at("o")).status,
+      0);
+}
+
+// Titles, colours and the like of a terminal are not for names to set, nor formulae in CSV.
+TEST_F(Boundaries, NamesReachTerminalsAndTablesClean) {
+  const std::string name = "=\\u001b]0;PWNED\\u0007\\u001b[31m\\u009b31mRED";
+  const std::string experiment =
+      plate(name,
+            "[array]\nreceiver = \"solar_array\"\ncells = [2, 2]\n[[published]]\n"
+            "quantity = \"array_power_W\"\nvalue = 1\nsource = \"" +
+                name + "\"\n");
+  const Outcome outcome = run("power " + experiment + " --out " + at("o"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::HasSubstr("PWNED"));
+  const auto is_raw = [](unsigned char c) {
+    return (c < 0x20 && c != '\n' && c != '\t') || c == 0x7f;
+  };
+  EXPECT_EQ(std::ranges::count_if(outcome.out, is_raw), 0);
+  EXPECT_THAT(outcome.out, testing::Not(testing::HasSubstr("\u009b")));
+  for (const auto& [file, text] : files("o")) {
+    if (!file.ends_with(".csv")) continue;
+    EXPECT_THAT(text, testing::Not(testing::HasSubstr("\n="))) << file;
+    EXPECT_THAT(text, testing::Not(testing::HasSubstr(",="))) << file;
+  }
+}
+
+// 88 W of light over 5e-324 were infinitely many watts in losses.csv, with exit status 0.
+TEST_F(Boundaries, EfficienciesKeepResultsFinite) {
+  const std::string experiment =
+      plate("lamp", "[array]\nreceiver = \"solar_array\"\ncells = [2, 2]\n");
+  const Outcome outcome = run("power " + experiment +
+                              " --set array.chain.wall_plug_efficiency=5e-324 --out " + at("o"));
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, testing::HasSubstr("wall_plug_efficiency"));
+}
+
+// The address space ends before the libraries of pictures are loaded, or anywhere else.
+TEST_F(Boundaries, LittleMemoryIsOneLineAndStatusThree) {
+  const std::string experiment = plate("lamp", "");
+  for (const int kibibytes : {640000, 614400, 450000}) {
+    const std::string command = "(ulimit -v " + std::to_string(kibibytes) + "; exec " +
+                                PHOTORQUE_BINARY_DIR + "/photorque trace " + experiment +
+                                " --quiet --threads 1 --out " + at("o") + ") 2>" + at("err");
+    const int status = std::system(command.c_str());
+    ASSERT_TRUE(WIFEXITED(status)) << kibibytes;
+    if (WEXITSTATUS(status) == 0) continue;
+    EXPECT_EQ(WEXITSTATUS(status), 3) << kibibytes << file_text(at("err"));
+    EXPECT_THAT(file_text(at("err")),
+                testing::AnyOf(testing::StartsWith("numerical failure: not enough memory"),
+                               testing::HasSubstr("Embree")))
+        << kibibytes;
+  }
+}
+
+// The last resort: whatever would end the program by a signal.
+TEST_F(Boundaries, FaultsAreOneLineAndStatusThree) {
+  const std::string command = std::string(PHOTORQUE_BINARY_DIR) + "/photorque serve " +
+                              std::string(PHOTORQUE_SOURCE_DIR) +
+                              "/docs/realtime/stasis.toml --set serve.port=0 --out " + at("o") +
+                              " >" + at("stdout") + " 2>" + at("err") +
+                              " & p=$!; for i in $(seq 300); do"
+                              " grep -q serving " +
+                              at("stdout") +
+                              " && break; sleep 0.1; done;"
+                              " kill -ABRT $p; wait $p";
+  const int status = std::system(command.c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 3);
+  EXPECT_THAT(file_text(at("err")), testing::HasSubstr("numerical failure: a fault"));
+}
+
+// The short form of the campaign over all numeric keys; docs/reliability.md has the long one.
+TEST_F(Boundaries, HostileNumbersEndWithStatusNoughtOrTwo) {
+  const std::string source = PHOTORQUE_SOURCE_DIR;
+  EXPECT_EQ(std::system(("python3 " + source + "/tools/hostile " + PHOTORQUE_BINARY_DIR +
+                         "/photorque --runs 30 --seed 1 >" + at("said") + " 2>&1")
+                            .c_str()),
+            0)
+      << file_text(at("said"));
+}
+
+}  // namespace
+}  // namespace photorque
