@@ -38,7 +38,7 @@ BalanceRun unbalanced(bool with_gyro, uint64_t seed, bool drains = false) {
   truth.model = with(truth.model, "bearing_drag", {{"coefficient_N_m_s", node(1.5e-5)}});
   truth.model = with(truth.model, "gyro_bias", {{"bias_rad_s", numbers({1e-3, -5e-4, 2e-4})}});
   if (drains) truth.model = draining(truth.model);
-  truth.model.schedule.append(100.0, {{2e-4, 0, 1e-4}, 0.0});
+  truth.model.schedule.append(100.0, {.command_body_N_m = {2e-4, 0, 1e-4}});
   truth.model.schedule.append(110.0, {});
   truth.sensors = perfect_sensors();
   truth.sensors.camera = Sensors::Camera{};

@@ -73,7 +73,7 @@ TEST(Commands, AreHitExactly) {
   double rate = 0.0, angle = 0.0, t = 0.0;
   for (int i = 1; i <= 200; ++i) {
     const double torque = (i % 7 - 3) * 1e-4, next = 0.1 * i + 0.003 * (i % 5);
-    model.schedule.append(t + 1e-300, {{0, 0, torque}, 0.0});
+    model.schedule.append(t + 1e-300, {.command_body_N_m = {0, 0, torque}});
     angle += rate * (next - t) + 0.5 * torque / 0.1 * (next - t) * (next - t);
     rate += torque / 0.1 * (next - t);
     t = next;

@@ -190,8 +190,8 @@ AttitudeModel everything() {
                                {{"wheel_rate_rad_s", 0.1, 1.0}, {"wheel_angle_rad", 0.05, 1.0}}),
       disturbance<Drag>({-3e-5, 1e-4}),
   };
-  model.schedule.append(0.0, {{1e-4, 0, 0}, 1.5});
-  model.schedule.append(3.21, {{0, -2e-4, 1e-4}, 0.5});
+  model.schedule.append(0.0, {.command_body_N_m = {1e-4, 0, 0}, .battery_current_A = 1.5});
+  model.schedule.append(3.21, {.command_body_N_m = {0, -2e-4, 1e-4}, .battery_current_A = 0.5});
   model.schedule.append(20.0, {});
   return model;
 }
