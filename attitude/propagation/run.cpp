@@ -351,7 +351,7 @@ Key propagate_table() {
       {duration, output_rate, history_rows, tolerance, longest_step, tick_rate, seed, initial_tilt,
        initial_heading, initial_attitude, initial_rate, initial_position, initial_velocity,
        initial_charge, initial_time, commands,
-       command.of({time, torque, battery_current, led_current}), epoch});
+       command.of({time, torque, force, force_body, battery_current, led_current}), epoch});
 }
 
 }  // namespace photorque

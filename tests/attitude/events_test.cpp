@@ -12,7 +12,7 @@ namespace {
 AttitudeModel commanded(double inertia_kg_m2, const Vec3& torque_N_m, double current_A = 0.0) {
   AttitudeModel model;
   model.platform.inertia_kg_m2 = inertia_kg_m2 * Mat3::Identity();
-  model.schedule.append(0.0, {torque_N_m, current_A});
+  model.schedule.append(0.0, {.command_body_N_m = torque_N_m, .battery_current_A = current_A});
   return model;
 }
 

@@ -58,7 +58,7 @@ bool is_shaded(const TraceableScene& scene, const Marker& marker, const Vec3& ca
   const double length_m = way_m.norm();
   ShadowRay ray{};
   for (int k = 0; k < 3; ++k) {
-    ray.origin_m[k] = static_cast<float>(start_m[k]);
+    ray.origin_m[k] = static_cast<float>(start_m[k] - scene_centre_m(scene)[k]);
     ray.direction[k] = static_cast<float>(way_m[k] / length_m);
   }
   ray.length_m = static_cast<float>(length_m);
