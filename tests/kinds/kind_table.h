@@ -41,7 +41,7 @@ inline std::string screening_text(const Screening& screening) {
   if (screening.scan != Scan::nothing) text += "; " + std::string(scans[int(screening.scan)]);
   constexpr const char* needs[] = {
       "",
-      "commanded torques",
+      "commanded torques or forces",
       "a battery current",
       "a magnetic field",
       "weight on a bearing",
@@ -51,7 +51,8 @@ inline std::string screening_text(const Screening& screening) {
       "an air bearing, or a free body's attitude in a laboratory of stated latitude",
       "the measured speed of a wheel",
       "the measured current of lamps, and that it changes",
-      "a planar platform"};
+      "a planar platform",
+      "commanded forces"};
   if (screening.needs != Requirement::none) {
     text += "; needs " + std::string(needs[int(screening.needs)]);
   }
