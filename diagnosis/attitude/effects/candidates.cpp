@@ -437,10 +437,14 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
   if (context.platform.slides() && !sees_turn) {
     std::erase_if(all.list, [](const Candidate& c) { return !is_force(c.effect.how.needs); });
   }
-  // A law of the heading cannot be told from a constant where the heading hardly changes.
+  // A law of the heading cannot be told from a constant where the heading hardly changes, nor a
+  // force that turns with the body.
   if (!context.platform.has_air_bearing() && !turns(runs)) {
-    std::erase_if(all.list, [](const Candidate& c) {
-      return c.variable == "heading" || c.variable == "tilt";
+    const bool always = depends_on_attitude(nominal.model);
+    std::erase_if(all.list, [&](const Candidate& c) {
+      const bool turns_along =
+          !always && c.effect.how.needs == Requirement::plane && needs_attitude(c, nominal.model);
+      return c.variable == "heading" || c.variable == "tilt" || turns_along;
     });
   }
   // What rubs brakes with a steady torque as well, and its sign is known.
