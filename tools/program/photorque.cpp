@@ -144,8 +144,9 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "numerical failure: %s\n", error.what());
     return 3;
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "numerical failure: not enough memory\n");
-    return 3;
+    // Threads of libraries that are short of memory may never be ready to be joined.
+    std::fputs("numerical failure: not enough memory\n", stderr);
+    std::_Exit(3);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "numerical failure: %s\n", error.what());
     return 3;
