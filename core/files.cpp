@@ -32,7 +32,7 @@ std::string host_mark() {
   return mark + ".part";
 }
 
-// Nobody can put a link in the place of a name that cannot be known before.
+// An unpredictable name, so that no link can wait at it.
 std::string unpredictable() {
   uint64_t bits = 0;
   if (::getrandom(&bits, sizeof bits, 0) != static_cast<ssize_t>(sizeof bits)) {
@@ -43,7 +43,7 @@ std::string unpredictable() {
   return text;
 }
 
-// A new file of nobody else's: neither a link nor what is there already.
+// Creates a new file; fails at a link or an existing file.
 void make_own_file(const fs::path& path, const fs::path& wanted) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (file < 0) {

@@ -84,7 +84,7 @@ struct EvaluationContext {
   T gravity_gradient_1_s2;          // g/R on the ground, μ/r³ in orbit
   T illumination;                   // fraction of the light that arrives: 1 lit, 0 in shadow
   Vec3Of<T> command_body_N_m;       // torque commanded; acts on the body by itself
-  Vec3Of<T> command_lab_N;          // force commanded, of what slides; acts by itself
+  Vec3Of<T> command_lab_N;          // commanded force on a sliding platform
   T battery_current_A;              // drawn from the battery (positive discharges)
   bool current_is_measured;         // Schedule::current_is_measured
   T led_current_A;                  // ZeroOrderHold::led_current_A

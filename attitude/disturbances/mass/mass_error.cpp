@@ -28,15 +28,14 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "mass_error",
-          .summary = "the mass is not the one stated",
-          .read = read,
-          .screening = {.reason_against = "a weight looks like its lever, and a force that is "
-                                          "commanded like its gain: see `static_unbalance` and "
-                                          "`actuator_gain`",
-                        .changes_mass = true},
-          .budget = {.reason_against = "no torque of its own"},
-          .keys = {delta}};
+  return {
+      .name = "mass_error",
+      .summary = "the mass is not the one stated",
+      .read = read,
+      .screening = {.reason_against = "`static_unbalance` and `actuator_gain` have the same effect",
+                    .changes_mass = true},
+      .budget = {.reason_against = "it exerts no torque"},
+      .keys = {delta}};
 }
 
 }  // namespace photorque::kinds::mass_error
