@@ -146,7 +146,7 @@ void weigh(std::vector<Deviations>& runs, double degrees, double scale) {
   }
 }
 
-// The likeliest scale: where the weighted mean square is the square of it.
+// The maximum-likelihood scale: where the weighted mean square is the square of it.
 double likeliest_scale(const std::vector<Deviations>& runs, double degrees, double scale) {
   constexpr int most_steps = 100;
   constexpr double close = 1e-5;
@@ -211,7 +211,7 @@ Likeliest likeliest(const std::vector<Deviations>& runs, double scale) {
   return best;
 }
 
-// From the curvature of the likelihood along ln ν, the scale the likeliest at each.
+// From the curvature of the likelihood along ln ν, with the maximum-likelihood scale at each.
 double log_degrees_sigma(const std::vector<Deviations>& runs, const Likeliest& at) {
   constexpr double step = 0.1;
   double sides = 0.0;

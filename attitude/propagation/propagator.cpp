@@ -162,7 +162,7 @@ void Propagator::exchange(const Exchange& now) {
   exchange_is_new_ = true;
 }
 
-// What was exchanged last holds over the schedule's own. The polynomial goes on: a current moves
+// The last exchanged inputs replace those of the schedule. The polynomial goes on: a current moves
 // the charge alone, and the light is continuous but for the error of its continuation.
 void Propagator::take_over() {
   if (!exchange_) return;
@@ -196,7 +196,7 @@ void Propagator::take_step() {
   int corrections = 0;
   slip_ends_ = false;
   for (;;) {
-    // Half of what is left rather than nearly all of it: no slivers.
+    // Half of the remaining time rather than nearly all of it: no slivers.
     const double left_s = stop_s - start_s;
     double h_s = std::min(h_s_, options_.max_step_s);
     const bool cut = slip_ends_ || h_s >= left_s;
@@ -279,7 +279,7 @@ double Propagator::propose_length(const CollocationStep::Outcome& outcome, doubl
   return (worth_it ? std::min(factor, 2.0) : 1.0) * h_s;
 }
 
-// What is commanded from now on.
+// Takes the command that holds from this time on.
 void Propagator::take_command(double now_s, bool is_tick) {
   if (!commander_) {
     held_ = dynamics_.model().schedule.at(now_s);
@@ -316,7 +316,7 @@ void Propagator::cross_jumps() {
 
 // Whether the slip that is held ends within the attempted step elsewhere than at its end: then
 // `stop_s` becomes a better guess of that time, by cutting first and by Newton's method from then
-// on, until the time cannot be told better.
+// on, until the time is resolved.
 bool Propagator::ends_slip(double& stop_s, int& corrections) {
   constexpr int most = 5;
   if (!slip_ends_) {
@@ -370,7 +370,7 @@ void Propagator::cross_end_of_slip() {
 }
 
 // A command may have changed, or the run begins: one that begins with what sticks has no rate
-// whatever the variables are. What would come to rest before the time can tell is at rest.
+// whatever the variables are. A body that would stop within the resolution of the time is at rest.
 void Propagator::choose_slip(bool released) {
   constexpr double slow_rad_s = 1e-9, slowest_rad_s = 1e-12;
   const size_t c = contact_.component();
@@ -452,7 +452,7 @@ void Propagator::find_events() {
   }
 }
 
-// Cuts the interval in nine, eight values at a time, until the time cannot be told better.
+// Cuts the interval in nine, eight values at a time, until the time is resolved.
 double Propagator::locate(const EventFunction& event, double low_s, double high_s) const {
   std::vector<Lanes> y(step_.start().size());
   dense(low_s, y.data());

@@ -68,7 +68,7 @@ class Settling {
  public:
   enum class Verdict { go_on, settled, failed };
 
-  // What is left after a change shall be below `settled`; when changes below `rounding` stop
+  // The remaining error after a change shall be below `settled`; when changes below `rounding` stop
   // falling, rounding is all that is left. After `patience` changes in a row without a new smallest
   // one the iteration has failed.
   Settling(double settled, double rounding, int patience = 6)
