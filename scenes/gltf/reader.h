@@ -31,7 +31,8 @@
 
 namespace photorque {
 
-// A picture that a model carries. This folder opens none: whoever reads an experiment says how.
+// A picture that a model carries. This folder opens none: the reader of an experiment supplies the
+// function.
 struct BaseColours {
   int width = 0, height = 0;  // texels, at least 1
   std::vector<float> rgb;     // linear red, green and blue in [0, 1]; row by row from the top
@@ -87,8 +88,7 @@ struct GltfModel {
 // options' limits. Positions are those of the file, exactly; transforms are in double.
 GltfModel read_gltf(const std::filesystem::path& path, const GltfOptions& options = {});
 
-// The same for bytes at hand; `name` is how messages call them, and external buffers come from
-// `open`.
+// Reads given bytes; `name` is how messages call them, and external buffers come from `open`.
 GltfModel read_gltf_bytes(const std::string& bytes, const std::string& name, const GltfOpen& open,
                           const GltfOptions& options = {});
 
