@@ -295,7 +295,7 @@ class SunlitBody::Direction {
       }
       std::swap(now, next);
     }
-    // What single pieces do not tell of their error is taken for as much as families tell.
+    // The error of single pieces is taken to be that of the sampled families.
     if (told_m2_ > 0.0) found_.mirror_error = (thrown_m2_ / told_m2_ * square_error_).sqrt();
   }
 
