@@ -23,8 +23,8 @@ std::string in_cell(std::string text) {
 // A row of the table, and the rows of the keys in it: of a table, or of a choice that brings keys.
 struct Row {
   std::string name, otherwise, range, what;
-  bool indents = true;      // its rows stand one step to the right
-  bool is_kind = false;     // a choice that brings keys
+  bool indents = true;   // its rows stand one step to the right
+  bool is_kind = false;  // a choice that brings keys
   std::vector<Row> rows = {};
 };
 

@@ -1,4 +1,4 @@
-// photorque schema: the keys of experiments for editors, documents and whoever asks for one.
+// photorque schema: the keys of experiments for editors, documents and users.
 #include <cstdio>
 
 #include "core/errors.h"
