@@ -13,7 +13,7 @@ namespace {
 constexpr double tail_interval_s = 0.1;
 constexpr int tailed = 5;
 
-// A gyro's z alone, with what is left of it.
+// A gyro's z alone, with its residuals.
 struct LeftRun {
   std::vector<Observation> seen;
   std::vector<Prediction> residuals;
