@@ -1,10 +1,10 @@
 // glTF 2.0 files (.gltf and .glb) as scenes.
 //
-// What is read: the default scene's node hierarchy with any invertible transforms, meshes of
+// Read: the default scene's node hierarchy with any invertible transforms, meshes of
 // triangles, strips and fans, sparse accessors, texture coordinates 0, EXT_mesh_gpu_instancing, and
-// of materials what optics.h says. What is ignored, with a notice where it could surprise:
+// of materials what optics.h says. Ignored, with a notice where it could surprise:
 // points and lines, textures and images (opened only for GltfOptions::picture), cameras, lights,
-// animations (the rest pose counts). What is refused because the geometry would be wrong without
+// animations (the rest pose counts). Refused because the geometry would be wrong without
 // it: skins, morph targets with non-zero weights, and every required extension that is not known to
 // leave geometry alone.
 //

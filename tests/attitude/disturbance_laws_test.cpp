@@ -1,5 +1,5 @@
 // Laws that hold for every registered disturbance: a new kind is tested automatically, or the first
-// test here fails for want of an example of it.
+// test here fails without an example of it.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -170,8 +170,9 @@ std::string man_page(const CLI::App& app, const std::string& version) {
             troff_options(*command);
   }
   return text +
-         ".SH EXIT STATUS\n.TP\n0\nDone.\n.TP\n2\nWrong input: one line with file, line, key, what "
-         "was found and what was expected.\n.TP\n3\nThe computation failed.\n";
+         ".SH EXIT STATUS\n.TP\n0\nDone.\n.TP\n2\nWrong input: one line with file, line, key, "
+         "value "
+         "found and value expected.\n.TP\n3\nThe computation failed.\n";
 }
 
 // A script that completes commands, options and files.
