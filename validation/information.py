@@ -1,8 +1,8 @@
 """Information in the readings of a case's first run, to first order.
 
 Differences of simulated readings, in units of their noise, are the columns of a linear model. The initial
-state and the uncertain priors (with their priors) may take up what they can; what is left of an effect's
-own difference is what can be seen of it.
+state and the uncertain priors (with their priors) may take up what they can; the rest of an effect's
+difference is visible.
 """
 
 import dataclasses

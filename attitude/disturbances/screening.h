@@ -88,11 +88,11 @@ enum class Scan {
 };
 
 // Another kind whose effect has the same form.
-struct Likeness {
+struct ConfusableKind {
   std::string kind;
   // The channel that alone separates them, whatever the start of a run; none: one is contained in
   // the other, and both together are one effect.
-  Requirement told_apart_by = Requirement::none;
+  Requirement distinguished_by = Requirement::none;
 };
 
 // All disturbances of one kind in a model, the nominal one and its correction of either sign, must
@@ -127,7 +127,7 @@ struct Screening {
   Mat3 (*inertia_change_kg_m2)(const Disturbance&) = nullptr;
   bool changes_mass = false;  // its first parameter is what the platform's mass is more [kg]
   std::optional<LeastSum> least_sum = {};
-  std::vector<Likeness> alike = {};
+  std::vector<ConfusableKind> confusable_kinds = {};
 };
 
 }  // namespace photorque

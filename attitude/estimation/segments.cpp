@@ -59,18 +59,18 @@ double usual_of(const std::vector<double>& sizes) {
 
 // Of each the largest of the medians over so many about it, before them and after them.
 std::vector<double> usual_nearby(const std::vector<double>& sizes) {
-  constexpr size_t many = 32;
-  const size_t stretches = std::max<size_t>(1, sizes.size() / many);
+  constexpr size_t group = 32;
+  const size_t groups = std::max<size_t>(1, sizes.size() / group);
   std::vector<double> medians;
-  for (size_t s = 0; s < stretches; ++s) {
-    const auto first = sizes.begin() + static_cast<std::ptrdiff_t>(s * many);
-    medians.push_back(median_of({first, s + 1 < stretches ? first + many : sizes.end()}));
+  for (size_t s = 0; s < groups; ++s) {
+    const auto first = sizes.begin() + static_cast<std::ptrdiff_t>(s * group);
+    medians.push_back(median_of({first, s + 1 < groups ? first + group : sizes.end()}));
   }
   std::vector<double> usual;
   for (size_t i = 0; i < sizes.size(); ++i) {
-    const size_t at = std::min(i / many, stretches - 1);
+    const size_t at = std::min(i / group, groups - 1);
     usual.push_back(std::max(
-        {medians[at == 0 ? 0 : at - 1], medians[at], medians[std::min(at + 1, stretches - 1)]}));
+        {medians[at == 0 ? 0 : at - 1], medians[at], medians[std::min(at + 1, groups - 1)]}));
   }
   return usual;
 }

@@ -64,8 +64,8 @@ HeavyTails heavy_tails(const std::vector<Prediction>& residuals,
 // from the neighbours is drawn towards them. The noise that is left is near to normal; its standard
 // deviation is √((ν + 3)/(ν + 1)) of the scale, the Cramér-Rao bound of a location under Student's
 // t (Lange, Little, Taylor 1989, J. Am. Stat. Assoc. 84, 881).
-void tame(const HeavyTails& tails, const std::vector<Prediction>& residuals,
-          std::vector<Observation>& runs);
+void robustify(const HeavyTails& tails, const std::vector<Prediction>& residuals,
+               std::vector<Observation>& runs);
 
 // Standard deviation of the readings of a channel about a smooth curve through their neighbours, as
 // of one row [rad or rad/s]. 0: too few.

@@ -248,19 +248,19 @@ void Propagator::take_step() {
 // alone kept the steps short: they are several times shorter than accuracy asks for. It stays as
 // long as that iteration would contract by less than three in ten.
 void Propagator::choose_method(const CollocationStep::Outcome& outcome, bool was_at_ceiling) {
-  constexpr int patience = 8, many = 20;
+  constexpr int steps_before_switch = 8, slow_iterations = 20;
   constexpr double far_below = 1e-5;  // of the tolerance: four times the length would do
   constexpr double contracts = 3.0;
   if (is_stiff_) {
     if (step_.stiffness() > contracts) return;
     is_stiff_ = false;
-    held_back_ = 0;
+    slow_steps_ = 0;
     return;
   }
-  const bool held_back = outcome.error < far_below * options_.tolerance &&
-                         (was_at_ceiling || outcome.iterations > many);
-  held_back_ = held_back ? held_back_ + 1 : 0;
-  if (held_back_ < patience) return;
+  const bool is_slow = outcome.error < far_below * options_.tolerance &&
+                       (was_at_ceiling || outcome.iterations > slow_iterations);
+  slow_steps_ = is_slow ? slow_steps_ + 1 : 0;
+  if (slow_steps_ < steps_before_switch) return;
   is_stiff_ = true;
   ceiling_s_ = std::numeric_limits<double>::infinity();
 }
@@ -270,12 +270,12 @@ void Propagator::choose_method(const CollocationStep::Outcome& outcome, bool was
 // close to where they stop converging, and that shorter steps would be cheaper.
 double Propagator::propose_length(const CollocationStep::Outcome& outcome, double h_s,
                                   bool cut) const {
-  constexpr int many = 20, too_many = 30;
+  constexpr int slow_iterations = 20, max_iterations = 30;
   double factor = 0.9 * std::pow(options_.tolerance / outcome.error, 1.0 / gauss::points);
-  if (outcome.iterations > too_many) factor = std::min(factor, 0.8);
+  if (outcome.iterations > max_iterations) factor = std::min(factor, 0.8);
   if (factor < 0.9) return std::max(factor, 0.2) * h_s;
   if (cut) return std::max(h_s, h_s_);
-  const bool worth_it = factor > 1.15 && outcome.iterations < many;
+  const bool worth_it = factor > 1.15 && outcome.iterations < slow_iterations;
   return (worth_it ? std::min(factor, 2.0) : 1.0) * h_s;
 }
 
@@ -481,7 +481,7 @@ void Propagator::keep(Snapshot& snapshot) {
   snapshot.expect(jumps_.size());
   snapshot.at_most(next_jump_, jumps_.size());
   snapshot(held_, slip_, slip_ends_, exchange_, exchange_is_new_);
-  snapshot(h_s_, ceiling_s_, is_ceiling_of_state_, is_stiff_, held_back_);
+  snapshot(h_s_, ceiling_s_, is_ceiling_of_state_, is_stiff_, slow_steps_);
   snapshot(step_end_s_, has_step_, ended_by_event_, statistics_);
 }
 

@@ -208,8 +208,8 @@ bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, 
   // Linear, and of the same contraction as the stages, which have settled: mostly it will, however
   // the mixed units of the components swell the first changes. Not where a swing of no amplitude
   // yet let the stages settle in a step too long for it.
-  constexpr int patience = 25;
-  Settling settling(tolerance, 1e-13, patience);
+  constexpr int max_stalled_changes = 25;
+  Settling settling(tolerance, 1e-13, max_stalled_changes);
   for (int iteration = 1; iteration <= max_sweeps; ++iteration) {
     each([&](size_t i) {
       stages_[i] = start_[i] + gauss::times(gauss::mu_columns, increments_[i]);

@@ -22,7 +22,7 @@ class RotationTableBuilder {
     begin();
     find_symmetry();
     if (table_.twists_ > 1) find_twists();
-    plant();
+    make_roots();
     refine();
     check();
     return std::move(table_);
@@ -320,7 +320,7 @@ class RotationTableBuilder {
     }
   }
 
-  void plant() {
+  void make_roots() {
     std::set<Key> wanted;
     table_.boxes_.clear();
     table_.values_.clear();

@@ -99,11 +99,14 @@ inline std::string prose_of_code(const std::string& text, const std::string& mar
       if (c == '`' || !is_name) prose += c == '`' ? '\x01' : c;
     }
   };
+  // A literal of one word is a name, unless it continues the literal before it.
+  bool continues = false;
   const auto add_string = [&](std::string_view part) {
-    if (part.find(' ') == std::string_view::npos) {
+    if (!continues && part.find(' ') == std::string_view::npos) {
       prose += '\x01';
     } else {
       prose += part;
+      continues = true;
     }
   };
   const auto up_to = [&](const std::string& end, size_t from) {
@@ -145,7 +148,9 @@ inline std::string prose_of_code(const std::string& text, const std::string& mar
       }
       i = std::min(end + 1, text.size());
     } else {
-      prose += std::isspace(static_cast<unsigned char>(c)) ? ' ' : '\x01';
+      const bool is_blank = std::isspace(static_cast<unsigned char>(c)) != 0;
+      prose += is_blank ? ' ' : '\x01';
+      continues = continues && is_blank;
       ++i;
     }
   }

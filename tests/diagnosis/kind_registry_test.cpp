@@ -64,7 +64,7 @@ TEST(KindRegistry, EveryExceptionHasAReasonAndNothingElse) {
 
 TEST(KindRegistry, LikenessesNameKinds) {
   for (const DisturbanceKind& kind : disturbance_kinds()) {
-    for (const Likeness& like : kind.screening.alike) {
+    for (const ConfusableKind& like : kind.screening.confusable_kinds) {
       EXPECT_NE(find_kind(like.kind), nullptr) << kind.name << " is like " << like.kind;
     }
   }

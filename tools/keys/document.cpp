@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/errors.h"
-#include "tools/keys/words.h"
+#include "tools/keys/descriptions.h"
 
 namespace photorque {
 namespace {
@@ -68,8 +68,8 @@ class KeyTable {
   Row row_of(const Key& key, const std::string& path, bool is_top) const {
     const std::string full = path + "." + key.name;
     if (key.type == Key::Type::table || key.type == Key::Type::tables) {
-      const bool many = key.type == Key::Type::tables;
-      Row row{many ? "`[[" + full + "]]`" : "`[" + full + "]`", key.usually, "", key.what};
+      const bool is_array = key.type == Key::Type::tables;
+      Row row{is_array ? "`[[" + full + "]]`" : "`[" + full + "]`", key.usually, "", key.what};
       for (const Key& inner : key.keys) row.rows.push_back(row_of(inner, full, false));
       return row;
     }

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "tools/keys/words.h"
+#include "tools/keys/descriptions.h"
 
 namespace photorque {
 namespace {
