@@ -62,7 +62,7 @@ TEST(KindRegistry, EveryExceptionHasAReasonAndNothingElse) {
   }
 }
 
-TEST(KindRegistry, LikenessesNameKinds) {
+TEST(KindRegistry, ConfusableKindsAreKinds) {
   for (const DisturbanceKind& kind : disturbance_kinds()) {
     for (const ConfusableKind& like : kind.screening.confusable_kinds) {
       EXPECT_NE(find_kind(like.kind), nullptr) << kind.name << " is like " << like.kind;
