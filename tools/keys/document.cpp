@@ -108,9 +108,9 @@ class KeyTable {
     for (const Row& inner : row.rows) append(inner, row.indents ? 1 : 0, lines);
     Row shown = row;
     if (const Group* same = lines.size() < 2 ? nullptr : group_with(lines, above)) {
-      shown.what += "; keys as " + (same == above ? "above" : "in " + same->label) + ":";
-      for (const Row& inner : row.rows) {
-        shown.what += (&inner == &row.rows.front() ? " " : ", ") + inner.name;
+      shown.what += "; keys as " + (same == above ? "above" : "in " + same->label);
+      for (size_t i = 0; row.indents && i < row.rows.size(); ++i) {
+        shown.what += (i == 0 ? ": " : ", ") + row.rows[i].name;
       }
       shown.rows.clear();
     }
