@@ -35,7 +35,7 @@ class RadiationPressure final : public TorqueLaw<RadiationPressure> {
       return own[factor] * now.illumination *
              look_up_towards<T>(surface_, now.to_body(sun_direction_lab_.template cast<T>()));
     }
-    // A pole_offset off the pole, where the second angle has no derivative.
+    // Off the pole, where the second angle has no derivative.
     constexpr double pole_offset = 1e-9;
     const Vec3Of<T> up = now.lab_from_body.row(2).transpose();
     const T x = up.x() + pole_offset, y = up.y(), across = sqrt(x * x + y * y);
