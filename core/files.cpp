@@ -84,7 +84,7 @@ bool reaches_disk(const fs::path& path) {
   return file >= 0 && sync_and_close(file);
 }
 
-// Whoever moves results out of such a folder brings their names onto the disk.
+// The code that moves results out of such a folder syncs their names.
 bool is_temporary(const fs::path& folder) {
   return std::any_of(folder.begin(), folder.end(),
                      [](const fs::path& part) { return writer_of(part.string()).has_value(); });
@@ -134,7 +134,7 @@ std::string read_file(const fs::path& path, uint64_t largest_bytes) {
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<size_t>(in.gcount()));
   if (in.bad()) throw InputError({path.string()}, "", "a read that failed", "a readable file");
-  // What grew meanwhile, and files that the kernel makes up, whose size is 0.
+  // Files that grew meanwhile, and files of the kernel, whose size is 0.
   constexpr size_t piece = 1 << 16;
   while (in && bytes.size() <= largest_bytes) {
     const size_t had = bytes.size();

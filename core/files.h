@@ -17,14 +17,14 @@ void require_plain_file(const std::filesystem::path& path);
 std::string read_file(const std::filesystem::path& path, uint64_t largest_bytes = 1ull << 30);
 
 // The bytes of the file that `folder` has under a relative path; nothing when there is none.
-// InputError when the path, or a symbolic link on it, leads out of the folder and may not: names
-// that stand in models come from strangers.
+// InputError when the path, or a symbolic link on it, leads out of the folder and may not: names in
+// models come from third parties.
 std::optional<std::string> read_file_beside(const std::filesystem::path& folder,
                                             const std::string& name, uint64_t largest_bytes,
                                             bool may_leave);
 
 // A hidden name beside `path`, with its extension, for what is not whole yet. It names process and
-// machine, so that what a killed process leaves can be told from the work of a living one.
+// machine, so that what a killed process leaves is distinguishable from the work of a living one.
 std::filesystem::path temporary_beside(const std::filesystem::path& path);
 
 // Removes what one process of this machine left in `folder` under such names, or what all did that
@@ -49,7 +49,7 @@ void make_folders(const std::filesystem::path& folder, const std::string& key = 
 void write_file_whole(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write);
 
-// The same for bytes at hand.
+// Writes given bytes.
 void write_file_whole(const std::filesystem::path& path, const std::string& bytes);
 
 }  // namespace photorque

@@ -30,7 +30,7 @@ struct Quantity {
 // the index. Values are bin averages; `standard_error` has the same size or is empty (exact).
 struct Map {
   std::string name;   // file stem: "irradiance_solar_array"
-  std::string title;  // for people: "Irradiance on solar_array"
+  std::string title;  // as printed: "Irradiance on solar_array"
   std::string unit;   // "W/m²"
   int width = 0;
   int height = 0;

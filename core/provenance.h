@@ -1,4 +1,4 @@
-// What made a result: written into every output.
+// Provenance of a result: written into every output.
 #pragma once
 
 #include <cstdint>

@@ -3,7 +3,7 @@
 //
 // One function of a class names what its state is made of, for both directions:
 //   void Walk::keep(Snapshot& snapshot) { snapshot(steps_, where_m_, path_m_); }
-// What follows from the run's inputs is not kept but made again.
+// What follows from the run's inputs is recomputed, not kept.
 #pragma once
 
 #include <algorithm>
@@ -72,7 +72,7 @@ class Snapshot {
   bool gives_back() const { return source_ != nullptr; }
   // Whether all was given back and nothing is left. What was given back is of no use otherwise.
   bool is_whole() const { return good_ && (!gives_back() || at_ == source_->size()); }
-  // What was taken.
+  // The bytes written so far.
   const std::string& bytes() const { return taken_; }
 
  private:

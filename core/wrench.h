@@ -43,8 +43,7 @@ using WrenchComponents = std::array<double, 6>;
 WrenchEstimate wrench_from_replicates(std::span<const WrenchComponents> replicates,
                                       const Vec3& about_m, Frame frame = Frame::body);
 
-// The same wrench with its torque about another point of the same frame:
-// T(p') = T(p) + (p − p') × F.
+// The wrench with its torque about another point of the same frame: T(p') = T(p) + (p − p') × F.
 Wrench wrench_about(const Wrench& wrench, const Vec3& about_m);
 WrenchEstimate wrench_about(const WrenchEstimate& wrench, const Vec3& about_m);
 

@@ -97,7 +97,8 @@ std::string empirical_text(const EmpiricalTorque& torque) {
 std::string replay_text(const Replay& replay, const std::filesystem::path& folder) {
   const auto& q = replay.initial_attitude;
   const Vec3& w = replay.initial_rate_rad_s;
-  std::string text = "\n" + comment("Flies the first recording again, from its fitted start.");
+  std::string text =
+      "\n" + comment("Propagates the first recording from its fitted initial state.");
   text += "[propagate]\nduration_s = " + print("%.9g", replay.duration_s) + "\n";
   text += "output_rate_Hz = " + print("%.6g", replay.output_rate_Hz) + "\n";
   text += "initial_attitude = " + array_text({q[0], q[1], q[2], q[3]}, "%.12g") + "\n";

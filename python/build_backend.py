@@ -45,7 +45,7 @@ def _tag():
 
 
 def _has_pybind11_of_debian():
-    """CMake finds that one by itself."""
+    """CMake finds that one without help."""
     return any(pathlib.Path(f"/usr/{place}/cmake/pybind11").exists() for place in ("lib", "share"))
 
 
@@ -74,7 +74,7 @@ def _wheel_text():
 
 
 def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
-    """What an installer asks before it builds; without it, it would build twice."""
+    """Metadata for an installer before it builds; without it, it would build twice."""
     info = pathlib.Path(metadata_directory) / f"photorque-{_version()}.dist-info"
     info.mkdir()
     (info / "METADATA").write_text(_metadata(), encoding="utf-8")
@@ -104,7 +104,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 
 def build_sdist(sdist_directory, config_settings=None):
-    """What git knows of the tree, as it lies there."""
+    """Archive of the files that git tracks, as they are."""
     name = f"photorque-{_version()}"
     known = subprocess.run(["git", "ls-files"], cwd=root, check=True, capture_output=True, text=True)
     with tarfile.open(pathlib.Path(sdist_directory) / f"{name}.tar.gz", "w:gz") as archive:

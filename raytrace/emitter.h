@@ -29,7 +29,7 @@ struct RayBlock {
   alignas(64) std::array<std::array<float, ray_block>, 3> direction;
 };
 
-// A source of light in a frame of its own: z along the axis of the beam, origin at the aperture.
+// A source of light in its own frame: z along the axis of the beam, origin at the aperture.
 // Immutable; called from many threads at once.
 class Emitter {
  public:

@@ -39,7 +39,7 @@ struct Hits {
   std::array<Column<double>, 3> force_N;  // momentum flow in minus expected flow out, all bands
 };
 
-// What the tracer summed for one receiver: one vector of bins per replicate. Each replicate is an
+// The sums of the tracer for one receiver: one vector of bins per replicate. Each replicate is an
 // independent, unbiased estimate of the whole.
 struct BinSums {
   size_t bins = 0;
@@ -62,7 +62,7 @@ struct BinSums {
   Estimate estimate(const std::function<double(std::span<const double>)>& linear) const;
 };
 
-// `estimate` with an error that its scatter does not show added in quadrature: of its own unit, or
+// `estimate` with an error that its scatter does not show added in quadrature: in its unit, or
 // relative to its value.
 Estimate with_bound(const Estimate& estimate, double bound);
 Estimate with_common_error(const Estimate& estimate, double common_error);
@@ -79,8 +79,8 @@ class Receiver {
   // hits, so that batches can be added in any grouping.
   virtual void score(const Hits& hits, std::span<double> sums) const = 0;
 
-  // What the sums of a trace mean: results with units and standard errors. `sums` must come from
-  // this receiver, with at least two replicates.
+  // The product of the sums of a trace: results with units and standard errors. `sums` must come
+  // from this receiver, with at least two replicates.
   virtual Product product(const BinSums& sums) const = 0;
 };
 

@@ -12,7 +12,7 @@
 
 namespace photorque {
 
-// Triangles in a frame of their own. Counter-clockwise seen from the front.
+// Triangles in their own frame. Counter-clockwise seen from the front.
 struct Mesh {
   std::vector<Vec3> vertices_m;
   std::vector<std::array<uint32_t, 3>> triangles;  // indices into vertices_m

@@ -68,7 +68,7 @@ class FluxMapReceiver final : public Receiver {
 
 // Statistics of the irradiance in all bands. Averages weigh bins by area. Extremes are over bins
 // with at least a tenth of the median area of surface (slivers hold too little light to judge) and
-// carry the error of their own bin: where bins are noisy, they lie outside the true extremes.
+// carry the error of their bin: where bins are noisy, they lie outside the true extremes.
 struct FluxStatistics {
   Estimate mean_W_m2;
   Estimate min_W_m2;

@@ -35,7 +35,7 @@ class InsideLightReceiver final : public Receiver {
   std::vector<uint32_t> part_of_instance_;  // or the number of parts, for those not watched
 };
 
-// One line for people: how much of `emitted_W` reached the inside of which parts, and whether by
+// One line of text: how much of `emitted_W` reached the inside of which parts, and whether by
 // cracks or because a part is turned inside out. Empty where it is less than a millionth.
 std::string describe_inside_light(const Scene& scene,
                                   const std::vector<InsideLightReceiver::Part>& lit,

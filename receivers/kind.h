@@ -18,9 +18,9 @@ class FluxMapReceiver;    // receivers/flux_map.h
 class TorqueMapReceiver;  // receivers/torque_map.h
 class WrenchReceiver;     // receivers/wrench/wrench.h
 
-// A receiver as its kind made it, with handles of its own type to those that other parts of the
-// program ask for more than a Receiver tells: gathering and photovoltaics for flux maps, gathering
-// for torque maps, tables of wrenches for wrenches. Null for other kinds.
+// A receiver as its kind made it, with typed handles to those of which other parts of the program
+// need more than a Receiver offers: gathering and photovoltaics for flux maps, gathering for torque
+// maps, tables of wrenches for wrenches. Null for other kinds.
 struct MadeReceiver {
   std::shared_ptr<const Receiver> receiver;
   std::shared_ptr<const FluxMapReceiver> flux_map = nullptr;
@@ -41,7 +41,7 @@ struct ReceiverKind {
 // Every kind named in receivers/CMakeLists.txt, in that order.
 std::vector<ReceiverKind> all_receiver_kinds();
 
-// What a receiver looks at, and how its results are called.
+// The target of a receiver, and the name of its results.
 //   node  name of a node of the scene (or its path, or part of it); with the nodes below it
 //   name  of the results; a file stem. Default: the node's name
 struct ReceiverTarget {
@@ -52,7 +52,7 @@ struct ReceiverTarget {
 // Reads `node` and `name`. InputError with the nearest node names when the scene has no such node
 // or the node holds no mesh.
 ReceiverTarget read_target(const Settings& settings, const Scene& scene);
-// The same, but without `node` the whole scene is meant, called `otherwise_name`.
+// Reads a target; without `node` it is the whole scene, called `otherwise_name`.
 ReceiverTarget read_target_or_all(const Settings& settings, const Scene& scene,
                                   const std::string& otherwise_name);
 

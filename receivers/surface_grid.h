@@ -114,8 +114,8 @@ std::array<Vec2, 3> texture_corners(const Scene& scene, const SurfaceFace& face)
 void split_over_cells(const std::array<Vec2, 3>& corners, int width, int height,
                       const std::function<void(int, int, double)>& add);
 
-// The same pieces themselves: add(column, row, corners of a convex polygon), each corner by its
-// weights of the triangle's corners 1 and 2.
+// The pieces: add(column, row, corners of a convex polygon), each corner by its weights of the
+// triangle's corners 1 and 2.
 void clip_to_cells(const std::array<Vec2, 3>& corners, int width, int height,
                    const std::function<void(int, int, std::span<const Vec2>)>& add);
 

@@ -101,7 +101,7 @@ constexpr ChoiceKey force_key(
     {{"momentum", "momentum in minus momentum out"},
      {"as_published",
       "equation 29 of the paper as it stands: all light absorbed, and the cosine, which the "
-      "irradiance on a surface holds already, taken once more ([paper.md](paper.md))"}},
+      "irradiance on a surface holds already, applied again ([paper.md](paper.md))"}},
     0, "what light does to an element");
 
 ReceiverKind kind() {

@@ -25,10 +25,10 @@ struct TorqueMap {
 // before.
 class TorqueMapReceiver final : public Receiver {
  public:
-  // What the light on an element does to it. `momentum`: momentum in minus momentum out.
-  // `as_published`: equation 29 of the paper ray by ray, power/c |d·n| d with the ray's travel d:
-  // the cosine, which the power on a surface holds already, counts once more, all light is
-  // absorbed, and what bounced before counts for nothing. Never gathered.
+  // The force of light on an element. `momentum`: momentum in minus momentum out. `as_published`:
+  // equation 29 of the paper ray by ray, power/c |d·n| d with the ray's travel d: the cosine, which
+  // the power on a surface holds already, is applied again, all light is absorbed, and earlier
+  // bounces are ignored. Never gathered.
   enum class Force { momentum, as_published };
 
   // `grid` must have been laid over `scene`.

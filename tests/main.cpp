@@ -1,5 +1,5 @@
-// Runs the tests of one program with a temporary folder of its own, because CTest runs every test
-// as a process and several at once: two tests that write the same file name never meet.
+// Runs the tests of one program with a separate temporary folder, because CTest runs every test as
+// a process and several at once: two tests that write the same file name never meet.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -57,7 +57,7 @@ def run_child(program, arguments, folder, longest_s):
         errors.seek(0)
         text = errors.read(4096).decode(errors="replace")
     if process.returncode in (-signal.SIGINT, -signal.SIGTERM, 128 + signal.SIGINT, 128 + signal.SIGTERM):
-        raise KeyboardInterrupt  # somebody ends the benchmark: this is no answer
+        raise KeyboardInterrupt  # the benchmark was interrupted: this is no answer
     processor_s = used.ru_utime + used.ru_stime
     if process.returncode < 0:
         is_over = -process.returncode == signal.SIGXCPU or processor_s >= longest_s

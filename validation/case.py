@@ -1,4 +1,4 @@
-"""A case: a platform, two runs, what acts on it without being nominal, and what it asks."""
+"""A case: a platform, two runs, the injected effects, and the expected answer."""
 
 import dataclasses
 import math
@@ -7,7 +7,7 @@ import numpy as np
 
 from .motion import World
 
-# What the nominal model of every case has: their numbers stand in World and Priors.
+# Kinds in the nominal model of every case: their numbers stand in World and Priors.
 NOMINAL_UNBALANCE, NOMINAL_DRAG, NOMINAL_GYRO_BIAS = "static_unbalance", "bearing_drag", "gyro_bias"
 
 
@@ -41,7 +41,7 @@ class Sensors:
 
 @dataclasses.dataclass
 class Priors:
-    """What the experiment file states; sigma 0: as exact."""
+    """The statements of the experiment file; sigma 0: as exact."""
 
     offset_m: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(3))
     offset_sigma_m: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(3))

@@ -1,8 +1,8 @@
-"""What goes wrong: the user's input, or a case that cannot be made."""
+"""Errors: the user's input, or a case that cannot be made."""
 
 
 class InputError(Exception):
-    """Wrong input; the message is one line: where, what was found, what is expected."""
+    """Wrong input; the message is one line: place, value found, value expected."""
 
     def __init__(self, where, key, found, expected):
         place = f"{where}: " if where else ""

@@ -1,8 +1,8 @@
-"""What the readings of a case's first run can tell, to first order.
+"""Information in the readings of a case's first run, to first order.
 
 Differences of simulated readings, in units of their noise, are the columns of a linear model. The initial
-state and the uncertain priors (with their priors) may take up what they can; what is left of an effect's
-own difference is what can be seen of it.
+state and the uncertain priors (with their priors) may take up what they can; the rest of an effect's
+difference is visible.
 """
 
 import dataclasses
@@ -27,7 +27,7 @@ def creep_rad_s(world):
 
 
 def independent_share(noise, interval_s):
-    """Errors that stay alike over many readings tell as much of what is slow as one reading in so many."""
+    """Errors that stay alike over many readings count for slow changes as one reading in so many."""
     if noise.time_s == 0.0:
         return 1.0
     alike = math.exp(-interval_s / noise.time_s)
@@ -154,7 +154,7 @@ class Information:
 
 
 def competing_kinds(case):
-    """What may compete in a case, before its motion is known."""
+    """Effects that compete in a case, before its motion is known."""
     commanded = any(np.any(c.torque_N_m) for c in case.runs[0].commands)
     priors = case.priors
     nuisances = {NOMINAL_UNBALANCE: priors.offset_sigma_m[0] > 0.0, NOMINAL_DRAG: priors.drag_sigma_N_m_s > 0.0,

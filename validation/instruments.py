@@ -1,4 +1,4 @@
-"""What the instruments of a case write: noise, faults and lost rows."""
+"""Recordings by the instruments of a case: noise, faults and lost rows."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Every kind of disturbance once more: its law, how an example is drawn, and what makes it strong.
+"""Every kind of disturbance, independently: its law, how an example is drawn, and what makes it strong.
 
 The laws are those of docs/physics.md with the keys of docs/disturbances.md. They share nothing with
 the program but these documents. A law acts on a batch of platforms: vectors are arrays (3, b), numbers
@@ -53,7 +53,7 @@ class Kind:
 
 @dataclasses.dataclass(frozen=True)
 class Conditions:
-    """What the size of an example may depend on."""
+    """Quantities on which the size of an example may depend."""
 
     duration_s: float
     moments_kg_m2: np.ndarray  # of inertia, about the body axes
@@ -380,10 +380,10 @@ NOT_INJECTED = {
     "body_force": "the laboratories have no table to slide on",
     "thrust_saturation": "the laboratories have no table to slide on",
     "mass_error": "diagnose does not screen it",
-    "empirical_torque": "a function without a law; the benchmark has unknown laws of its own",
+    "empirical_torque": "a function without a law; the benchmark has other unknown laws",
 }
 
-# What every number of a key must lie within to be possible at all; other keys have no bounds.
+# Physical bounds of every number of a key; other keys have no bounds.
 BOUNDS = {
     ("elastic_sag", "compliance_s2"): (0.0, math.inf),
     ("mass_shift", "time_s"): (0.0, math.inf),

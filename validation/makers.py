@@ -138,7 +138,7 @@ def _second_sensors(draw, plan, motion, kinds):
     commanded = any(kind.needs_commands or kind.needs in ("command", "charge") for kind in kinds)
     sensors.has_commands = commanded or draw.chance(0.6)
     sensors.dirty = draw.chance(plan.dirty_share)
-    # Nobody can count the turns of a fast spin in a gap of seconds without a gyro.
+    # The turns of a fast spin cannot be counted in a gap of seconds without a gyro.
     if motion == "spin" and not sensors.has_gyro:
         sensors.dirty = False
     return sensors

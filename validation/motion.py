@@ -57,7 +57,7 @@ class Start:
 
 @dataclasses.dataclass
 class Command:
-    """What holds from its time to the next command."""
+    """The command from its time to the next."""
 
     time_s: float
     torque_N_m: np.ndarray
@@ -92,7 +92,7 @@ class _Platforms:
         self.appendage_rad_s, self.appendage_damping, self.appendage_kg_m2 = (np.zeros(size) for _ in range(3))
 
     def part(self, members):
-        """The same of some members: changes in place change the whole."""
+        """Some members: changes in place change the whole."""
         part = object.__new__(_Platforms)
         for name, value in vars(self).items():
             setattr(part, name, value[..., members] if isinstance(value, np.ndarray) else value)
@@ -100,7 +100,7 @@ class _Platforms:
 
 
 class Now:
-    """What a law may look at: members `members` of a batch at one instant. Vectors in body axes."""
+    """Inputs of a law: members `members` of a batch at one instant. Vectors in body axes."""
 
     def __init__(self, motion, time_s, attitude, rate, charge_Ah, command):
         self.time_s, self.attitude, self.rate, self.charge_Ah = time_s, attitude, rate, charge_Ah
@@ -291,7 +291,7 @@ class Motion:
         return result
 
     def read(self, starts, commands, times_s, tolerance=1e-9, max_step_s=math.inf):
-        """What noiseless instruments read at rising times."""
+        """Readings of noiseless instruments at rising times."""
         times_s = np.asarray(times_s, dtype=float)
         p = self.platforms
         delays_s = np.unique(p.latency_s)

@@ -103,7 +103,7 @@ def _override(tables, change):
 
 
 def read_plan(path, overrides=(), seed=None):
-    """The plan in the settings file `path`; InputError for what is missing, unknown or out of range."""
+    """The plan in the settings file `path`; InputError for keys that are missing, unknown or out of range."""
     path = pathlib.Path(path)
     try:
         tables = tomllib.loads(path.read_text(encoding="utf-8"))

@@ -36,7 +36,7 @@ def _companions(draw, count):
 
 
 class Choice:
-    """What a case is made of. Other effects stand together in another `variant`."""
+    """The parts of a case. Other effects stand together in another `variant`."""
 
     def __init__(self, plan, index, variant=0):
         self.level = 0  # of a single effect: 0 strong, 1 medium, 2 weak, 3 below the limit

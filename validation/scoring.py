@@ -21,7 +21,7 @@ NAN = math.nan
 
 @dataclasses.dataclass
 class CaseScore:
-    """What happened in one case. NaN: not stated."""
+    """The outcome of one case. NaN: not stated."""
 
     name: str
     family: str = "case"
@@ -182,7 +182,7 @@ def _judge(score, truth, diagnosis, nominal):
             score.right = score.right or sorted(names) == sorted(score.kinds)
             score.right_within_group = score.right_within_group or _can_be(doubles, names)
     score.known_named = outside and score.right and bool(score.kinds)
-    # Below the limit, what acts may be named, or nothing.
+    # Below the limit, the effects may be named, or none.
     either = not outside and [] in accept and (score.right or score.verdict == "consistent")
     score.verdict_right = score.verdict == score.true_verdict or either
     score.false_alarm = score.true_verdict == "consistent" and not score.right

@@ -19,7 +19,7 @@ ROUNDS = 3
 
 @dataclasses.dataclass
 class Strengths:
-    """What chi² of the first run gains by knowing each effect, with all numbers of the case's other effects free; of a
+    """Gain in chi² of the first run by knowing each effect, with all numbers of the case's other effects free; of a
     law outside the catalogue, with those of the whole catalogue free. `doubles`: sets of kinds that leave within the
     noise what one or two of the effects do."""
 

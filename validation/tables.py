@@ -1,4 +1,4 @@
-"""Tables of scores: CSV, JSON and the marked sections of docs/proof.md and docs/light_diagnosis.md."""
+"""Tables of scores: CSV, JSON and the marked sections of docs/proof.md."""
 
 import csv
 import io
@@ -120,10 +120,16 @@ def _cell(value, digits):
     return f"{value:{digits}}" if math.isfinite(value) else "–"
 
 
+# Columns of the CSV files whose headings in a document are other words.
+_HEADINGS = {"concealed": "injected effect", "share": "fraction", "share_right": "fraction right", "mean_stated": "mean stated",
+             "low_95": "95 % from", "high_95": "to", "wrong_name": "wrong name", "median_s": "median s", "largest_s": "largest s",
+             "too_weak": "too weak", "too_weak_right": "of these right"}  # fmt: skip
+
+
 def _markdown_table(columns, rows, digits=".3g"):
     if not rows:
         return "(none)\n"
-    lines = [columns, ["---", *["---:"] * (len(columns) - 1)], *[[_cell(x, digits) for x in row] for row in rows]]
+    lines = [[_HEADINGS.get(name, name) for name in columns], ["---", *["---:"] * (len(columns) - 1)], *[[_cell(x, digits) for x in row] for row in rows]]
     text = ["| " + " | ".join(line) + " |" for line in lines]
     text[1] = "|" + "|".join(lines[1]) + "|"
     return "\n".join(text) + "\n"
@@ -139,12 +145,18 @@ def _wrong_cases(scores):
         if not s.right:
             said = f"{s.verdict}: {_joined(s.kinds, '–')}" if s.answered else f"no answer: {s.failure.split(chr(10))[0]}"
             rows.append((s.name, f"{s.true_verdict}: {_joined(s.true_kinds, '–')}", s.chi2_gain, said))
-    return _markdown_table(("case", "truth", "χ² gain", "said"), rows) if rows else "None.\n"
+    return _markdown_table(("case", "truth", "χ² gain", "answer"), rows) if rows else "None.\n"
+
+
+def _groups_with_errors(scores):
+    """The rows of by_kind() with an answer that is not right."""
+    columns, rows = by_kind(scores)
+    return columns, [row for row in rows if row[2] < row[1] or row[4] < row[3] or row[5] or row[6]]
 
 
 def markdown(title, description, scores):
-    """The section of a document: counts with their intervals, figures, reliability, by family and kind, and every case
-    that went wrong. Nothing in it depends on the machine but what takes time."""
+    """The section of a document: counts with their intervals, figures, reliability, by family, the kinds that were
+    not always right, and every wrong case. Nothing in it depends on the machine but what takes time."""
     counts = [(text, f"{f.hits} of {f.of}", _percent(f.hits / f.of), f"{_percent(f.low)} to {_percent(f.high)}", aim)
               for text, f, aim in questions(scores)]  # fmt: skip
     values = [(name, f"{value:.4g}" + (f" ± {error:.2g}" if error > 0.0 else ""))
@@ -153,15 +165,15 @@ def markdown(title, description, scores):
         f"### {title}\n\n{description}\n",
         _markdown_table(("question", "right", "fraction", "95 % interval", "aim"), counts),
         _markdown_table(("figure", "value"), values),
-        "Stated probability of every effect named, beside how often the name was right:\n",
+        "Stated probability of each named effect, and fraction of right names:\n",
         _markdown_table(*reliability(scores)),
-        "Stated confidence of every answer, beside how often verdict and names were right:\n",
+        "Stated confidence of each answer, and fraction of right answers:\n",
         _markdown_table(*confidence(scores)),
         "By family and maker:\n",
         _markdown_table(*by_family(scores)),
-        "By the injected effect:\n",
-        _markdown_table(*by_kind(scores), digits=".0f"),
-        "What went wrong:\n",
+        f"Injected effects with a wrong answer, of {len(by_kind(scores)[1])} (`proof_by_kind.csv` lists all):\n",
+        _markdown_table(*_groups_with_errors(scores), digits=".0f"),
+        "Wrong answers:\n",
         _wrong_cases(scores),
     ])  # fmt: skip
 

@@ -18,7 +18,7 @@ inline constexpr Vec3Key marker_normal("marker_normal", {0.0, 0.0, 1.0},
                                        "where they shine to, body axes, any length");
 inline constexpr Vec3sKey marker_error(
     "marker_error_m",
-    "one per marker: where they are in truth, less `markers_m`; turns every attitude that "
+    "one per marker: true position minus `markers_m`; turns every attitude that "
     "is recorded, and the filter does not know",
     {.usually = "none"});
 inline constexpr NumberKey intensity("intensity_W_sr", Range::positive(),

@@ -35,8 +35,8 @@ std::optional<FoundPose> find_pose(const TrackingCamera& camera,
 // [rad²]: the inverse of the information of all markers in sight. Nothing where they do not fix it.
 std::optional<Mat3> attitude_covariance_lab_rad2(const TrackingCamera& camera, const Pose& pose);
 
-// The same of errors of calibration that stay: every marker's image is displaced by `error_px` (one
-// standard deviation per axis, independent of the others) and the pose does not know.
+// Covariance from errors of calibration that stay: every marker's image is displaced by `error_px`
+// (one standard deviation per axis, independent of the others) and the pose does not know.
 std::optional<Mat3> calibration_error_lab_rad2(const TrackingCamera& camera, const Pose& pose,
                                                double error_px);
 // And of a principal point that is wrong by `error_px` per axis, for all markers alike.

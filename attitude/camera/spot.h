@@ -25,7 +25,7 @@ Spot spot_of(const TrackingCamera& camera, const MarkerView& view);
 // Expected electrons in the brightest pixel, of a spot in the middle of that pixel.
 double brightest_pixel(const Spot& spot);
 
-// What disturbs a pixel.
+// The noise of a pixel.
 struct PixelNoise {
   double background_electrons = 0.0;
   double read_noise_electrons = 0.0;

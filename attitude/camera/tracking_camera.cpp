@@ -64,7 +64,7 @@ void read_place(const Settings& s, TrackingCamera& camera) {
   camera.weighs_alike = s.get(tracking_key::pose_weights) == 1;
 }
 
-// What the signal and the number of markers must be for a pose at zero tilt.
+// Requires a signal and a number of markers that suffice for a pose at zero tilt.
 void check_view(const Settings& s, const TrackingCamera& camera) {
   const size_t least = camera.knows_centre ? 2 : 4;
   size_t seen = 0;

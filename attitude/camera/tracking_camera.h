@@ -40,7 +40,7 @@ struct Distortion {
 
 struct TrackingCamera {
   std::vector<Marker> markers;
-  // Where the markers are in truth, beside where the pose takes them to be; one each, or empty.
+  // True positions of the markers minus those that the pose assumes; one each, or empty.
   std::vector<Vec3> marker_error_body_m;
   double radiant_intensity_W_sr = 1e-4;  // of a marker along its normal
   double half_angle_rad = 1.0471975512;  // at which it has fallen to half: 60 deg is Lambert's law

@@ -10,7 +10,7 @@ namespace photorque {
 
 namespace {
 
-// The same quantity, perhaps written in another unit than the one that its law names.
+// Whether a key names the same quantity, perhaps in another unit than the one that its law names.
 bool is_same_quantity(const std::string& written, std::string_view key) {
   const KeyUnit a = unit_of_key(written), b = unit_of_key(key);
   return a.stem == b.stem && (a.dimension == b.dimension || a.unit.empty() || b.unit.empty());
@@ -48,11 +48,11 @@ Key disturbance_table() {
     kinds.push_back({kind.name, kind.summary, kind.keys});
   }
   return Key::tables("disturbance",
-                     {Key::choice("kind", std::move(kinds), "what acts"),
+                     {Key::choice("kind", std::move(kinds), "the effect"),
                       Key::flag_or("per_recording", false,
                                    "its parameters with a sigma have other values in every "
                                    "recording that `diagnose` gets")},
-                     "what acts on the platform");
+                     "the effects on the platform");
 }
 
 std::vector<Disturbance> read_disturbances(const Settings& root,

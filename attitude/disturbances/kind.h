@@ -13,41 +13,42 @@ namespace photorque {
 
 struct TrackingCamera;  // attitude/camera/tracking_camera.h
 
-// What a reader may look at besides its own settings.
+// The parts of an experiment that a reader may use besides its own settings.
 struct DisturbanceContext {
   const Platform& platform;
   const Environment& environment;
   const TrackingCamera* camera = nullptr;  // that sees markers; null: there is none
 };
 
-// What `budget` says about a kind.
+// Properties of a kind for `budget`.
 struct BudgetTraits {
   std::string paper_figure = {};    // its published figure, by name (paper_figures.h); empty: none
   std::string reason_against = {};  // why it is not ranked; empty: it is
 };
 
-// Everything that is known about a kind of disturbance stands in its own file; nobody else knows
+// Everything that is known about a kind of disturbance stands in its own file; no other file uses
 // its name.
 struct DisturbanceKind {
   std::string name;     // "bearing_drag"
   std::string summary;  // one sentence of physics
-  // Builds the disturbance from its table. InputError for what is missing or out of range; the
-  // caller has read `kind`, and complains about keys that nobody read.
+  // Builds the disturbance from its table. InputError for a missing key or a value out of range;
+  // the caller has read `kind`, and reports keys that were not read.
   Disturbance (*read)(const Settings& settings, const DisturbanceContext& context) = nullptr;
   Screening screening = {};
   BudgetTraits budget = {};
   // The table of [sensors] that may hold the kind's key as well; empty: no error of an instrument.
   std::string instrument = {};
   bool has_eclipses = false;  // the light may fail, which a run reports
-  // What it sets for all others, in words: of the kinds that set the same only one acts, and once.
+  // The quantity that it sets for all others, in words: of the kinds that set the same only one
+  // acts, and once.
   std::string sets = {};
-  // What `read` reads, as documents, editors and `check` are told; beside `kind`.
+  // The keys that `read` reads, for documents, editors and `check`; beside `kind`.
   std::vector<Key> keys = {};
 };
 
 // All kinds, generated from CMakeLists.txt.
 std::vector<DisturbanceKind> all_disturbance_kinds();
-// The same, made once.
+// All kinds, made once.
 const std::vector<DisturbanceKind>& disturbance_kinds();
 // The kind of that name; null if there is none (an empirical law has no kind).
 const DisturbanceKind* find_kind(const std::string& name);

@@ -1,5 +1,5 @@
-// What is known of a kind of disturbance as an effect that a model may lack: what a fit assumes
-// about its parameters before looking, and how `diagnose` has to look for it.
+// Properties of a kind of disturbance as an effect that a model may lack: what a fit assumes about
+// its parameters before looking, and how `diagnose` has to look for it.
 #pragma once
 
 #include <optional>
@@ -61,7 +61,7 @@ struct Parametrisation {
   bool of_free_bodies = false;  // only they have it: no bearing turns them, and their shape shows
 };
 
-// What must be there for an effect to show at all.
+// A condition under which an effect is visible.
 enum class Requirement {
   none,
   command,             // torques commanded, or forces
@@ -79,7 +79,7 @@ enum class Requirement {
   thrust,              // the same, and forces commanded
 };
 
-// What has to be scanned before a fit can find it.
+// A quantity that is scanned before a fit.
 enum class Scan {
   nothing,
   instant,    // key "time_s"
@@ -88,11 +88,11 @@ enum class Scan {
 };
 
 // Another kind whose effect has the same form.
-struct Likeness {
+struct ConfusableKind {
   std::string kind;
-  // The channel that alone tells them apart, whatever the start of a run; none: one is contained in
+  // The channel that alone separates them, whatever the start of a run; none: one is contained in
   // the other, and both together are one effect.
-  Requirement told_apart_by = Requirement::none;
+  Requirement distinguished_by = Requirement::none;
 };
 
 // All disturbances of one kind in a model, the nominal one and its correction of either sign, must
@@ -127,7 +127,7 @@ struct Screening {
   Mat3 (*inertia_change_kg_m2)(const Disturbance&) = nullptr;
   bool changes_mass = false;  // its first parameter is what the platform's mass is more [kg]
   std::optional<LeastSum> least_sum = {};
-  std::vector<Likeness> alike = {};
+  std::vector<ConfusableKind> confusable_kinds = {};
 };
 
 }  // namespace photorque

@@ -1,4 +1,4 @@
-// What surrounds the platform, constant in time; disturbances may change it (see
+// The surroundings of the platform, constant in time; disturbances may change it (see
 // EvaluationContext).
 #pragma once
 

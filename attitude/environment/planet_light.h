@@ -18,7 +18,7 @@
 
 namespace photorque {
 
-// What the surface does, by latitude and season:
+// Albedo and emissivity of the surface, by latitude and season:
 //   a = mean + season c P₁(sin latitude) + second P₂(sin latitude),
 // c the cosine of the phase of the year since 22 December; e likewise. The numbers are the Earth's
 // (Knocke, Ries, Tapley); those beside the means are 0 for a planet that is everywhere the same.
@@ -50,8 +50,8 @@ std::vector<PlanetPart> planet_parts(double radius_m, double distance_m, size_t 
 // Axes of planet_parts() in inertial ones: z along `up`, x as near to the Sun as can be.
 Mat3 planet_axes(const Vec3& up, const Vec3& to_sun);
 
-// What comes from one part onto a surface that looks at it, of sunlight of `irradiance_W_m2`.
-// `axes` as of planet_axes(); the planet turns about the inertial z axis.
+// Irradiance from one part on a surface that faces it, of sunlight of `irradiance_W_m2`. `axes` as
+// of planet_axes(); the planet turns about the inertial z axis.
 struct PlanetIrradiance {
   double reflected_W_m2 = 0.0, infrared_W_m2 = 0.0;
   double sum_W_m2() const { return reflected_W_m2 + infrared_W_m2; }

@@ -21,7 +21,7 @@ struct HeliocentricOrbit {
   double perihelion_rad = 0.0;    // its argument, from the node
   double mean_anomaly_rad = 0.0;  // at time 0
 
-  // The same at eight instants, in axes of the orbit's plane: x to the perihelion, y along the
+  // Positions at eight instants, in axes of the orbit's plane: x to the perihelion, y along the
   // motion there.
   struct InPlane {
     std::array<Lanes, 2> position_au, velocity_au_s;

@@ -48,7 +48,8 @@ class TimeSeries {
 };
 
 // Reads a CSV whose header names a time column `t_s` and the three columns given, in any order
-// among others. InputError with the line for what is missing, not a number or not in order of time.
+// among others. InputError with the line of a cell that is missing, not a number or not in order of
+// time.
 TimeSeries read_time_series(const std::filesystem::path& path,
                             const std::array<std::string, 3>& columns, TimeSeries::Outside outside);
 

@@ -236,8 +236,8 @@ struct FreeReading {
   GyroReading gyro;
   FreeInertia inertia;
 
-  // What is to be assumed for it: changes, and steps of a fifth of the mean moment from what is
-  // stated.
+  // The cost of assuming this inertia: changes, and steps of a fifth of the mean moment from what
+  // is stated.
   double cost(const Mat3& inertia_kg_m2) const {
     constexpr double step = 0.2;
     const Vec3 stated = 3.0 / inertia_kg_m2.trace() * inertia_kg_m2.diagonal();
@@ -296,7 +296,7 @@ std::string repair_by_any_inertia(std::span<Observation> stretches, const Mat3& 
     for (Observation& seen : stretches) read_gyro_as(taken->gyro.matrix, seen);
     text = "convention: " + taken->gyro.text +
            ": the recording was read so, because only then do the rates change as any inertia "
-           "makes them; a free body cannot tell one reversed axis from another, nor from two axes "
+           "makes them; a free body shows neither which axis is reversed nor whether two are "
            "exchanged";
   }
   if (wheels.empty()) return text;
@@ -340,7 +340,7 @@ std::string repair_free_rates(std::span<Observation> stretches, const Mat3& iner
   for (Observation& seen : stretches) read_gyro_as(best_gyro.matrix, seen);
   return "convention: " + best_gyro.text +
          ": the recording was read so, because only then do the rates change as the stated inertia "
-         "makes them; a free body cannot tell one reversed axis from another";
+         "makes them; a free body does not show which axis is reversed";
 }
 
 std::optional<AngleConvention> convention_of_angles(const Recording& recording,

@@ -13,7 +13,7 @@ namespace photorque {
 // (quaternion conjugated, scalar last, axes permuted or reversed, degrees per second under a header
 // that says radians or the reverse) makes them agree, the observations are changed to that reading
 // and a sentence says so. Empty: nothing was changed. Without a gyro nothing can be checked. The
-// stretches of one recording are read in one way: what a short one cannot tell, the others do.
+// segments of one recording are read in one way: long ones decide for short ones.
 std::string repair_conventions(std::span<Observation> stretches);
 
 // How roll, pitch and yaw of a recording are to be read.
@@ -30,11 +30,11 @@ std::optional<AngleConvention> convention_of_angles(const Recording& recording,
                                                     const Platform& platform,
                                                     const std::string& name);
 
-// The same for the rates of a body on which nothing but its own inertia acts, or little else: they
-// must change as Euler's equations say, which an odd number of reversed axes, two axes exchanged or
-// another unit spoil. Which of the axes are reversed such a body cannot tell: the one with the
-// fewest changes is taken. Nothing is done where an attitude is read, or where the moments are so
-// alike that nothing follows from them.
+// Repairs the rates of a body on which little more than its own inertia acts: they must change as
+// Euler's equations say, which an odd number of reversed axes, two axes exchanged or another unit
+// spoil. Such a body does not show which axes are reversed: the one with the fewest changes is
+// taken. Nothing is done where an attitude is read, or where the moments are so alike that nothing
+// follows from them.
 //
 // Where the stated inertia explains little, as it does when it is only a guess, the rates have to
 // change as some inertia says, measured wheels included (free_inertia.h): a reading of the axes and

@@ -234,7 +234,7 @@ Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Obs
       if (!(parameter.sigma > 0.0)) continue;
       Free f{d, static_cast<int>(p), parameter.value, parameter.sigma, per_run};
       f.per_recording = per_run;
-      // What physics forbids of an effect it forbids of a belief, wherever it starts.
+      // Physical bounds of an effect hold for nominal values too, wherever they start.
       if (parameter.value >= lowest_of(kind, parameter.key)) {
         f.lowest = lowest_of(kind, parameter.key);
       }

@@ -53,7 +53,7 @@ double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
 int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds::Noise& limits,
                       std::vector<Observation>& runs);
 
-// Fewer blocks for the search: means of what is left of a fit, not of the readings.
+// Fewer blocks for the search: means of a fit's residuals, not of the readings.
 
 // The runs in some `blocks` blocks each. A block stands for its neighbours at the time of the
 // middle one: there the fit's prediction and the mean of the neighbours' residuals make a reading.

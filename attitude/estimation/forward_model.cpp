@@ -57,8 +57,8 @@ void step_initial(const Eigen::VectorXd& step, PlatformState& initial) {
   }
 }
 
-// What the extra states of each run take of its rate at rest beside the body, times `sign`, is
-// added: they keep what they have beside it where rates and axes are stepped in between.
+// Adds the part of the body's rate that the extra states of each run have at rest, times `sign`:
+// they keep what they have beside it where rates and axes are stepped in between.
 void add_bound_rates(Hypothesis& h, double sign) {
   for (RunStart& run : h.runs) {
     size_t e = 0;
@@ -92,15 +92,15 @@ std::vector<int> places_among_extra(const AttitudeModel& model) {
   return places;
 }
 
-// Whether readings tell it.
+// Whether readings determine it.
 bool tells_place(const Observation& seen, int which) {
   const bool along_x = which % 2 == 0;
   return seen.has(along_x ? Scalar::position_x : Scalar::position_y) ||
          (which >= 2 && seen.has(along_x ? Scalar::velocity_x : Scalar::velocity_y));
 }
 
-// Where a run began. What no reading tells keeps where it is: rotations that no camera sees by a
-// radian, motion that the bearings of one axis hold by next to nothing.
+// Where a run began. Quantities that no reading determines keep their value: rotations that no
+// camera sees by a radian, motion that the bearings of one axis hold by next to nothing.
 std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
                                                      const PlatformState& initial,
                                                      const Observation& seen) {
@@ -141,7 +141,7 @@ std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
   for (size_t k = 0; k < rest.extra.size(); ++k) {
     if (places[k] >= 0) {
       result.push_back({"initial state " + std::to_string(k + 1), "", initial.extra[k]});
-      // What no reading tells stays where it is.
+      // A place that no reading determines stays.
       if (!tells_place(seen, places[k])) {
         result.back().mean = initial.extra[k];
         result.back().sigma = extra_state_sigma;

@@ -51,8 +51,8 @@ std::vector<Vec3> integral(const std::vector<double>& time_s, const std::vector<
   return sum;
 }
 
-// What a body's angular momentum per unit of one unknown adds to what is constant, its mean taken
-// away because the constant is free.
+// The part of the conserved momentum per unit of one unknown, less its mean because the constant is
+// free.
 VectorXd column_of(const std::vector<double>& time_s, const std::vector<Vec3>& momentum,
                    const std::vector<Vec3>& torque) {
   const std::vector<Vec3> turned = integral(time_s, torque);
@@ -80,7 +80,7 @@ Mat3 unit_inertia(Index k) {
 
 constexpr Index wheel = 6, drag = 9, unknowns = 12;
 
-// All columns of a piece; those of a wheel that nobody measured are zero.
+// All columns of a piece; those of an unmeasured wheel are zero.
 MatrixXd columns_of(const RatesOfPiece& rates) {
   const size_t n = rates.time_s.size();
   MatrixXd columns(3 * static_cast<Index>(n), unknowns);

@@ -20,9 +20,9 @@ struct FreeInertia {
   // Moments of the wheels about x, y and z in the same unit, with their errors; zero where none was
   // measured. A negative one says that the wheel's speed was read with the wrong sign.
   Vec3 wheel = Vec3::Zero(), wheel_sigma = Vec3::Zero();
-  // What nothing of this explains: the root mean square of what is left over that of the change of
-  // the body's angular momentum in body axes. 0 for exact readings, about 1 and more where the
-  // rates follow no such law.
+  // The unexplained part: root mean square of the residual over that of the change of the body's
+  // angular momentum in body axes. 0 for exact readings, about 1 and more where the rates follow no
+  // such law.
   double left = 0.0;
 
   double sigma(int k) const { return std::sqrt(covariance(k, k)); }
@@ -31,16 +31,15 @@ struct FreeInertia {
 // Whether a drag by the square of the rate about each axis is fitted beside the inertia.
 enum class FreeDrag { fitted, none };
 
-// From the pieces of one recording, each with an angular momentum of its own. With
+// From the pieces of one recording, each with its own angular momentum. With
 //
 //   I ω(t) + h(t) + ∫ ω × (I ω + h) dt + Σ_k d_k ∫ |ω| ω_k e_k dt = constant,
 //
 // h = Σ_k J_k Ω_k(t) e_k of the wheels whose speed was measured and d_k a drag by the square of the
 // rate about each axis, nothing has to be differentiated and all unknowns enter linearly (the
-// body's largest column is given the coefficient one). Standard errors by what is left over, which
-// counts once in the time over which it is alike. Nothing where a command acted, where an axis was
-// not read in 20 rows at least, or where a negative moment comes out: then something else turns the
-// body.
+// body's largest column is given the coefficient one). Standard errors follow from the residuals,
+// which count once per correlation time. Nothing where a command acted, where an axis was not read
+// in 20 rows at least, or where a negative moment comes out: then something else turns the body.
 std::optional<FreeInertia> free_inertia(const std::vector<Observation>& pieces,
                                         FreeDrag drag = FreeDrag::fitted);
 

@@ -59,25 +59,25 @@ double usual_of(const std::vector<double>& sizes) {
 
 // Of each the largest of the medians over so many about it, before them and after them.
 std::vector<double> usual_nearby(const std::vector<double>& sizes) {
-  constexpr size_t many = 32;
-  const size_t stretches = std::max<size_t>(1, sizes.size() / many);
+  constexpr size_t group = 32;
+  const size_t groups = std::max<size_t>(1, sizes.size() / group);
   std::vector<double> medians;
-  for (size_t s = 0; s < stretches; ++s) {
-    const auto first = sizes.begin() + static_cast<std::ptrdiff_t>(s * many);
-    medians.push_back(median_of({first, s + 1 < stretches ? first + many : sizes.end()}));
+  for (size_t s = 0; s < groups; ++s) {
+    const auto first = sizes.begin() + static_cast<std::ptrdiff_t>(s * group);
+    medians.push_back(median_of({first, s + 1 < groups ? first + group : sizes.end()}));
   }
   std::vector<double> usual;
   for (size_t i = 0; i < sizes.size(); ++i) {
-    const size_t at = std::min(i / many, stretches - 1);
+    const size_t at = std::min(i / group, groups - 1);
     usual.push_back(std::max(
-        {medians[at == 0 ? 0 : at - 1], medians[at], medians[std::min(at + 1, stretches - 1)]}));
+        {medians[at == 0 ? 0 : at - 1], medians[at], medians[std::min(at + 1, groups - 1)]}));
   }
   return usual;
 }
 
 // Rows at which the angle about the one axis, or the path of what slides, has a kink that its own
-// readings do not know: a firing that nobody noted, a wall. Noise and torques make those nearby
-// alike; what has decayed later says nothing of the beginning.
+// readings do not know: an unrecorded firing, a wall. Noise and torques make those nearby alike;
+// what has decayed later says nothing of the beginning.
 std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   std::vector<char> kinks(rows.blocks(), 0);
   const bool slides = platform.slides();
@@ -163,7 +163,7 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
   close(rows.blocks());
   if (result.all.empty()) {
     throw InputError({name, 0}, "t_s",
-                     "no stretch between events and gaps with as many as " +
+                     "no segment between events and gaps with as many as " +
                          std::to_string(least_of_stretch) + " readings",
                      "a recording with longer ones");
   }
@@ -202,7 +202,7 @@ void refuse_jump_of_clock(const Recording& recording, const std::string& name) {
                 "nothing from t_s = %.10g to %.10g, of a recording of %.4g s in all",
                 longest.from_s, longest.to_s, recorded_s);
   throw InputError({name, 0}, "t_s", found,
-                   "a clock that does not jump; of several stretches a file each");
+                   "a clock that does not jump; with several segments a file each");
 }
 
 Segments observe_segments(const Recording& recording, const std::string& name,
@@ -344,7 +344,7 @@ LawfulStretch lawful_stretch(const Observation& rows, const Vec3& axis, size_t f
   axis.cwiseAbs().maxCoeff(&along);
   const AxisRates read = rates_about(rows, along, first, last);
   std::vector<Break> breaks;
-  // A long window sees a weak torque; the shortest that sees one tells best where it ends.
+  // A long window sees a weak torque; the shortest that sees one locates it best.
   for (size_t window = 12; breaks.empty() && 8 * window <= read.row.size(); window *= 2) {
     breaks = breaks_of(read, window);
   }

@@ -1,4 +1,4 @@
-// A recording as stretches of undisturbed motion: it is cut where something hit the platform and
+// A recording as segments of undisturbed motion: it is cut where something hit the platform and
 // where nothing was read for long.
 #pragma once
 
@@ -17,19 +17,19 @@ struct Segments {
   int64_t events = 0;     // rows in which something hit the platform: left out
   int64_t kinks = 0;      // rows at which an angle changes its rate at once: left out as well
   int64_t long_gaps = 0;  // at which the recording was cut
-  int64_t too_short = 0;  // stretches with too few readings for a start of their own: left out
+  int64_t too_short = 0;  // segments with too few readings for an initial state, left out
   std::optional<AngleConvention> angles;  // how roll, pitch and yaw were read
-  std::vector<std::string> lawless;       // why parts of stretches are left out (lawful_stretch())
+  std::vector<std::string> lawless;       // why parts of segments are left out (lawful_stretch())
 };
 
-// `max_blocks`: of all stretches together. InputError as observe() (observation.h), and where every
-// stretch is too short.
+// `max_blocks`: of all segments together. InputError as observe() (observation.h), and where every
+// segment is too short.
 Segments observe_segments(const Recording& recording, const std::string& name,
                           const Platform& platform, size_t max_blocks = 6000);
 
 // Refuses a gap more than ten times as long as all that was recorded (InputError with its
-// instants): a clock that was set while it recorded, or two recordings in one. No search for what
-// acts over such a span ends.
+// instants): a clock that was set while it recorded, or two recordings in one. No search for
+// effects over such a span ends.
 void refuse_jump_of_clock(const Recording& recording, const std::string& name);
 
 // Where a machine that turns about one axis ceases to follow one law: the drive that spun it up is

@@ -164,8 +164,8 @@ Begun begun_from(const Hypothesis& h, const RunStart& start, const Observation& 
   return {fitted.best.runs.empty() ? start : fitted.best.runs.front(), fitted.chi2};
 }
 
-// Leaning the other way, everything else turned with it: what a tilt and a heading cannot tell
-// apart where nothing but gravity tells directions, and what only priors decide.
+// Leaning the other way, everything else turned with it: which a tilt and a heading do not separate
+// where only gravity has a direction, and what only priors decide.
 RunStart mirrored(RunStart start) {
   const Quat half(Eigen::AngleAxisd(pi, Vec3::UnitZ()));
   start.initial.lab_from_body = half * start.initial.lab_from_body * half.conjugate();

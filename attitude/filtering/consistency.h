@@ -11,7 +11,7 @@
 
 namespace photorque {
 
-// What is known to be true at the rows; nothing where it is not.
+// The true values at the rows; nothing where it is not.
 struct TruthAtRow {
   Quat lab_from_body = Quat::Identity();
   std::optional<Vec3> rate_body_rad_s;

@@ -53,7 +53,7 @@ void update(const MotionModel& model, FilterState& state, const Measurement& rea
 }
 
 // A rate that was hardly known before: how the gyro answers to its scale, and the Earth, is only
-// known with the rate, so that the update is made again at what it gave (A. Jazwinski, Stochastic
+// known with the rate, so that the update is repeated at its result (A. Jazwinski, Stochastic
 // Processes and Filtering Theory, 1970, theorem 8.2). Else errors of scale seem to be seen when the
 // derivative changes between the first reading and the second.
 void update_by_gyro(const MotionModel& model, FilterState& state, const Vec3& gyro_rad_s,
@@ -83,7 +83,7 @@ AttitudeEstimate estimate_of(const MotionModel& model, const FilterState& state)
           model.inertial_rate_rad_s(state), state.covariance.topLeftCorner<6, 6>()};
 }
 
-// What the smoother needs of one reading.
+// Quantities of one reading that the smoother needs.
 struct Passed {
   FilterState after;      // the reading
   FilterState predicted;  // at this reading, before it
@@ -211,8 +211,8 @@ class FilterRun {
 
   FilterState smoothed_at(const FilterState& here, const Passed& ahead,
                           const FilterState& later) const {
-    // Nothing of what is after a kick tells of what was before it but the parameters; those few
-    // are left to the filter.
+    // Readings after a kick determine only the parameters before it; those few are left to the
+    // filter.
     if (ahead.begins_anew) return here;
     const MatX gain =
         solved_by(ahead.predicted.covariance, ahead.phi * here.covariance).transpose();
@@ -252,7 +252,7 @@ double likeliest_rate_walk(const AttitudeModel& model, const Sensors& sensors,
     most = likelihood;
     best = walk;
   };
-  // Where the readings do not tell, the quieter motion.
+  // Where the readings do not decide, the quieter motion.
   constexpr double tells = 0.5;
   constexpr int lowest = -28, highest = 4;
   for (int half = lowest; half <= highest; ++half) look(std::pow(10.0, 0.5 * half), tells);

@@ -15,14 +15,14 @@ inline constexpr ChoiceKey model(
     0, "what moves the platform between readings in the estimate that is written");
 inline constexpr NumberKey rate_walk("rate_walk", Range::positive(),
                                      "random walk of the rate without torques, rad/s per √s",
-                                     {.usually = "the likeliest"});
+                                     {.usually = "of maximum likelihood"});
 inline constexpr NumberKey disturbed_rate_walk("disturbed_rate_walk", Range::positive(),
                                                "the same beside the modelled torques",
-                                               {.usually = "the likeliest"});
+                                               {.usually = "of maximum likelihood"});
 inline constexpr NumberKey rate_sigma("rate_sigma_rad_s", FilterSettings{}.rate_sigma_rad_s,
                                       Range::positive(), "of the rate before the first reading");
 inline constexpr IntegerKey search_readings("search_readings", 2000, 50, 100'000'000,
-                                            "over how many the likeliest is looked for");
+                                            "number of readings for the maximum-likelihood search");
 inline constexpr IntegerKey runs("runs", 20, 0, 100'000,
                                  "simulated for the consistency, where there is no recording");
 inline constexpr TableKey estimate("estimate", "how the attitude is estimated");

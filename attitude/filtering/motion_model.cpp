@@ -162,7 +162,7 @@ double MotionModel::step_length_s(const FilterState& state, double wanted_s) con
     const MatX a = rate_matrix(state);
     fastest_1_s = std::max({fastest_1_s, std::sqrt(a.block<3, 3>(rate, attitude).norm()),
                             a.block<3, 3>(rate, rate).norm()});
-    // What depends on time alone is not known from here.
+    // Laws in time alone are not visible from here.
     constexpr double longest_s = 60.0;
     wanted_s = std::min(wanted_s, longest_s);
   }
@@ -298,7 +298,7 @@ VecX MotionModel::difference(const FilterState& to, const FilterState& from) con
   return error;
 }
 
-// What the instruments read, as a filter expects it: the readings' part of MotionModel.
+// The readings that a filter expects of the instruments: the readings' part of MotionModel.
 
 namespace {
 

@@ -1,4 +1,4 @@
-// What a filter knows of the motion between readings and of the instruments.
+// A filter's model of the motion between readings and of the instruments.
 //
 // The error state: rotation vector of the true against the estimated attitude in body axes, rate,
 // extra states of the disturbances, and every parameter that has a sigma. All derivatives are the
@@ -84,9 +84,9 @@ class MotionModel {
                           const std::array<bool, 3>& sees_axis) const;
   Measurement of_gyro(const FilterState& state, const Vec3& gyro_rad_s) const;
   Measurement of_heading(const FilterState& state, double heading_rad) const;
-  // Adds an error to an estimate; the dynamics are made anew where parameters have moved far.
+  // Adds an error to an estimate; the dynamics are rebuilt where parameters have moved far.
   void add(FilterState& state, const VecX& error) const;
-  // What add() would have to add to `from` to give `to`.
+  // The error state that add() adds to `from` to give `to`.
   VecX difference(const FilterState& to, const FilterState& from) const;
 
   // Rate against the inertial frame, body axes: what a perfect gyro reads.

@@ -66,7 +66,7 @@ Readings readings_of(const Recording& recording, const std::string& name, const 
                      "attitudes of unit norm, or rates");
   }
   std::ranges::stable_sort(readings.all, {}, &Reading::time_s);
-  // What the camera saw before the first row was read belongs to the start.
+  // An image of a time before the first row belongs to the start.
   for (Reading& reading : readings.all) {
     reading.time_s = std::max(reading.time_s, readings.first_s);
   }

@@ -13,7 +13,7 @@
 
 namespace photorque {
 
-// What belongs to one time. What was not read is empty or not finite.
+// The readings of one time. What was not read is empty or not finite.
 struct Reading {
   double time_s = 0.0;
   std::optional<size_t> row;  // of the recording, whose estimate is wanted

@@ -17,7 +17,7 @@ namespace photorque {
 
 namespace {
 
-// Where an encoder alone tells of the attitude the table begins level to a hundredth.
+// Where only an encoder reads the attitude, the table begins level to a hundredth.
 constexpr double level_rad2 = 1e-4;
 
 // The ways that channels allow, the simplest first.

@@ -17,9 +17,9 @@ struct EstimateStudy {
   NominalModel nominal;
   FilterSettings filter;  // of the estimate that is written; its random walk: see below
   // Rate's random walk of filters without the torques, and beside the modelled ones [rad/s per √s];
-  // nothing: the likeliest.
+  // nothing: those of maximum likelihood.
   std::optional<double> rate_walk, disturbed_rate_walk;
-  size_t search_readings = 2000;  // over which the likeliest is looked for
+  size_t search_readings = 2000;  // of the maximum-likelihood search
   int runs = 20;                  // simulated, where there is no recording
   int threads = 0;
 };
@@ -41,7 +41,7 @@ RecordingNoise with_noise_of(const Sensors& sensors, const Recording& recording,
 
 // One way to estimate.
 struct Ingredients {
-  std::string name;  // for people: "camera and gyro, disturbances"
+  std::string name;  // as printed: "camera and gyro, disturbances"
   FilterSettings settings;
   Estimation estimation;
 };

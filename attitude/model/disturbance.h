@@ -83,7 +83,7 @@ struct EvaluationContext {
   Vec3Of<T> up_lab;                 // unit, away from the Earth's centre
   T gravity_gradient_1_s2;          // g/R on the ground, μ/r³ in orbit
   T illumination;                   // fraction of the light that arrives: 1 lit, 0 in shadow
-  Vec3Of<T> command_body_N_m;       // torque commanded; acts on the body by itself
+  Vec3Of<T> command_body_N_m;       // torque commanded; acts on the body without a law
   Vec3Of<T> command_lab_N;          // commanded force on a sliding platform
   T battery_current_A;              // drawn from the battery (positive discharges)
   bool current_is_measured;         // Schedule::current_is_measured
@@ -95,7 +95,7 @@ struct EvaluationContext {
   Vec3Of<T> wheel_rad_s2;           // their acceleration
 
   // Dry friction about one axis: 1 where its direction is held (ZeroOrderHold::slip), 0 where the
-  // rate tells it, and the direction of slip that is held, 0 where the platform sticks.
+  // rate decides, and the direction of slip that is held, 0 where the platform sticks.
   T slip_is_held, slip_sign;
 
   // Of a platform that slides; zero for all others.
@@ -134,8 +134,8 @@ struct EvaluationContext {
   }
 
   // This part of the inertia, J a aᵀ, sits on its own spring or bearing about the axis a and does
-  // not follow the body's acceleration. The law also adds the torque −ω × (J a σ) of its own
-  // absolute rate σ about that axis, and the torque of its spring or motor.
+  // not follow the body's acceleration. The law also adds the torque −ω × (J a σ) with its absolute
+  // rate σ about that axis, and the torque of its spring or motor.
   void detach_inertia(const Mat3Of<T>& part_kg_m2) {
     detached_inertia_kg_m2 += part_kg_m2;
     inertia_changed = true;
@@ -156,12 +156,12 @@ struct Parameter {
   double sigma = 0.0;  // the user's one-sigma uncertainty, SI; 0: exact
 };
 
-// A state of its own that a disturbance adds to the attitude and rates.
+// A state that a disturbance adds to the attitude and rates.
 struct ExtraState {
   std::string name;  // ends in its unit
   double initial = 0.0;
   double scale = 1.0;  // > 0, a deviation of this size matters as much as 1 rad of attitude
-  // What it begins with besides when the platform begins by turning as one rigid body: this times
+  // Its additional initial value when the platform starts by turning as one rigid body: this times
   // the rate, body axes. For states that count from the inertial frame.
   Vec3 per_body_rate = Vec3::Zero();
   // Key of an experiment file that says `initial`, in the key's unit; empty: none does.
@@ -214,13 +214,13 @@ using ScalarKey = KeyOf<1>;
 using VectorKey = KeyOf<3>;
 using MatrixKey = KeyOf<9>;  // row by row
 
-// A state of its own, and which of them.
+// A state of a disturbance, and its index.
 struct StateKey {
   const char* name;
   int index = 0;
 };
 
-// What belongs to one disturbance alone.
+// Parameters and states of one disturbance.
 template <class T>
 struct ParametersAndStates {
   const T* parameters;
@@ -306,8 +306,8 @@ class TorqueLaw : public Law {
   const Derived& self() const { return static_cast<const Derived&>(*this); }
 };
 
-// The same for laws that are just a force on a platform that slides: Derived has force() in place
-// of torque(), in lab axes.
+// The base of laws that are a force on a platform that slides: Derived has force() in place of
+// torque(), in lab axes.
 template <class Derived>
 class ForceLaw : public Law {
  public:
@@ -326,7 +326,7 @@ class ForceLaw : public Law {
 // A disturbance that acts on the platform: plain data and the law that reads it. Copies share the
 // law; editing `parameters` of one copy changes that copy alone.
 struct Disturbance {
-  std::string kind;  // set by whoever reads the kind
+  std::string kind;  // set by the reader of the kind
   Stage stage = Stage::torque;
   std::vector<Parameter> parameters;
   std::vector<ExtraState> states;
@@ -393,8 +393,9 @@ T active_from(const T& time_s, double start_s) {
 // How states that count from the inertial frame begin where the platform begins by turning as one
 // rigid body.
 
-// What such a state takes of the rate, body axes: the direction of the disturbance's own `axis`, as
-// that stands now, where it has one; otherwise ExtraState::per_body_rate. Zero: it takes nothing.
+// The axis along which such a state takes part of the rate, body axes: the direction of the
+// disturbance's own `axis`, as that stands now, where it has one; otherwise
+// ExtraState::per_body_rate. Zero: it takes nothing.
 Vec3 bound_axis(const Disturbance& disturbance, const ExtraState& state);
 
 // ∂(bound_axis · rate) by a parameter of the disturbance [(rad/s) per the parameter's SI unit].

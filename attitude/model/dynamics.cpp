@@ -281,7 +281,7 @@ void Dynamics::solve(const EvaluationContext<T>& now, const T* y, T* rates) cons
     acceleration = (1.0 - sticks(now)) * about_axis<T>(now.torque_body_N_m, inertia);
   } else if (now.inertia_changed) {
     const Mat3Of<T> inertia = now.inertia_kg_m2 - now.detached_inertia_kg_m2;
-    // The inverse from cross products of the columns: Eigen's wants comparisons of scalars.
+    // The inverse from cross products of the columns: Eigen's needs comparisons of scalars.
     const Vec3Of<T> a = inertia.col(0), b = inertia.col(1), c = inertia.col(2);
     const Vec3Of<T> bc = b.cross(c), ca = c.cross(a), ab = a.cross(b);
     const Vec3Of<T> torque = now.torque_body_N_m - w.cross(Vec3Of<T>(inertia * w));
@@ -298,8 +298,7 @@ void Dynamics::solve(const EvaluationContext<T>& now, const T* y, T* rates) cons
   }
 }
 
-// What solve() gives when nothing but the command acts, without an evaluation context for laws to
-// read.
+// The result of solve() when only the command acts, without an evaluation context for laws to read.
 void Dynamics::free_body_rates(const Command& command, const Lanes* y, Lanes* rates) const {
   const Vec3Of<Lanes> w(y[4], y[5], y[6]);
   put_attitude_rates(y, rates);
@@ -352,7 +351,7 @@ Dynamics::Instants Dynamics::at(const Lanes& time_s,
     result.torque_body_N_m[d] = now.torque_body_N_m - before + w.cross(carried);
   };
   run_stages(order_, now, act);
-  // What holds the platform exerts what the others do not.
+  // The bearing exerts the torque that the others do not.
   for (size_t d = 0; d < model_.disturbances.size(); ++d) {
     if (!model_.disturbances[d].is_dry_friction) continue;
     const Vec3Of<Lanes> axis = model_.platform.axis.cast<Lanes>();
@@ -467,7 +466,8 @@ void Dynamics::reading_derivatives(const Lanes& time_s,
   put(now.camera_delay_s);
 }
 
-// What every disturbance does at one state, and the disturbance that carries what slides.
+// The effect of every disturbance at one state, and the disturbance that holds the motion of a
+// planar platform.
 
 namespace {
 

@@ -18,7 +18,7 @@
 
 namespace photorque {
 
-// The nominal model: a platform, what surrounds it, what acts on it and what it is commanded.
+// The nominal model: a platform, its surroundings, the disturbances and the commands.
 struct AttitudeModel {
   Platform platform;
   Environment environment;
@@ -38,8 +38,8 @@ std::vector<double> to_vector(const PlatformState& state);
 // Normalises the quaternion.
 PlatformState to_state(double time_s, std::span<const double> y);
 
-// What a platform that slides has besides: place and velocity in the lab's xy plane, as the extra
-// states of a disturbance that does nothing. A model of such a platform begins with it.
+// The additional states of a platform that slides: place and velocity in the lab's xy plane, as the
+// extra states of a disturbance that does nothing. A model of such a platform begins with it.
 inline constexpr const char* translation_kind = "translation";
 Disturbance translation();
 
@@ -70,8 +70,8 @@ class Dynamics {
   // dy/dt at eight instants; `y` and `rates` hold size() components.
   void rates(const Lanes& time_s, const ZeroOrderHold& held, const Lanes* y, Lanes* rates) const;
 
-  // What is differentiated, at most DualLanes::block variables: component `state`[k] of the state
-  // or parameter `parameter`[k], −1 for neither.
+  // The variables of one differentiation, at most DualLanes::block: component `state`[k] of the
+  // state or parameter `parameter`[k], −1 for neither.
   struct Block {
     std::array<int, DualLanes::block> state;
     std::array<int, DualLanes::block> parameter;
@@ -101,7 +101,7 @@ class Dynamics {
     Lanes battery_current_A;
     Lanes array_power_W;
     Lanes illumination;
-    // What noiseless instruments read; see EvaluationContext.
+    // Readings of noiseless instruments; see EvaluationContext.
     Vec3Of<Lanes> gyro_rad_s;
     Vec3Of<Lanes> camera_error_rad;
     Lanes camera_delay_s;
@@ -110,7 +110,7 @@ class Dynamics {
   Instants at(const Lanes& time_s, const std::array<ZeroOrderHold, Lanes::count>& held,
               const Lanes* y) const;
 
-  // What noiseless instruments add to the platform's own rate and attitude, where that does not
+  // The offsets of noiseless instruments from the platform's rate and attitude, where that does not
   // depend on the motion.
   struct Offsets {
     Vec3 gyro_rad_s, camera_rad;

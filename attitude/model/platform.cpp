@@ -45,9 +45,11 @@ constexpr ChoiceKey topology(
 constexpr ChoiceKey axis("axis", {"x", "y", "z"}, 2, "the axis that is left");
 constexpr NumberKey tilt_limit("tilt_limit_deg", {0.0, pi, true, false},
                                "the bearing's stop: a run ends there", {.usually = "none"});
-constexpr NumberKey battery_capacity("battery_capacity_Ah", Range::positive(),
-                                     "only says when the battery is empty",
-                                     {.usually = "never empty"});
+constexpr NumberKey battery_capacity(
+    "battery_capacity_Ah", Range::positive(),
+    "charge of the full battery: the event `battery_empty` is where it is drawn; with "
+    "`[array.day]` its energy is this times `battery_voltage_V`",
+    {.usually = "none: never empty"});
 constexpr NumberKey battery_voltage("battery_voltage_V", usual_battery_voltage_V, Range::positive(),
                                     "nominal");
 constexpr TableKey platform("platform", "what turns");

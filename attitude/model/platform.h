@@ -1,4 +1,4 @@
-// What turns, the body on the bearing or a spacecraft in orbit, and its state.
+// The rotating body, on the bearing or in orbit, and its state.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// What comes from outside the equations of motion: commands that hold from their time to the next
+// Inputs from outside the equations of motion: commands that hold from their time to the next
 // (zero-order hold), and what a simulation beside them says (the light, the battery).
 #pragma once
 
@@ -35,7 +35,7 @@ struct WheelSpeeds {
 };
 
 // Which way a platform that turns about one axis slips in its dry friction. The propagator holds it
-// within a step and changes it between two; elsewhere the rate tells.
+// within a step and changes it between two; elsewhere the rate decides.
 enum class Slip : int64_t { by_rate, backward, sticks, forward };
 
 struct ZeroOrderHold {

@@ -27,7 +27,7 @@ constexpr std::array<Eigen::Index, 13> shared_columns = {6,  7,  8,  9,  10, 11,
 constexpr auto shared_count = static_cast<Eigen::Index>(shared_columns.size());
 
 // The pieces of one recording, and the knots over which its bias is a straight line. Even knots are
-// those of the model, odd ones halve its intervals: what these gain tells what noise gains.
+// those of the model, odd ones halve its intervals: their gain is the gain of noise.
 struct Span {
   std::string name;
   std::vector<const Observation*> pieces;
@@ -79,7 +79,7 @@ struct Equations {
   Eigen::VectorXd right;
 };
 
-// What lies far outside of the rest is no reading of the motion.
+// Values far outside of the rest are not readings of the motion.
 void drop_far_ones(std::vector<double>& values) {
   constexpr double far = 9.0;  // of the median distance from zero: six standard deviations of noise
   std::vector<double> distances;
@@ -168,10 +168,10 @@ Equations equations_of(const std::vector<Span>& spans) {
 // Scale and misalignment of a gyro: its nine numbers, by rows, come first of the shared columns.
 constexpr Eigen::Index of_matrix = 9;
 constexpr std::array<Eigen::Index, 3> scales = {0, 4, 8};
-// What is usual of each, and beyond what no gyro's scale is off: there it is something else.
+// The usual error of each, and the largest error of a gyro's scale: there it is something else.
 constexpr double usual_matrix_error = 0.01, most_scale_error = 0.3;
 
-// Where a motion does not tell them apart, the bias is the culprit rather than what all recordings
+// Where a motion does not separate them, the bias is the culprit rather than what all recordings
 // share: scale and misalignment, of these widths, the camera's delay, the turning of the
 // laboratory.
 Equations with_priors(Equations sums, const Eigen::VectorXd& matrix_errors) {
@@ -181,7 +181,7 @@ Equations with_priors(Equations sums, const Eigen::VectorXd& matrix_errors) {
   return sums;
 }
 
-// What a model makes of the biases at all knots: each column is one of its numbers.
+// A model of the biases at all knots: each column is one of its numbers.
 enum class Bias { constant, lines, finer };
 
 Eigen::MatrixXd basis_of(Bias model, const std::vector<Span>& spans, Eigen::Index size) {
@@ -247,10 +247,10 @@ Solution solved(Bias model, const std::vector<Span>& spans, const Equations& sum
   return s;
 }
 
-// What a gyro's scale and misalignment may be. A scale more than is usual where the motion shows it
-// whatever the bias does: held to what is usual it would be taken for a drift. Not so the
-// misalignments: where axes are turned far the first order does not hold, and these numbers would
-// take up only half of what it leaves.
+// Standard deviations of a gyro's scale and misalignment. A scale more than is usual where the
+// motion shows it whatever the bias does: held to what is usual it would be taken for a drift. Not
+// so the misalignments: where axes are turned far the first order does not hold, and these numbers
+// would take up only half of what it leaves.
 Eigen::VectorXd matrix_errors(const std::vector<Span>& spans, const Equations& sums) {
   constexpr double clear_sigma = 3.0;
   const Solution free =

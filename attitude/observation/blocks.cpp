@@ -64,7 +64,7 @@ double fastest_rad_s(const Observation& seen) {
         fastest, fastest_of_scalar(seen.scalar[static_cast<size_t>(s)],
                                    channel_traits(vector_channels + s).measures, seen.time_s));
   }
-  // A gyro that reads all three axes tells better than differences of attitudes do.
+  // A gyro that reads all three axes is better than differences of attitudes.
   Vec3 read = Vec3::Zero();
   if (seen.has_gyro) {
     for (const Vec3& rows : seen.gyro_rows) read = read.cwiseMax(rows);
@@ -268,7 +268,7 @@ struct BlockRows {
       return one.attitude * turned_by(-one.since_s * rate_rad_s);
     };
     Quat reference = moved(all.front());
-    // What is left of the trend is smaller each time by the square of the angle of turning.
+    // The remaining trend decreases each time by the square of the rotation angle.
     constexpr int times = 3;
     for (int again = 0; again < times && all.size() > 2; ++again) {
       Vec3 trend = Vec3::Zero();
@@ -332,8 +332,8 @@ Value curvature_of(const Slope<Value>& before, const Slope<Value>& after) {
   return 2.0 / (before.between_s + after.between_s) * (after.per_s - before.per_s);
 }
 
-// Makes the mean over a block of `all` a reading at its middle, as far as its neighbours tell how
-// the motion curves.
+// Makes the mean over a block of `all` a reading at its middle, with the curvature of the motion
+// from its neighbours.
 class Straightened {
  public:
   Straightened(const Observation& all, size_t block) : all_(all), block_(block) {}

@@ -65,7 +65,7 @@ Observation without_blocks(const Observation& seen);
 void append_mean(const Observation& from, size_t first, size_t last, Observation& to);
 
 // Makes the first block of `to`, a mean that is the given block of `all`, a reading at its middle,
-// as far as its neighbours there tell how the motion curves.
+// with the curvature of the motion from its neighbours there.
 void straighten_first(const Observation& all, size_t block, Observation& to);
 
 }  // namespace photorque

@@ -187,7 +187,7 @@ void add_normal_equations(const KinematicSeries& series, const AngleNoise& noise
 namespace {
 
 constexpr double tolerance = 0.1;  // of twice the logarithm of the likelihood
-// Correlation times that are looked for [s]. Longer ones cannot be told from a gyro that drifts.
+// Correlation times that are looked for [s]. Longer ones look like a gyro that drifts.
 constexpr double shortest_s = 0.02, longest_s = 12.0;
 
 // ln(level over the stated), coloured fraction, ln(time), ln(roughness).
@@ -208,7 +208,7 @@ class Search {
   CameraNoise run() {
     const auto plain = [&](const Eigen::VectorXd& x) { return of({x[0], 0.0, 0.0, x[1]}); };
     Minimum white{Eigen::Vector2d::Zero(), INFINITY};
-    // Twice, because another level may want another roughness.
+    // Twice, because another level may need another roughness.
     for (int round = 0; round < 2; ++round) {
       const Eigen::Vector2d start(white.at[0], likeliest_roughness(white.at[0]));
       const Minimum next = simplex_minimum(plain, start, Eigen::Vector2d(0.2, 1.0), tolerance);

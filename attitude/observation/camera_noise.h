@@ -10,7 +10,7 @@ namespace photorque {
 
 // How likely an angle and its rate, as a camera and a gyro read them, are under some noise.
 
-// What is assumed of one axis. The angle's third derivative is white noise (Wiener torque), so that
+// The noise model of one axis. The angle's third derivative is white noise (Wiener torque), so that
 // any smooth torque is allowed, and none is preferred once `roughness` is large.
 struct AngleNoise {
   ChannelNoise camera;
@@ -24,14 +24,14 @@ struct AngleNoise {
 // and the correlated noise of both.
 double minus_two_log_likelihood(const KinematicSeries& series, const AngleNoise& noise);
 
-// The normal equations of the columns of `series` against what is left, whitened by the filter:
+// The normal equations of the columns of `series` against the residuals, whitened by the filter:
 // matrix and right-hand side are added to.
 void add_normal_equations(const KinematicSeries& series, const AngleNoise& noise,
                           Eigen::MatrixXd& matrix, Eigen::VectorXd& right);
 
 // The camera's noise about one lab axis.
 
-// Of one channel: what was found, and how sure that is.
+// Of one channel: the estimate and its significance.
 struct FoundNoise {
   ChannelNoise noise;        // to be used: as stated unless something else was found
   bool level_found = false;  // differs from what was stated
@@ -43,11 +43,12 @@ struct FoundNoise {
 
 struct CameraNoise {
   FoundNoise found;
-  AngleNoise axis;     // the likeliest of all
+  AngleNoise axis;     // of maximum likelihood
   double value = 0.0;  // its minus two log likelihood
 };
 
-// The likeliest noise of the camera in all runs, `gyro` (the gyro's part of it) taken as known.
+// The maximum-likelihood noise of the camera in all runs, `gyro` (the gyro's part of it) taken as
+// known.
 CameraNoise camera_noise(const std::vector<const KinematicSeries*>& runs,
                          const ChannelNoise& stated, const AngleNoise& gyro,
                          const Thresholds::Noise& limits);

@@ -6,7 +6,7 @@
 
 namespace photorque {
 
-// What the one class of this file is made of.
+// The parts of the one class of this file.
 namespace expected {
 
 Vec3 in_lane(const Vec3Of<Lanes>& v, int lane) {
@@ -27,7 +27,7 @@ struct StateChange {
   Vec3 rotation_body_rad, rate_rad_s;
 };
 
-// What they read: f = ω' × r + ω × (ω × r) − g, without g in free fall, and the field of the lab.
+// Their readings: f = ω' × r + ω × (ω × r) − g, without g in free fall, and the field of the lab.
 class FieldReadings {
  public:
   FieldReadings(const Dynamics& dynamics, const Observation& seen)
@@ -193,7 +193,7 @@ class Slopes {
   std::vector<Lanes> seen_;  // slopes of the attitude (lab axes) and of the gyro, a row each
 };
 
-// What noiseless instruments read at eight instants.
+// Readings of noiseless instruments at eight instants.
 struct Sight {
   Vec3Of<Lanes> gyro_rad_s, camera_error_rad, acceleration_rad_s2;
   Lanes delay_s = 0.0;

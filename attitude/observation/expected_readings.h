@@ -1,4 +1,4 @@
-// What noiseless instruments read as a motion passes, and how that changes with each variable.
+// Readings of noiseless instruments along a motion, and their derivatives by each variable.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +15,7 @@ using FieldRow = Eigen::Matrix<double, first_place - first_field, 1>;
 // By channel (recordings/columns.h) and variable.
 using SlopeRows = Eigen::Matrix<double, channel_count, Eigen::Dynamic, Eigen::RowMajor>;
 
-// What a model says of a block, or of one of its instants.
+// The prediction of a model for a block, or for one of its instants.
 struct ExpectedInstant {
   PlatformState state;
   Vec3 camera_offset_body = Vec3::Zero(), gyro_rad_s = Vec3::Zero();
@@ -33,7 +33,7 @@ class ExpectedReadings {
   ~ExpectedReadings();
 
   ExpectedInstant at(int lane) const;
-  // What changes with each variable, but for scalars that follow from attitude and gyro. Nothing
+  // The derivatives by each variable, but for scalars that follow from attitude and gyro. Nothing
   // without a sensitivity.
   void fill_slopes(int lane, const ExpectedInstant& instant, SlopeRows& slope) const;
 

@@ -146,7 +146,7 @@ void weigh(std::vector<Deviations>& runs, double degrees, double scale) {
   }
 }
 
-// The likeliest scale: where the weighted mean square is the square of it.
+// The maximum-likelihood scale: where the weighted mean square is the square of it.
 double likeliest_scale(const std::vector<Deviations>& runs, double degrees, double scale) {
   constexpr int most_steps = 100;
   constexpr double close = 1e-5;
@@ -211,7 +211,7 @@ Likeliest likeliest(const std::vector<Deviations>& runs, double scale) {
   return best;
 }
 
-// From the curvature of the likelihood along ln ν, the scale the likeliest at each.
+// From the curvature of the likelihood along ln ν, with the maximum-likelihood scale at each.
 double log_degrees_sigma(const std::vector<Deviations>& runs, const Likeliest& at) {
   constexpr double step = 0.1;
   double sides = 0.0;
@@ -225,7 +225,7 @@ double log_degrees_sigma(const std::vector<Deviations>& runs, const Likeliest& a
 
 // Whether many readings are the very same as the one before: steps so coarse have no tails.
 bool are_coarse(const std::vector<Observation>& runs, int channel) {
-  constexpr double many = 0.05;
+  constexpr double coarse_fraction = 0.05;
   double same = 0.0, count = 0.0;
   for (const Observation& seen : runs) {
     for (size_t i = 1; i < seen.blocks(); ++i) {
@@ -237,7 +237,7 @@ bool are_coarse(const std::vector<Observation>& runs, int channel) {
       count += 1.0;
     }
   }
-  return same > many * count;
+  return same > coarse_fraction * count;
 }
 
 std::optional<HeavyTail> heavy_tail(std::vector<Deviations> runs, const Thresholds::Noise& limits) {
@@ -293,8 +293,8 @@ double deviation_level(const std::vector<Prediction>& residuals,
   return count > 0.0 ? std::sqrt(sum / count) : 0.0;
 }
 
-void tame(const HeavyTails& tails, const std::vector<Prediction>& residuals,
-          std::vector<Observation>& runs) {
+void robustify(const HeavyTails& tails, const std::vector<Prediction>& residuals,
+               std::vector<Observation>& runs) {
   for (int channel = 0; channel < 6; ++channel) {
     const std::optional<HeavyTail>& tail = tails[static_cast<size_t>(channel)];
     if (!tail) continue;

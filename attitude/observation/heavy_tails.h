@@ -33,14 +33,14 @@ constexpr size_t deviation_window = 15;
 // All readings weigh alike; none where there are fewer than a window.
 Deviations deviations(const Prediction& residuals, const Observation& seen, int channel);
 
-// Anew, with weights of the readings (> 0), as many as there are.
+// Again, with weights of the readings (> 0), as many as there are.
 void lay_curves(Deviations& channel, const std::vector<double>& weight);
 
 // Standard deviation by the median of all sizes: a few large ones do not count. 0: no reading.
 double robust_level(const std::vector<Deviations>& runs);
 
-// Whether neighbouring deviations hang together no more than those of white noise do through a
-// curve of their own: what is left is noise, not motion. Sizes are cut at a few `level`.
+// Whether neighbouring deviations are correlated no more than those of white noise about their own
+// curve: the residual is noise, not motion. Sizes are cut at a few `level`.
 bool are_independent(const std::vector<Deviations>& runs, double level);
 
 // Student's t distribution of a channel's errors.
@@ -53,19 +53,19 @@ struct HeavyTail {
 // Of channels 0 to 5 (camera about lab x, y, z, gyro about body x, y, z).
 using HeavyTails = std::array<std::optional<HeavyTail>, 6>;
 
-// How far each reading is from a smooth curve through its neighbours' residuals tells its error,
+// How far each reading is from a smooth curve through its neighbours' residuals is its error,
 // whatever slow torque acts. `residuals`: of predictions near the runs, with `off`. A channel whose
 // deviations hang together is left alone: that is motion, or noise of another kind. Deterministic.
 HeavyTails heavy_tails(const std::vector<Prediction>& residuals,
                        const std::vector<Observation>& runs, const Thresholds::Noise& limits);
 
-// Replaces the readings of those channels by what has the same error of the mean under least
-// squares as the likeliest value under Student's t (pseudo-values, Huber 1981, section 7.8): what
-// is far from the neighbours is drawn towards them. The noise that is left is near to normal; its
-// standard deviation is √((ν + 3)/(ν + 1)) of the scale, the Cramér-Rao bound of a location under
-// Student's t (Lange, Little, Taylor 1989, J. Am. Stat. Assoc. 84, 881).
-void tame(const HeavyTails& tails, const std::vector<Prediction>& residuals,
-          std::vector<Observation>& runs);
+// Replaces the readings of those channels by pseudo-values, whose mean under least squares has the
+// error of the maximum-likelihood location under Student's t (Huber 1981, section 7.8): what is far
+// from the neighbours is drawn towards them. The noise that is left is near to normal; its standard
+// deviation is √((ν + 3)/(ν + 1)) of the scale, the Cramér-Rao bound of a location under Student's
+// t (Lange, Little, Taylor 1989, J. Am. Stat. Assoc. 84, 881).
+void robustify(const HeavyTails& tails, const std::vector<Prediction>& residuals,
+               std::vector<Observation>& runs);
 
 // Standard deviation of the readings of a channel about a smooth curve through their neighbours, as
 // of one row [rad or rad/s]. 0: too few.

@@ -97,7 +97,7 @@ class SmoothMotion {
   std::vector<Turning> knot_;
 };
 
-// What is left about a motion in one block, in lab axes.
+// Residuals about a motion in one block, in lab axes.
 struct Left {
   Turning motion;
   Vec3 angle_rad = Vec3::Constant(NAN), rate_body_rad_s = Vec3::Constant(NAN);

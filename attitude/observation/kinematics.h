@@ -1,4 +1,4 @@
-// Camera against gyro: what is left of both about one motion, whatever torque acts.
+// Camera against gyro: residuals of both about one motion, whatever torque acts.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 namespace photorque {
 
 // About one lab axis along one recording, by block. A rotation and a rate that belong together are
-// taken from the readings, so that what is left obeys d(angle)/dt = rate to first order: the
+// taken from the readings, so that the residual obeys d(angle)/dt = rate to first order: the
 // platform's own deviation from that motion, and noise.
 struct KinematicSeries {
   std::vector<double> time_s;
@@ -23,10 +23,10 @@ struct KinematicSeries {
   double interval_s = 0.0, gyro_interval_s = 0.0;  // between the readings of each
   // Means over more than four correlation times no longer show what the time was.
   double shortest_correlation_s = 0.0;
-  // What instruments that are wrong would add: of the gyro biases (3), a linear drift of them (3),
-  // scale and misalignment (9, by rows), of the camera its delay and how that grows with time; then
-  // the turning of the laboratory itself (3), which the gyro reads and the camera does not. No
-  // columns without a gyro.
+  // Contributions of instrument errors: of the gyro biases (3), a linear drift of them (3), scale
+  // and misalignment (9, by rows), of the camera its delay and how that grows with time; then the
+  // turning of the laboratory itself (3), which the gyro reads and the camera does not. No columns
+  // without a gyro.
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> angle_by, rate_by;
 
   size_t blocks() const { return time_s.size(); }

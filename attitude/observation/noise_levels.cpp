@@ -68,8 +68,8 @@ double difference(const std::vector<ReadingAt>& x, size_t first, size_t order) {
   return sum / std::sqrt(squares);
 }
 
-// What readings differ by, and by how much those differences do: multiples of the last digit, and
-// the smaller ones of both where something moves steadily. Less than rounding leaves is none.
+// Differences of readings, and differences of these: multiples of the last digit, and the smaller
+// ones of both where something moves steadily. Less than rounding leaves is none.
 void collect_steps(const std::vector<ReadingAt>& x, std::vector<double>& steps) {
   double largest = 0.0;
   for (const ReadingAt& reading : x) largest = std::max(largest, std::abs(reading.value));
@@ -131,7 +131,7 @@ struct Differences {
   int order = 2;
 };
 
-// Of what is left of the readings about a smooth motion; of the readings themselves, twice as
+// Of the residuals of the readings about a smooth motion; of the readings themselves, twice as
 // often, where that motion came from the camera and brings its noise.
 Differences differences_of(const Observation& seen, const KinematicRun& run, int k) {
   const double interval_s = reading_interval_s(seen, 3 + k);
@@ -228,7 +228,7 @@ std::optional<NoiseLevel> gyro_level(const std::vector<Observation>& seen,
 
 namespace {
 
-// What is left of one channel of one run, in order of time.
+// Residuals of one channel of one run, in order of time.
 struct LeftSeries {
   std::vector<double> time_s, value;
 };
@@ -271,7 +271,7 @@ double autocorrelation(const std::vector<LeftSeries>& all, double square, size_t
   return count > 0.0 ? sum / count / square : 0.0;
 }
 
-// What the next neighbours share; then where that has fallen to 1/e.
+// Correlation of next neighbours; then where that has fallen to 1/e.
 Shared shared_by_neighbours(const std::vector<LeftSeries>& all, double square) {
   size_t longest = 0;
   double read_s = 0.0, intervals = 0.0;

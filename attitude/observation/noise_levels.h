@@ -39,9 +39,9 @@ std::optional<NoiseLevel> gyro_level(const std::vector<Observation>& seen,
 // where it stands out of that.
 
 // The noise of the runs with what a fit leaves of them (`residuals`, NaN where nothing was read) in
-// it, at least `own`, the noise of the readings alone. Channel by channel, white: as loud as the
-// mean square of what is left; correlated: besides over the time after which its autocorrelation
-// falls below 1/e, so that a slow remainder counts for the few independent numbers that it is.
+// it, at least `own`, the noise of the readings alone. Channel by channel, white: with the mean
+// square of the residuals; correlated: besides over the time after which its autocorrelation falls
+// below 1/e, so that a slow remainder counts for the few independent numbers that it is.
 enum class Remainder { white, correlated };
 NoiseLevels with_discrepancy(const std::vector<Prediction>& residuals,
                              const std::vector<Observation>& runs, const NoiseLevels& own,

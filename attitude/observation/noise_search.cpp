@@ -109,7 +109,7 @@ class NoiseSearch {
     if (any_colour()) try_beside(camera_alone);
     if (!found) return;
     const Minimum likeliest = at_stated_level(with_white_part(best, *beside), *beside);
-    // What a lower level with a correlated part explains, the stated one with it may not.
+    // A lower level with a correlated part may explain more than the stated one with it.
     if (!(likeliest.value < now - limits_.min_colour_gain)) return;
     use_gyro(likeliest);
     find_cameras();
@@ -205,7 +205,7 @@ class NoiseSearch {
     }
   }
 
-  // What instruments that are wrong add is fitted under the noise of each axis and taken out.
+  // Contributions of instrument errors are fitted under the noise of each axis and removed.
   void take_out_instruments() {
     double weight = 0.0, sum = 0.0;
     const Eigen::VectorXd prior = instrument_widths().cwiseAbs2().cwiseInverse();

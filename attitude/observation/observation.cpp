@@ -137,7 +137,7 @@ bool Observation::feels_attitude(const Platform& platform) const {
     if (scalar[static_cast<size_t>(s)].rows.empty()) continue;
     const Measures measures = channel_traits(vector_channels + s).measures;
     if (measures == Measures::length || measures == Measures::speed) continue;
-    // What falls freely does not feel its weight.
+    // A freely falling body is weightless.
     if (measures == Measures::force ? platform.has_bearing() : measures != Measures::rate) {
       return true;
     }

@@ -49,7 +49,7 @@ struct ScalarReadings {
   std::vector<double> rows;  // how many readings went into each; 0: none
 };
 
-// What an experiment says of the instruments that feel a field.
+// The settings of the instruments that measure a field.
 struct FieldInstruments {
   Vec3 accelerometer_place_m = Vec3::Zero();  // from the centre of rotation, or of mass where free
   Vec3 accelerometer_bias_m_s2 = Vec3::Zero();

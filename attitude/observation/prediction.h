@@ -1,4 +1,4 @@
-// What a model predicts for an observation, and residuals made independent by whitening.
+// A model's prediction of an observation, and whitened residuals.
 #pragma once
 
 #include <Eigen/Core>
@@ -42,7 +42,7 @@ class Whitening {
 
  private:
   // By what the expectation shrinks since the last block; by what a block is multiplied so that all
-  // share one correlated process; what the expectation learns of the difference; one over the
+  // share one correlated process; the gain of the expectation from the difference; one over the
   // standard deviation of that.
   struct Gain {
     double decay, scale, gain, weight;
@@ -80,7 +80,7 @@ struct Prediction {
   std::vector<PlatformState> states;
   std::vector<Vec3> camera_offset_lab_rad;  // from the state's attitude to what the camera reports
   std::vector<Vec3> gyro_rad_s;             // what the gyro reads
-  // What each scalar that the observation has reads; zero for others.
+  // The reading of each scalar of the observation; zero for others.
   std::vector<Eigen::Matrix<double, scalar_count, 1>> scalars;
 };
 

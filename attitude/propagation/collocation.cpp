@@ -145,12 +145,11 @@ CollocationStep::Outcome CollocationStep::attempt_stiff(double h_s, const ZeroOr
   return outcome;
 }
 
-// Two errors from the fall of the Legendre terms of the rates. Between the ends, what is missing
-// from the polynomial is the terms from the ninth on: less than the last one kept. At the end
-// itself the terms from the seventeenth on are missing, as the sums at Gauss points are exact up to
-// there; they are guessed from how the last four fall. A fast oscillation under a slow motion does
-// not fall, and would add up over the steps: the end is held to `end_fraction` of the bound on the
-// inside.
+// Two errors from the fall of the Legendre terms of the rates. Between the ends, the polynomial
+// lacks the terms from the ninth on: less than the last one kept. At the end itself the terms from
+// the seventeenth on are missing, as the sums at Gauss points are exact up to there; they are
+// guessed from how the last four fall. A fast oscillation under a slow motion does not fall, and
+// would add up over the steps: the end is held to `end_fraction` of the bound on the inside.
 double CollocationStep::estimate_error() const {
   constexpr double end_fraction = 1e-3;
   double error = 0.0;
@@ -168,9 +167,9 @@ double CollocationStep::estimate_error() const {
   return error;
 }
 
-// What the stages cannot have seen: a layer, as where friction turns its sign, between an end of
+// An error that the stages cannot see: a layer, as where friction turns its sign, between an end of
 // the step and the stage next to it. There the rates at the end are not those of the polynomial,
-// and what is missing is their difference over that stretch.
+// and the error is their difference over that interval.
 double CollocationStep::estimate_error_of_ends(const ZeroOrderHold& held) const {
   constexpr double just_inside = 1.0 - 1e-12;  // a law may jump at the end itself
   const std::vector<double> end_y = end();

@@ -36,8 +36,8 @@ class CollocationStep {
     double error = 0.0;  // of the polynomial, relative to the scales; an upper estimate
   };
   Outcome attempt(double h_s, const ZeroOrderHold& held, double settled);
-  // The same by Newton's method: some 50 times the work, but it settles however stiff the equations
-  // are. stiffness() then says whether fixed-point iteration would do as well.
+  // Solves the stages by Newton's method: some 50 times the work, but it settles however stiff the
+  // equations are. stiffness() then says whether fixed-point iteration would do as well.
   Outcome attempt_stiff(double h_s, const ZeroOrderHold& held, double settled);
   // How the last attempt was made, and step length · stiffness_1_s() of its last iteration.
   bool is_stiff() const { return is_stiff_; }

@@ -30,7 +30,7 @@ class DryContact {
 
   // Of a platform at rest; `held` but for its slip.
   Slip at_rest(double time_s, const ZeroOrderHold& held, std::span<const double> y) const;
-  // The same where it is known to slip.
+  // The limits where the contact is known to slip.
   Slip released(double time_s, const ZeroOrderHold& held, std::span<const double> y) const;
 
   // Positive where the slip that is held has ended: the rate has changed its sign, or the other
@@ -52,7 +52,7 @@ class DryContact {
  private:
   struct Accelerations {
     Lanes forward, backward;
-    // Of them, so that what is left of rounding decides nothing.
+    // A margin on them, so that rounding decides nothing.
     Lanes margin() const { return 1e-9 * (backward - forward); }
   };
   Accelerations accelerations(const Lanes& time_s, ZeroOrderHold held, const Lanes* y) const;

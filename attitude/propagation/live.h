@@ -1,5 +1,5 @@
-// A run that somebody watches and commands while it goes on: what the instruments say at a tick,
-// and what is commanded from it until the next.
+// A run that is watched and commanded while it proceeds: what the instruments say at a tick, and
+// what is commanded from it until the next.
 #pragma once
 
 #include <deque>
@@ -13,9 +13,9 @@
 
 namespace photorque {
 
-// What is known at a tick before its command is. The readings are those of the recording's row of
-// the same index, to the bit (of a camera with geometry to 1e-13); NaN where an instrument is
-// absent or says nothing in this row.
+// The state and readings at a tick, before its command. The readings are those of the recording's
+// row of the same index, to the bit (of a camera with geometry to 1e-13); NaN where an instrument
+// is absent or says nothing in this row.
 struct LiveRow {
   size_t index = 0;
   double time_s = 0.0;

@@ -1,4 +1,4 @@
-// What battery and array did beside the motion, in a run with a simulation of the power system.
+// History of battery and array beside the motion, in a run with a simulation of the power system.
 #pragma once
 
 #include <algorithm>

@@ -162,7 +162,7 @@ void Propagator::exchange(const Exchange& now) {
   exchange_is_new_ = true;
 }
 
-// What was exchanged last holds over the schedule's own. The polynomial goes on: a current moves
+// The last exchanged inputs replace those of the schedule. The polynomial goes on: a current moves
 // the charge alone, and the light is continuous but for the error of its continuation.
 void Propagator::take_over() {
   if (!exchange_) return;
@@ -196,7 +196,7 @@ void Propagator::take_step() {
   int corrections = 0;
   slip_ends_ = false;
   for (;;) {
-    // Half of what is left rather than nearly all of it: no slivers.
+    // Half of the remaining time rather than nearly all of it: no slivers.
     const double left_s = stop_s - start_s;
     double h_s = std::min(h_s_, options_.max_step_s);
     const bool cut = slip_ends_ || h_s >= left_s;
@@ -248,19 +248,19 @@ void Propagator::take_step() {
 // alone kept the steps short: they are several times shorter than accuracy asks for. It stays as
 // long as that iteration would contract by less than three in ten.
 void Propagator::choose_method(const CollocationStep::Outcome& outcome, bool was_at_ceiling) {
-  constexpr int patience = 8, many = 20;
+  constexpr int steps_before_switch = 8, slow_iterations = 20;
   constexpr double far_below = 1e-5;  // of the tolerance: four times the length would do
   constexpr double contracts = 3.0;
   if (is_stiff_) {
     if (step_.stiffness() > contracts) return;
     is_stiff_ = false;
-    held_back_ = 0;
+    slow_steps_ = 0;
     return;
   }
-  const bool held_back = outcome.error < far_below * options_.tolerance &&
-                         (was_at_ceiling || outcome.iterations > many);
-  held_back_ = held_back ? held_back_ + 1 : 0;
-  if (held_back_ < patience) return;
+  const bool is_slow = outcome.error < far_below * options_.tolerance &&
+                       (was_at_ceiling || outcome.iterations > slow_iterations);
+  slow_steps_ = is_slow ? slow_steps_ + 1 : 0;
+  if (slow_steps_ < steps_before_switch) return;
   is_stiff_ = true;
   ceiling_s_ = std::numeric_limits<double>::infinity();
 }
@@ -270,16 +270,16 @@ void Propagator::choose_method(const CollocationStep::Outcome& outcome, bool was
 // close to where they stop converging, and that shorter steps would be cheaper.
 double Propagator::propose_length(const CollocationStep::Outcome& outcome, double h_s,
                                   bool cut) const {
-  constexpr int many = 20, too_many = 30;
+  constexpr int slow_iterations = 20, max_iterations = 30;
   double factor = 0.9 * std::pow(options_.tolerance / outcome.error, 1.0 / gauss::points);
-  if (outcome.iterations > too_many) factor = std::min(factor, 0.8);
+  if (outcome.iterations > max_iterations) factor = std::min(factor, 0.8);
   if (factor < 0.9) return std::max(factor, 0.2) * h_s;
   if (cut) return std::max(h_s, h_s_);
-  const bool worth_it = factor > 1.15 && outcome.iterations < many;
+  const bool worth_it = factor > 1.15 && outcome.iterations < slow_iterations;
   return (worth_it ? std::min(factor, 2.0) : 1.0) * h_s;
 }
 
-// What is commanded from now on.
+// Takes the command that holds from this time on.
 void Propagator::take_command(double now_s, bool is_tick) {
   if (!commander_) {
     held_ = dynamics_.model().schedule.at(now_s);
@@ -316,7 +316,7 @@ void Propagator::cross_jumps() {
 
 // Whether the slip that is held ends within the attempted step elsewhere than at its end: then
 // `stop_s` becomes a better guess of that time, by cutting first and by Newton's method from then
-// on, until the time cannot be told better.
+// on, until the time is resolved.
 bool Propagator::ends_slip(double& stop_s, int& corrections) {
   constexpr int most = 5;
   if (!slip_ends_) {
@@ -370,7 +370,7 @@ void Propagator::cross_end_of_slip() {
 }
 
 // A command may have changed, or the run begins: one that begins with what sticks has no rate
-// whatever the variables are. What would come to rest before the time can tell is at rest.
+// whatever the variables are. A body that would stop within the resolution of the time is at rest.
 void Propagator::choose_slip(bool released) {
   constexpr double slow_rad_s = 1e-9, slowest_rad_s = 1e-12;
   const size_t c = contact_.component();
@@ -452,7 +452,7 @@ void Propagator::find_events() {
   }
 }
 
-// Cuts the interval in nine, eight values at a time, until the time cannot be told better.
+// Cuts the interval in nine, eight values at a time, until the time is resolved.
 double Propagator::locate(const EventFunction& event, double low_s, double high_s) const {
   std::vector<Lanes> y(step_.start().size());
   dense(low_s, y.data());
@@ -481,7 +481,7 @@ void Propagator::keep(Snapshot& snapshot) {
   snapshot.expect(jumps_.size());
   snapshot.at_most(next_jump_, jumps_.size());
   snapshot(held_, slip_, slip_ends_, exchange_, exchange_is_new_);
-  snapshot(h_s_, ceiling_s_, is_ceiling_of_state_, is_stiff_, held_back_);
+  snapshot(h_s_, ceiling_s_, is_ceiling_of_state_, is_stiff_, slow_steps_);
   snapshot(step_end_s_, has_step_, ended_by_event_, statistics_);
 }
 

@@ -158,7 +158,7 @@ class Propagator {
   double ceiling_s_ = std::numeric_limits<double>::infinity();
   bool is_ceiling_of_state_ = false;  // the state's own iteration had failed
   bool is_stiff_ = false;             // steps by Newton's method
-  int held_back_ = 0;                 // steps in a row that convergence alone kept short
+  int slow_steps_ = 0;                // steps in a row that convergence alone kept short
   double step_end_s_ = 0.0;
   bool has_step_ = false;
   bool ended_by_event_ = false;

@@ -17,9 +17,9 @@ namespace photorque {
 //   while (recorded.advance()) recorded.record();
 //   PropagationResult result = recorded.result();
 //
-// What runs beside the motion looks at the step and exchanges with motion() between advance() and
-// record(). A run that is broken off goes on from a snapshot, its results the same to the last bit;
-// runs with a commander cannot.
+// A process that runs beside the motion looks at the step and exchanges with motion() between
+// advance() and record(). A run that is broken off goes on from a snapshot, its results the same to
+// the last bit; runs with a commander cannot.
 class RecordedRun {
  public:
   // `beside`: what battery and array do, where a power system runs beside the motion; its caller

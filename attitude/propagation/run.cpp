@@ -58,7 +58,7 @@ constexpr NumbersKey force_body("force_body_N", {}, "the same along body x and y
                                 {.usually = "0, 0", .size = 2});
 constexpr NumberKey battery_current("battery_current_A", 0.0, {}, "drawn");
 constexpr NumberKey led_current("led_current_A", Range::not_negative(),
-                                "of lamps; not given: they shine as ever", {.optional = true});
+                                "of lamps; not given: constant light", {.optional = true});
 constexpr TablesKey command("command", "each held until the next");
 constexpr TextKey epoch(
     "epoch", "2000-01-01T00:00:00",
@@ -208,7 +208,7 @@ Disturbance uncertain_inertia(const Mat3& sigma_kg_m2, const DisturbanceContext&
   return error;
 }
 
-// The same of the mass.
+// The error of the mass, as a disturbance.
 Disturbance uncertain_mass(double sigma_kg, const DisturbanceContext& context) {
   const auto kind = std::ranges::find_if(
       disturbance_kinds(), [](const DisturbanceKind& k) { return k.screening.changes_mass; });
@@ -233,7 +233,7 @@ NominalModel read_attitude_model(const Settings& root) {
   model.platform = read_platform(platform);
   model.platform.has_effects_of_bearing = names_effect_of_bearing(root);
   model.environment = read_environment(environment);
-  // What falls freely feels no weight, nor does what moves about the Sun.
+  // A freely falling body, or one in orbit about the Sun, is weightless.
   const bool is_in_space = !model.platform.has_bearing() || model.environment.sun;
   if (is_in_space && !environment.has("gravity_m_s2")) {
     model.environment.gravity_lab_m_s2 = Vec3::Zero();

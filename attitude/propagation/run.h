@@ -33,9 +33,8 @@ struct PropagationRun {
   LiveCommander commander = {};
 };
 
-// The table `key` of an experiment with its own record of the keys read, so that finish() complains
-// about keys of this table alone, whoever else looked at the file. Empty where there is none and
-// none is required.
+// The table `key` of an experiment with its own record of the keys read, so that finish() reports
+// keys of this table alone. Empty where there is none and none is required.
 Settings own_table(const Settings& root, const std::string& key, bool required);
 
 // The nominal model of the platform and its laboratory: [platform], [environment],
@@ -47,12 +46,12 @@ struct NominalModel {
   // The disturbance by which the sigmas of [platform] inertia_kg_m2 stand in the model.
   std::optional<size_t> uncertain_inertia = {};
 
-  // What readers of more disturbances may look at; for as long as this lives.
+  // The context for readers of more disturbances; for as long as this lives.
   DisturbanceContext context() const;
 };
 NominalModel read_attitude_model(const Settings& root);
 
-// The same and [propagate], which may be absent:
+// Reads the model and [propagate], which may be absent:
 //   duration_s (default 600); output_rate_Hz (of the recording, default 10); history_rows (of the
 //     time history at most, default 20000); tolerance (default 1e-8); longest_step_s; seed (1);
 //   tick_rate_Hz (default 0, none): a step ends at every tick, as in a run in real time;

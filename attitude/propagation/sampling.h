@@ -52,8 +52,8 @@ class Sampler {
   size_t next_ = 0;
 };
 
-// The same over the whole run. `after_step` is called after every step, before its states are
-// handed out. Returns the number of times reached before the run ended.
+// Samples the whole run. `after_step` is called after every step, before its states are handed out.
+// Returns the number of times reached before the run ended.
 size_t sample(Propagator& propagator, size_t count, const std::function<double(size_t)>& time_s,
               const std::function<void(const Samples&)>& sink,
               const std::function<void()>& after_step = {});

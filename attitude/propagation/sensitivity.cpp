@@ -122,7 +122,7 @@ void Sensitivity::seed_states_of_axis(size_t v, const Vec3& rate_body_rad_s) {
 void Sensitivity::make_blocks() {
   state_blocks_ = state_blocks(dynamics_);
   // Parameters of early stages make every disturbance depend on them, and those of instruments
-  // change nothing but readings: each kind has blocks of its own.
+  // change nothing but readings: each kind has separate blocks.
   const auto kind = [&](const Variable& v) {
     const Stage stage = dynamics_.model().disturbances[v.disturbance].stage;
     return stage < Stage::torque ? 0 : stage == Stage::torque ? 1 : 2;
@@ -208,8 +208,8 @@ bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, 
   // Linear, and of the same contraction as the stages, which have settled: mostly it will, however
   // the mixed units of the components swell the first changes. Not where a swing of no amplitude
   // yet let the stages settle in a step too long for it.
-  constexpr int patience = 25;
-  Settling settling(tolerance, 1e-13, patience);
+  constexpr int max_stalled_changes = 25;
+  Settling settling(tolerance, 1e-13, max_stalled_changes);
   for (int iteration = 1; iteration <= max_sweeps; ++iteration) {
     each([&](size_t i) {
       stages_[i] = start_[i] + gauss::times(gauss::mu_columns, increments_[i]);
@@ -254,8 +254,8 @@ void Sensitivity::solve_at_once(const CollocationStep& step) {
   StageSystem(step.start().size(), h_s_, room_.jacobian).solve(increments_, count);
 }
 
-// No iteration has seen how fast the derivatives change: the last Legendre term of their
-// polynomials tells, relative to each derivative's largest size in units of the scales.
+// No iteration has seen how fast the derivatives change: judged by the last Legendre term of their
+// polynomials, relative to each derivative's largest size in units of the scales.
 bool Sensitivity::is_resolved(const CollocationStep& step) const {
   constexpr double tolerance = 1e-3;
   const size_t count = variables_.size(), n = step.start().size();
@@ -321,7 +321,7 @@ void Sensitivity::readings(const Lanes& time_s, const std::array<ZeroOrderHold, 
       for (size_t v = 0; v < count; ++v) readings[r * count + v] += partials[i] * from[v];
     }
   }
-  // What moves masses or exerts torques reaches the instruments through the state alone.
+  // Disturbances that move masses or exert torques reach the instruments through the state alone.
   const auto reaches_instruments = [&](int variable) {
     if (variable < 0) return false;
     const size_t d = variables_[static_cast<size_t>(variable)].disturbance;

@@ -50,8 +50,8 @@ class Sensitivity {
   // At the start of the step, laid out likewise.
   const std::vector<double>& start() const { return start_; }
 
-  // The same for the readings of the instruments (Dynamics::reading_derivatives) at given states,
-  // from the derivatives of those states; reading r by variable v at [r · variables + v].
+  // Derivatives of the instruments' readings (Dynamics::reading_derivatives) at given states, from
+  // the derivatives of those states; reading r by variable v at [r · variables + v].
   void readings(const Lanes& time_s, const std::array<ZeroOrderHold, Lanes::count>& held,
                 const Lanes* y, const Lanes* derivatives, Lanes* readings) const;
 

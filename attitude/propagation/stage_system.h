@@ -68,11 +68,11 @@ class Settling {
  public:
   enum class Verdict { go_on, settled, failed };
 
-  // What is left after a change shall be below `settled`; when changes below `rounding` stop
-  // falling, rounding is all that is left. After `patience` changes in a row without a new smallest
-  // one the iteration has failed.
-  Settling(double settled, double rounding, int patience = 6)
-      : settled_(settled), rounding_(rounding), patience_(patience) {}
+  // The remaining error after a change shall be below `settled`; when changes below `rounding` stop
+  // falling, rounding is all that is left. After `max_stalled_changes` changes in a row without a
+  // new smallest one the iteration has failed.
+  Settling(double settled, double rounding, int max_stalled_changes = 6)
+      : settled_(settled), rounding_(rounding), max_stalled_changes_(max_stalled_changes) {}
 
   Verdict judge(double change) {
     if (!std::isfinite(change)) return Verdict::failed;
@@ -82,7 +82,7 @@ class Settling {
     rises_ = change < best_ ? 0 : rises_ + 1;
     best_ = std::min(best_, change);
     if (rises_ >= 2 && change < rounding_) return Verdict::settled;
-    if (rises_ >= patience_) return Verdict::failed;
+    if (rises_ >= max_stalled_changes_) return Verdict::failed;
     before_ = std::isfinite(previous_) ? contraction : 1.0;
     previous_ = change;
     return Verdict::go_on;
@@ -90,7 +90,7 @@ class Settling {
 
  private:
   double settled_, rounding_;
-  int patience_;
+  int max_stalled_changes_;
   double previous_ = std::numeric_limits<double>::infinity();
   double best_ = std::numeric_limits<double>::infinity();
   double before_ = 1.0;  // the contraction before

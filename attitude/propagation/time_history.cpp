@@ -41,8 +41,8 @@ constexpr const char* fixed_names[fixed] = {"t_s",
                                             "battery_current_A",
                                             "array_power_W"};
 
-// At most about 1600 points, as many as a picture has columns to tell apart: of every stretch its
-// lowest and its highest, in order of time.
+// At most about 1600 points, as many as a picture has columns: of every interval its lowest and its
+// highest, in order of time.
 void thin(const std::vector<double>& x, const std::vector<double>& y, Plot::Curve& curve) {
   constexpr size_t most = 1600;
   if (x.size() <= most) {
@@ -72,7 +72,7 @@ Plot::Curve curve(const std::string& label, const std::vector<double>& x,
   return c;
 }
 
-// The largest of every stretch, for a logarithmic axis: what swings through zero shows its swing.
+// The largest of every interval, for a logarithmic axis: what swings through zero shows its swing.
 // Values below `least` leave a gap.
 Plot::Curve envelope(const std::string& label, const std::vector<double>& x,
                      const std::vector<double>& size, double least) {
@@ -119,7 +119,7 @@ Quantity exact(const std::string& name, double value) {
 TimeHistory::TimeHistory(const Dynamics& dynamics) {
   for (const char* name : fixed_names) columns_.push_back({name});
   const auto& disturbances = dynamics.model().disturbances;
-  // The second of a kind is told apart by its number.
+  // The second of a kind gets a number.
   std::vector<std::string> labels;
   for (const Disturbance& d : disturbances) {
     const auto same = std::count_if(

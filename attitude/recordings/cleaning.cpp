@@ -38,7 +38,7 @@ double noise_level(const std::vector<double>& x) {
   return sigma_per_mad * middle_of(size.begin(), size.end()) / std::sqrt(20.0);
 }
 
-// What a value is off from the parabola through the three before it (direction −1) or after it
+// Deviation of a value from the parabola through the three before it (direction −1) or after it
 // (+1): a spike is off from both by the same, a step from one only. NaN near gaps and ends.
 double off_parabola(const std::vector<double>& x, size_t i, int direction) {
   const auto at = [&](int steps) {

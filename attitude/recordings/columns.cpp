@@ -162,7 +162,7 @@ constexpr const char* euler_names[] = {"roll_rad", "pitch_rad", "yaw_rad"};
 constexpr const char* angle_names[] = {"angle_rad", "roll_rad", "pitch_rad", "yaw_rad",
                                        "heading_rad"};
 constexpr const char* event_names[] = {"thruster", "impulse", "event"};
-// What Recording::schedule() makes use of.
+// Channels that Recording::schedule() uses.
 constexpr const char* schedule_names[] = {
     "command_x_N_m", "command_y_N_m",    "command_z_N_m",     "command_x_N",
     "command_y_N",   "command_body_x_N", "command_body_y_N",  "wheel_x_rad_s",
@@ -243,7 +243,7 @@ MotionColumns::MotionColumns(const Recording& recording, const Platform& platfor
                          "heading_rad, rate_magnitude_rad_s");
 }
 
-// What a whole attitude or three rates tell, one number beside them does not tell again.
+// A single number beside a whole attitude or three rates contains nothing new.
 void MotionColumns::take_scalars() {
   const auto put = [&](Scalar scalar, const char* column) {
     const Channel*& place = scalars_[static_cast<size_t>(scalar)];

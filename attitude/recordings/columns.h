@@ -1,4 +1,4 @@
-// What a recording may hold of a motion: angles in one of six sequences, channels, columns.
+// The contents of a recording of motion: angles in one of six sequences, channels, columns.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ Vec3 angles_of_attitude(std::string_view sequence, const Quat& lab_from_body);
 // "q = Rz(yaw) Ry(pitch) Rx(roll)".
 std::string formula_of(std::string_view sequence);
 
-// What may be read of a motion: the channels in which recordings and models are compared.
+// The readings of a motion: the channels in which recordings and models are compared.
 //
 // Channels 0 to 2 are the attitude about lab x, y and z, 3 to 5 the gyro about body x, y and z.
 // Those behind them are one number each, for recordings that hold less than an attitude or three
@@ -68,7 +68,7 @@ enum class Measures { angle, rate, force, field, length, speed };
 
 struct ChannelTraits {
   const char* name;   // in diagnosis.json, with its unit
-  const char* label;  // for people
+  const char* label;  // as printed
   const char* spoken;
   const char* unit;
   double per_SI;  // of that unit in rad, rad/s, m/s², T
@@ -101,8 +101,8 @@ double scalar_difference(Scalar scalar, double measured, double predicted);
 //   of a platform that slides: x_m, y_m, velocity_x_m_s, velocity_y_m_s, any of them;
 //   accelerometer and magnetometer: accel_x_m_s2 …, mag_x_T …;
 //   what was done: commands, currents, wheel speeds (Recording::schedule());
-//   events: thruster, impulse or event, not zero where something hit the platform: what was read in
-//     that row is left out, and the motion begins anew after it.
+//   events: thruster, impulse or event, not zero where something hit the platform: the readings of
+//   that row are left out, and the motion restarts after it.
 
 class MotionColumns {
  public:

@@ -65,7 +65,7 @@ std::optional<double> to_number(std::string_view cell) {
   return number_in(cell);
 }
 
-// "0,25": a number of somebody whose numbers have a comma.
+// "0,25": a number with a decimal comma.
 std::optional<double> with_decimal_comma(std::string_view cell) {
   const size_t comma = cell.find(',');
   if (comma == std::string_view::npos) return std::nullopt;
@@ -358,7 +358,7 @@ void refuse_absent_columns(const Settings& settings, const std::vector<const Rec
 Schedule read_command_file(const std::filesystem::path& path) {
   const Recording recording = read_recording(path);
   const RecordingReport& report = recording.report;
-  // A recording of a flight has its clock's faults, and is read as one.
+  // A recording with an attitude may have faults of its clock, and is read as one.
   const bool is_flight = recording.find("q_w") != nullptr;
   if (!is_flight && report.backward_times + report.repeated_times > 0) {
     const int64_t line = report.backward_times == 0 ? report.first_repeated_line
@@ -395,7 +395,7 @@ void write_recording(const std::filesystem::path& path, const Recording& recordi
   write_file_whole(path, path.extension() == ".gz" ? gzip(text) : text);
 }
 
-// What the reader of recordings met, for people.
+// The report of the reader of recordings, as text.
 
 std::string RecordingReport::text() const {
   std::ostringstream out;

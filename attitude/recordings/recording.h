@@ -27,7 +27,7 @@ struct Channel {
   std::vector<double> values;  // one per row; NaN where the cell is empty
 };
 
-// What the reader met. Counts are of rows unless said otherwise.
+// Findings of the reader. Counts are of rows unless said otherwise.
 struct RecordingReport {
   int64_t rows_read = 0;  // data rows in the file
   int64_t rows_kept = 0;
@@ -53,7 +53,7 @@ struct RecordingReport {
   bool has_decimal_commas = false;          // "0,25" between other separators, read as 0.25
   std::set<std::string> absent_columns;     // that the options name and the file has not
 
-  // A few lines for people; only what occurred.
+  // The report in a few lines; only what occurred.
   std::string text() const;
 };
 
@@ -62,7 +62,7 @@ struct Recording {
   std::vector<Channel> channels;
   RecordingReport report;
   // In which roll, pitch and yaw are turned ("zyx": q = Rz(yaw) Ry(pitch) Rx(roll)); empty where
-  // nobody said.
+  // not stated.
   std::string angle_sequence = {};
 
   // Null when there is no such channel.
@@ -104,8 +104,8 @@ void write_recording(const std::filesystem::path& path, const Recording& recordi
 
 // The recorded current of a laboratory's lamps, as a schedule holds it.
 
-// What changes by less than a hundredth of the largest is noise, of which the mean is held: each
-// change begins a step of the propagation.
+// Changes below a hundredth of the largest are noise, of which the mean is held: each change begins
+// a step of the propagation.
 class LampCurrent {
  public:
   // Of `led_current_A`; null: the recording has none.

@@ -118,7 +118,7 @@ void read_camera_noise(const Settings& s, Sensors::Camera& camera) {
   camera.noise_rad = covariance->diagonal().cwiseSqrt();
 }
 
-// What wrong marker positions and distortion turn the reading by.
+// Rotation of the reading by wrong marker positions and distortion.
 Quat marker_bias(const TrackingCamera& geometry, const Pose& pose) {
   if (!geometry.is_biased()) return Quat::Identity();
   return turn(marker_bias_lab_rad(geometry, pose).value_or(Vec3::Zero()));
@@ -199,7 +199,7 @@ Sensors read_sensors(const Settings& settings, const DisturbanceContext& context
     sensors.power.power_noise_W = s.get(sensor_key::power_noise);
   }
   sensors.noise_is_stated = settings.get(sensor_key::noise_is) == 1;
-  // Whoever reads light reads its instruments.
+  // Instruments of light are read with the light.
   for (const char* of_light : {"irradiance", "array"}) {
     if (settings.has(of_light)) settings.raw(of_light);
   }

@@ -1,4 +1,4 @@
-// What the laboratory's instruments make of the truth.
+// Readings of the laboratory's instruments from the true motion.
 //
 // Errors that a parameter describes (bias, scale, misalignment, latency) are disturbances of
 // Stage::measurement, so that they can be fitted like any other; what is here is noise, drift,
@@ -39,7 +39,7 @@ struct GyroInstrument {
   double bias_drift_rad_s_1_s = 0.0;  // random walk of the bias: grows with the root of time [s]
   double rate_Hz = 0.0;
 };
-// What `diagnose` compares and `propagate` does not write.
+// Instruments that `diagnose` compares and `propagate` does not record.
 struct AccelerometerInstrument {
   double noise_m_s2 = 0.0;  // per reading and axis; 0: not stated
   Vec3 position_m =
@@ -110,7 +110,7 @@ std::optional<Mat3> camera_covariance_lab_rad2(const Sensors::Camera& camera,
 // A standard normal number that belongs to these counters.
 double gaussian(uint64_t seed, uint64_t stream, uint64_t index, uint64_t dimension);
 
-// What there is to be seen in one row.
+// The true state of one row.
 struct Truth {
   double time_s = 0.0;
   Quat lab_from_body_seen = Quat::Identity();  // at time − camera delay
@@ -133,7 +133,7 @@ class Recorder {
 
   // Rows in order of time.
   void add(const Truth& truth);
-  // What the row that was added last holds in a channel; NaN without such a channel.
+  // Value of a channel in the row that was added last; NaN without such a channel.
   double last(std::string_view channel) const;
   // The recording so far; channels of commands and power that were zero throughout are left out.
   Recording finish();

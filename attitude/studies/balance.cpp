@@ -48,7 +48,7 @@ FitSettings patient_settings() {
   return settings;
 }
 
-// What is left of the camera's attitudes.
+// Residuals of the camera's attitudes.
 void add_camera_residuals(const std::vector<Observation>& stretches, BalanceResult& result) {
   const std::vector<Prediction> predicted = residuals_of(result.fit, stretches);
   for (size_t s = 0; s < stretches.size(); ++s) {
@@ -61,7 +61,7 @@ void add_camera_residuals(const std::vector<Observation>& stretches, BalanceResu
   }
 }
 
-// The recording without what gaps cut off, each stretch with a start of its own.
+// The recording between gaps, each segment with its own initial state.
 std::vector<Observation> stretches_of(const BalanceRun& run) {
   std::vector<Observation> all =
       observe_segments(run.recording, "recording", run.model.platform, run.recording.rows()).all;
@@ -298,7 +298,7 @@ std::string BalanceResult::warning() const {
   if (!leaves_more_than_noise()) return "";
   return "something acts that the experiment lacks: the fit leaves " +
          readable_number(std::sqrt(chi2_per_sample), 3) +
-         " times the noise; the errors hold how far parts of the recording disagree, but what acts "
+         " times the noise; the errors hold how far parts of the recording disagree, but the cause "
          "may pull all of them (photorque diagnose says what it is)";
 }
 

@@ -40,14 +40,14 @@ struct BalanceResult {
   double resolution_m = 0.0;  // of the coarsest axis, half a step (eq. 1)
   // Of the fit with the noise of the instruments alone, and by how many standard errors it exceeds
   // one. Beyond `noticed_sigma` something acts that the model lacks: it pulls the offset as well,
-  // by how much nobody can tell who does not know what it is.
+  // by an unknown amount.
   double chi2_per_sample = 0.0, excess_sigma = 0.0;
   static constexpr double noticed_sigma = 6.0;
   bool leaves_more_than_noise() const { return excess_sigma > noticed_sigma; }
-  std::string warning() const;  // for people; empty where nothing more than noise is left
+  std::string warning() const;  // as printed; empty where nothing more than noise is left
   size_t stretches = 1;         // into which gaps cut the recording
   Fit fit;
-  // What is left of the camera's attitudes, lab axes, at these times.
+  // Residuals of the camera's attitudes, lab axes, at these times.
   std::vector<double> residual_time_s;
   std::vector<Vec3> camera_residual_rad;
 };

@@ -54,7 +54,8 @@ constexpr TableKey budget("budget", "the state at which torques are compared");
 
 constexpr double minute_s = 60.0, hour_s = 3600.0, day_s = 86400.0;
 
-// What the kind's file says; a disturbance made otherwise has neither figure nor exception.
+// The traits that the kind's file states; a disturbance made otherwise has neither figure nor
+// exception.
 BudgetTraits traits_of(const std::string& kind) {
   const DisturbanceKind* known = find_kind(kind);
   return known == nullptr ? BudgetTraits{} : known->budget;
@@ -123,7 +124,7 @@ std::vector<BearingDatasheet> read_catalogue(const Settings& settings) {
   return catalogue;
 }
 
-// What acts within a second.
+// Torques within a second.
 struct Acting {
   Vec3 largest_body_N_m = Vec3::Zero();
   Vec3 mean_body_N_m = Vec3::Zero();
@@ -150,8 +151,8 @@ Snapshot snapshot(const Dynamics& dynamics, const PlatformState& state) {
   return result;
 }
 
-// What changes the conditions of others (gravity, field, command, inertia) has no torque of its own
-// but one by what it does to theirs: I times the acceleration with it less that without it.
+// A disturbance that changes the conditions of others (gravity, field, command, inertia) exerts no
+// torque. Its effect on theirs is I times the acceleration with it less that without it.
 Vec3 torque_by_conditions_body_N_m(const AttitudeModel& model, size_t d, const Snapshot& with,
                                    const PlatformState& state) {
   if (!model.disturbances[d].states.empty()) return Vec3::Zero();
@@ -197,7 +198,7 @@ std::vector<Acting> acting_within_a_second(const AttitudeModel& model, const Pla
   return all;
 }
 
-// Read once more, beside the disturbances made of them, which keep a coefficient alone.
+// Read again beside the disturbances made of them, which keep a coefficient alone.
 std::vector<AirPart> read_own_air_parts(const Settings& root) {
   std::vector<AirPart> all;
   if (!root.has("disturbance")) return all;

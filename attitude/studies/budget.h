@@ -45,12 +45,12 @@ struct Budget {
 //     (30);
 //   [budget.light]: what power printed of the scene, for the comparison with the paper:
 //     source_to_cell, conversion (fractions), power_W, power_at_30_deg_W, torque_at_30_deg_N_m[3].
-// Only with one of the last two are the paper's figures told: other platforms are not its own.
-// The load on the bearing is the platform's weight. InputError for what is missing or unknown in
-// these tables.
+// Only with one of the last two are the paper's figures reported: other platforms are not its own.
+// The load on the bearing is the platform's weight. InputError for missing or unknown keys in these
+// tables.
 Budget read_budget(const Settings& root);
 
-// The same from values.
+// The budget from values.
 Budget make_budget(AttitudeModel model, const PlatformState& state);
 
 // The tables "budget" (by rank), "external_air" (Reynolds number and validity of the experiment's

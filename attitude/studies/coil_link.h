@@ -33,7 +33,8 @@ double mutual_inductance_H(const CircularFilament& a, const CircularFilament& b)
 // Maxwell's closed form: coaxial circles at an axial distance.
 double coaxial_inductance_H(double radius_a_m, double radius_b_m, double distance_m);
 
-// What the current in `source` does to the current in `target`, both 1 A; torque about a point.
+// Force and torque of the current in `source` on the current in `target`, both 1 A; torque about a
+// point.
 struct FilamentForce {
   Vec3 force_N_A2 = Vec3::Zero();
   Vec3 torque_N_m_A2 = Vec3::Zero();

@@ -36,7 +36,7 @@ double element_capture(double pattern, double tilt_rad) {
   return cosine > 0.0 ? std::min(1.0, pattern / cosine) : 0.0;
 }
 
-// What is taken leaves its momentum, what is mirrored twice the part along the normal. Only the
+// Absorbed power transfers its momentum, reflected power twice the part along the normal. Only the
 // force across the arm turns: of the first P/c sin θ, of the second nothing.
 BeamPressure beam_pressure(double taken_W, double mirrored_W, double tilt_rad, double height_m) {
   const double cosine = std::cos(tilt_rad);

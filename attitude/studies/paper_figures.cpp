@@ -17,7 +17,7 @@ namespace photorque {
 
 namespace {
 
-// What the paper does give.
+// Figures that the paper gives.
 constexpr double platform_mass_kg = 7.0;
 constexpr double one_rpm_rad_s = 2.0 * pi / 60.0;
 constexpr double limit_tilt_rad = 30.0 * degree_rad;
@@ -75,7 +75,7 @@ double year_of_dipole(double field_T) {
   return bisect(1900.0, 2025.0, stronger).low;  // it falls throughout
 }
 
-// The same cylinders laid down as eq. 22 has them, from the axis outwards.
+// The cylinders laid down as in eq. 22 has them, from the axis outwards.
 std::vector<AirPart> rails_at_the_axis(std::vector<AirPart> rails) {
   for (AirPart& rail : rails) {
     rail.shape = AirShape::radial_cylinder;

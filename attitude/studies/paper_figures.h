@@ -1,4 +1,4 @@
-// Every figure that the source paper prints about attitude, computed anew.
+// Every figure that the source paper prints about attitude, recomputed.
 //
 // The paper gives some inputs and leaves others out. What it leaves out stands in PaperInputs, each
 // value with where it comes from; nothing there is tuned to the figures. paper_sensitivities() says
@@ -17,18 +17,18 @@
 
 namespace photorque {
 
-// What tracing rays through the scene gives (commands power and torque-map), which is not done
-// here. NaN: not given.
+// Results of tracing (commands power and torque-map), which is not done here. NaN: not given.
 struct PaperLight {
-  double source_to_cell = std::numeric_limits<double>::quiet_NaN();     // fraction, at zero tilt
-  double conversion = std::numeric_limits<double>::quiet_NaN();         // fraction, at zero tilt
-  double power_W = std::numeric_limits<double>::quiet_NaN();            // of the array at zero tilt
-  double power_at_30_deg_W = std::numeric_limits<double>::quiet_NaN();  // every cell by itself
+  double source_to_cell = std::numeric_limits<double>::quiet_NaN();  // fraction, at zero tilt
+  double conversion = std::numeric_limits<double>::quiet_NaN();      // fraction, at zero tilt
+  double power_W = std::numeric_limits<double>::quiet_NaN();         // of the array at zero tilt
+  double power_at_30_deg_W =
+      std::numeric_limits<double>::quiet_NaN();  // sum of the cells' maximum powers
   // On the array, about the centre of rotation, tilted 30 deg about y.
   Vec3 torque_at_30_deg_N_m = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
 };
 
-// What the paper leaves out. Dimensions are those of scenes/stasis/parameters.toml.
+// Inputs that the paper omits. Dimensions are those of scenes/stasis/parameters.toml.
 struct PaperInputs {
   // Usual parts of a stepper-driven screw: a motor of 200 steps, 2 mm lead, a motor-sized mass.
   double step_angle_rad = 0.031415926535897931;  // 1.8 deg

@@ -10,8 +10,8 @@
 namespace photorque {
 
 // Value and derivatives at eight instants. `partial[k]` is the derivative with respect to the k-th
-// variable of the block that is being differentiated; which variables those are is the business of
-// whoever seeds them.
+// variable of the block that is being differentiated; which variables those are is the choice of
+// the caller that seeds them.
 struct DualLanes {
   static constexpr int block = 8;
   Lanes value;
@@ -66,7 +66,7 @@ struct DualLanes {
     const Lanes quotient = a.value * inverse;
     return chain(a, b, quotient, inverse, -quotient * inverse);
   }
-  // Factors that are constants need no derivatives of their own.
+  // Factors that are constants need no derivatives.
   friend DualLanes operator*(double a, const DualLanes& b) { return chain(b, a * b.value, a); }
   friend DualLanes operator*(const DualLanes& a, double b) { return chain(a, a.value * b, b); }
   friend DualLanes operator/(const DualLanes& a, double b) { return a * (1.0 / b); }

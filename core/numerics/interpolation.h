@@ -12,7 +12,7 @@ namespace photorque {
 
 // Point i of n Chebyshev points of the first kind, falling on [−1, 1]: cos π (i + ½)/n.
 double chebyshev_point(size_t n, size_t i);
-// The same, rising on [0, 1].
+// The Chebyshev point, rising on [0, 1].
 double chebyshev_fraction(size_t n, size_t i);
 
 // By how much the value at the point cos `angle_rad` of n enters the coefficient of T_k of the

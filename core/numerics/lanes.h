@@ -18,7 +18,7 @@ struct Lanes {
   Quad high;
 
   Lanes() = default;
-  // The same value in every lane; implicit, so that constants mix with lanes in formulas.
+  // One value in every lane; implicit, so that constants mix with lanes in formulas.
   Lanes(double x) : low{x, x, x, x}, high{x, x, x, x} {}  // NOLINT(google-explicit-constructor)
   Lanes(Quad a, Quad b) : low(a), high(b) {}
   explicit Lanes(const std::array<double, count>& x)

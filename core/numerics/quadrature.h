@@ -45,7 +45,7 @@ double integrate(const EightPointRule& rule, const Function& f, double low, doub
   return half * weighted_sum(rule, f, 0.5 * (low + high), half);
 }
 
-// The same over `panels` equal parts of [low, high], the rule in each.
+// Integral over `panels` equal parts of [low, high], the rule in each.
 template <typename Function>
 double integrate(const EightPointRule& rule, const Function& f, double low, double high,
                  int panels) {

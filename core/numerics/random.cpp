@@ -9,7 +9,7 @@ namespace {
 
 using namespace sobol_matrices;
 
-// What each byte of the index contributes: [dimension][byte][value]. The lowest byte is that of a
+// Contribution of each byte of the index: [dimension][byte][value]. The lowest byte is that of a
 // block.
 using ByteTables = std::array<std::array<std::array<uint32_t, 256>, 4>, sobol_dimensions>;
 constexpr ByteTables make_byte_tables() {

@@ -22,7 +22,7 @@ class RotationTableBuilder {
     begin();
     find_symmetry();
     if (table_.twists_ > 1) find_twists();
-    plant();
+    make_roots();
     refine();
     check();
     return std::move(table_);
@@ -121,7 +121,8 @@ class RotationTableBuilder {
     point.twist_rad = 2.0 * pi * uniform(index, 2);
     if (both_halves_ && uniform(index, 3) < 0.5) {
       point.half = 1;
-      // What of the other half is nearer to its pole than the largest angle allows is never seen.
+      // The part of the other half that is nearer to its pole than the largest angle allows is not
+      // visited.
       const double least = radius_at(pi - options_.max_angle_rad);
       if (radius < least) point.half = 0;
     }
@@ -319,7 +320,7 @@ class RotationTableBuilder {
     }
   }
 
-  void plant() {
+  void make_roots() {
     std::set<Key> wanted;
     table_.boxes_.clear();
     table_.values_.clear();
@@ -429,7 +430,7 @@ class RotationTableBuilder {
     throw NumericalError("no leaf of the table of light over attitude");
   }
 
-  // Fresh attitudes tell the error. Leaves that fail are cut, and others checked then.
+  // New attitudes give the error. Leaves that fail are cut, and others checked then.
   void check() {
     constexpr int rounds = 4;
     uint64_t next = 1000;

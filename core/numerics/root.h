@@ -35,7 +35,7 @@ RootBracket bisect(double low, double high, const Predicate& is_below, Bisection
   return {low, high};
 }
 
-// What newton_root() asks of a function at x.
+// The values of a function at x that newton_root() needs.
 struct NewtonStep {
   bool is_below;  // x lies below the root
   double length;  // from x to where Newton's method leads; 0: x is the root
@@ -67,7 +67,7 @@ struct FunctionAt {
   double curvature = 0.0;  // 0 where it is not known: only the speed depends on it
   double third = std::numeric_limits<double>::quiet_NaN();  // NaN where it is not known
   // Whether the derivatives describe the function as far as the root; the search does not end
-  // before. On a straight stretch they do not tell where it ends.
+  // before. On a straight part they do not show where it ends.
   bool close = true;
 };
 

@@ -106,7 +106,7 @@ constexpr std::array<std::array<uint32_t, 32>, sobol_dimensions> reversed_column
 }
 inline constexpr auto columns = reversed_columns();
 
-// What selects the scrambling of one dimension.
+// The seed of the scrambling of one dimension.
 inline uint32_t dimension_seed(const SobolStream& stream, int dimension) {
   return static_cast<uint32_t>(
       hash_words(stream.seed, stream.stream, stream.group, static_cast<uint64_t>(dimension)) >> 32);

@@ -4,8 +4,8 @@
 // It is tabulated in coordinates in which what depends on an attitude is smooth. u is a direction
 // fixed in the lab, seen from the body. Where u points is given on the half of the sphere about +z
 // or −z of the body by its stereographic projection from the other pole, p = 2 tan(θ/2) towards u,
-// |p| ≤ 2 on the half, 0 at the pole. What is left is the turn about that direction: the twist ψ of
-// the swing–twist decomposition. In quaternions q = (0, 0, ψ) ⊗ swing(p), both maps are rational
+// |p| ≤ 2 on the half, 0 at the pole. The remaining rotation is about that direction: the twist ψ
+// of the swing–twist decomposition. In quaternions q = (0, 0, ψ) ⊗ swing(p), both maps are rational
 // and have no singularity on their half, and light that is the same all round the direction depends
 // on p alone.
 //
@@ -85,7 +85,7 @@ class RotationTable {
   // All channels from `first` on, as many as `values` holds. NumericalError for an attitude more
   // than a twentieth beyond max_angle_rad.
   void at(const Quat& lab_from_body, size_t first, std::span<double> values) const;
-  // The same with the derivatives by w, x, y, z of the quaternion: slopes[4 · channel + component].
+  // Values and their derivatives by w, x, y, z of the quaternion: slopes[4 · channel + component].
   void at(const Quat& lab_from_body, size_t first, std::span<double> values,
           std::span<double> slopes) const;
 
@@ -132,7 +132,7 @@ class RotationTable {
   RotationTableError error_;
 };
 
-// Samples `function` and refines. `progress` is told the samples so far and what is done.
+// Samples `function` and refines. `progress` receives the samples so far and the task.
 // NumericalError when `max_samples` do not suffice.
 RotationTable make_rotation_table(
     const RotationFunction& function, const RotationTableOptions& options,

@@ -53,7 +53,7 @@ inline CirclePoint circle_point(uint32_t bits) {
   return {sin_quarter_turn(0.25 - size), sin_quarter_turn(x < 0.0 ? -folded : folded)};
 }
 
-// The same in single precision, twice as many at a time.
+// Sine and cosine in single precision, twice as many at a time.
 
 // A whole number as a float, rounded once. In halves, because AVX2 converts only signed integers.
 inline float single_of(uint32_t number) {

@@ -1,4 +1,4 @@
-// What a table of an experiment may hold: every key once, with type, unit, range, default and a
+// The contents of a table of an experiment: every key once, with type, unit, range, default and a
 // sentence.
 //
 // A reader's keys are typed constants (core/settings/typed_keys.h), which each room lists beside
@@ -30,7 +30,7 @@ struct Key {
     tables,  // an array of tables, or one table
     other,   // checked by its reader alone
   };
-  // What a value of TOML may look like where the reader takes several; bits.
+  // Forms of a TOML value where the reader accepts several; bits.
   enum Form : unsigned {
     a_number = 1,
     an_array = 2,
@@ -91,7 +91,7 @@ struct Key {
 
   // For keys that a table can do without and that have no constant for a default.
   Key optional() &&;
-  // The same, with the default in words: "the file's".
+  // The key with its default in words: "the file's".
   Key usually_is(std::string words) &&;
   Key that_completes() &&;
   Key with_error() &&;
@@ -102,7 +102,7 @@ struct Key {
 
 // Several lists of keys one after the other.
 std::vector<Key> joined(std::initializer_list<std::vector<Key>> lists);
-// Choices of words that bring no keys of their own.
+// Choices of words that bring no further keys.
 std::vector<Key::Choice> words(std::initializer_list<const char*> names);
 
 // Adds a choice; one of the same name gains its keys, of which those that either lacks are
@@ -112,14 +112,14 @@ void add_choice(std::vector<Key::Choice>& choices, Key::Choice added);
 // The units of a quantity, as suffixes of keys, in no order; of "per angle" those of angles.
 std::vector<KeyUnit> units_of(const std::string& dimension);
 
-// What a reader expects of a value, in the words of its messages: "a number > 0 W".
+// The expectation of a reader, in the words of its messages: "a number > 0 W".
 std::string expected_of(const Key& key);
 
 // The keys that a table holds which looks like this: `keys`, and those that its choices bring.
 std::vector<const Key*> keys_in(const SettingsNode::Table& table, const std::vector<Key>& keys);
 
 // Every key of the tree that is not among `keys`, or whose value has the wrong type, unit or range:
-// one error each. What is missing is left to the readers. `name` is how messages call the table.
+// one error each. Missing keys are left to the readers. `name` is how messages call the table.
 std::vector<InputError> misread_keys(const SettingsNode& table, const std::vector<Key>& keys,
                                      const std::string& name = "");
 

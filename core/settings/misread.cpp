@@ -1,4 +1,4 @@
-// What is wrong with the keys of a file, from their declarations alone.
+// Mistakes in the keys of a file, from their declarations alone.
 #include <algorithm>
 
 #include "core/settings/keys.h"

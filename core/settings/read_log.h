@@ -1,4 +1,4 @@
-// What the files of this room have in common.
+// Declarations shared by the files of this room.
 #pragma once
 
 #include <map>
@@ -9,7 +9,7 @@
 
 namespace photorque {
 
-// What was read and what was asked for: shared by all views of one root, so that finish() on the
+// The keys that were read and requested: shared by all views of one root, so that finish() on the
 // root sees what every part of the program did.
 struct Settings::Log {
   std::set<const SettingsNode*> read;
@@ -36,9 +36,9 @@ std::string describe_range(Range range, double factor, const std::string& unit);
 bool is_inside(double x, Range range);
 // "one of "a", "b"".
 std::string one_of(const std::vector<std::string>& choices);
-// The same for a word that is none of them, with the likest.
+// The expectation for a word that is none of them, with the most similar.
 std::string one_of(const std::vector<std::string>& choices, const std::string& instead_of);
-// What is expected in the place of an unknown key.
+// The keys that are expected in the place of an unknown one.
 std::string known_instead_of(std::string_view key, const std::set<std::string>& known);
 
 }  // namespace photorque

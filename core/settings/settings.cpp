@@ -23,7 +23,8 @@ size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-// " (is LIKE in line N meant?)" for the likest key that nobody has asked for yet, if there is one.
+// " (is LIKE in line N meant?)" for the most similar key that was not requested yet, if there is
+// one.
 std::string misspelled(std::string_view key, const SettingsNode::Table& table,
                        const std::set<std::string>& asked) {
   std::set<std::string> unasked;
@@ -85,7 +86,7 @@ std::string nearest(std::string_view word, const std::set<std::string>& candidat
   return best;
 }
 
-// The likest of the known ones, else the first of them all.
+// The most similar of the known ones, else the first of them all.
 std::string known_instead_of(std::string_view key, const std::set<std::string>& known) {
   constexpr size_t most = 12;
   if (const std::string likest = nearest(key, known); !likest.empty()) {
@@ -157,7 +158,7 @@ const SettingsNode* Settings::find(std::string_view key, double* factor) const {
 const SettingsNode& Settings::require(std::string_view key, double* factor,
                                       const std::string& expected) const {
   if (const SettingsNode* node = find(key, factor)) return *node;
-  // A key of the same stem with no or a wrong unit is the likeliest mistake.
+  // A key of the same stem with no or a wrong unit is the most likely mistake.
   const KeyUnit wanted = unit_of_key(key);
   if (!wanted.unit.empty()) {
     for (const auto& [other_key, node] : std::get<SettingsNode::Table>(node_->value)) {

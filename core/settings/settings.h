@@ -2,8 +2,8 @@
 //
 // A reader (TOML, glTF extras, command line) fills a tree of SettingsNode; the program reads it
 // through Settings. Every value is converted to SI here and nowhere else, from the unit that its
-// key names as a suffix. A key that nobody asked for is an error that suggests the nearest key that
-// somebody did ask for.
+// key names as a suffix. A key that was not requested is an error that suggests the nearest
+// requested key.
 #pragma once
 
 #include <cstdint>
@@ -62,11 +62,12 @@ struct UncertainVec3 {
 // A view of one table. Copies share the record of which keys were read.
 //
 // Keys carry their unit: `number("radius_m")` also accepts `radius_mm` when the user wrote that,
-// and always returns metres. Known suffixes are those of unit_of_key() below. Angles return
-// radians whatever the key says.
+// and always returns metres. Known suffixes are those of unit_of_key() below. Angles return radians
+// whatever the key says.
 //
-// Every accessor throws InputError with file, line, key, what was found and what was expected when
-// the key is missing (unless a default is given), of the wrong type, not finite, or out of range.
+// Every accessor throws InputError with file, line, key, the value found and the value expected
+// when the key is missing (unless a default is given), of the wrong type, not finite, or out of
+// range.
 class Settings {
  public:
   // `name` is how messages call this table; empty for the root of a file.
@@ -74,8 +75,8 @@ class Settings {
 
   bool has(std::string_view key) const;
 
-  // What a key of core/settings/typed_keys.h holds, within its range; its default, or `otherwise`,
-  // where the user did not write it.
+  // The value of a key of core/settings/typed_keys.h, within its range; its default, or
+  // `otherwise`, where the user did not write it.
   template <class TypedKey>
   auto get(const TypedKey& key) const {
     return key.read(*this);
@@ -123,7 +124,7 @@ class Settings {
   InputError error(std::string_view key, const std::string& found,
                    const std::string& expected) const;
 
-  // Throws InputError for the first key, here or below, that nobody read.
+  // Throws InputError for the first key, here or below, that was not read.
   void finish() const;
 
  private:

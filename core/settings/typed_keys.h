@@ -22,7 +22,7 @@
 
 namespace photorque {
 
-// What else there is to a key: the members of Key.
+// Further properties of a key: the members of Key.
 struct KeyTraits {
   bool optional = false;          // the table can do without it
   std::string_view usually = {};  // likewise: its default in words, where it is no constant
@@ -33,7 +33,7 @@ struct KeyTraits {
   bool varies = false;  // Key::range_varies; get(key.within(…)) reads it
 };
 
-// What keys of all types have.
+// Properties of keys of all types.
 template <class Self>
 struct TypedKey {
   std::string_view name, what;
@@ -41,7 +41,7 @@ struct TypedKey {
 
   constexpr operator std::string_view() const { return name; }
 
-  // The same key where its meaning or its need is another.
+  // The key with another meaning or need.
   constexpr Self meaning(std::string_view sentence) const {
     return changed([=](Self& key) { key.what = sentence; });
   }

@@ -22,8 +22,8 @@ std::string xml_text(std::string_view text);
 // NaN.
 std::string round_trip_number(double value);
 
-// For people: `significant` digits, a true minus sign, and a power of ten outside
-// [1e-3, 1e5): "812.3", "−1.127×10⁻⁹". NaN is "–".
+// A number as printed: `significant` digits, a true minus sign, and a power of ten outside [1e-3,
+// 1e5): "812.3", "−1.127×10⁻⁹". NaN is "–".
 std::string readable_number(double value, int significant = 4);
 
 // "10⁻⁹" for −9; empty for 0.

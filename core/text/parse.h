@@ -26,7 +26,7 @@ std::vector<std::string_view> lines_of(std::string_view text);
 // The cells between separators, each unquoted(); one more than there are separators. A separator
 // inside quotes separates all the same. Where blanks separate, any number of them does.
 std::vector<std::string_view> cells_of(std::string_view line, char separator = ',');
-// The same into `cells`, for readers of millions of lines.
+// Splits a line into `cells`, for readers of millions of lines.
 void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells);
 
 // The pieces between any number of separating characters; none is empty.
@@ -60,7 +60,7 @@ class DataLines {
 // for anything else, blanks included.
 std::optional<double> number_in(std::string_view text);
 
-// The same where nothing else will do: InputError at `where` under the key `what`.
+// A number that is required: InputError at `where` under the key `what`.
 double require_number(std::string_view text, const InputLocation& where, const std::string& what,
                       const std::string& expected = "a number");
 

@@ -345,10 +345,11 @@ std::vector<std::string> contradicted_beliefs(const Trial& chosen,
     if (is_found || !p.has_prior() || !(std::abs(off) > limits.doubtful_belief_sigma)) continue;
     char text[200];
     const bool is_contradicted = std::abs(off) > limits.contradicted_belief_sigma;
-    std::snprintf(text, sizeof text, "%s: stated %.4g ± %.2g, fitted %.4g: %s by %.1f σ",
-                  p.name.c_str(), p.mean, p.sigma, p.value,
-                  is_contradicted ? "the belief is contradicted" : "the belief is doubtful",
-                  std::abs(off));
+    std::snprintf(
+        text, sizeof text, "%s: stated %.4g ± %.2g, fitted %.4g: %s by %.1f σ", p.name.c_str(),
+        p.mean, p.sigma, p.value,
+        is_contradicted ? "the nominal value is contradicted" : "the nominal value is doubtful",
+        std::abs(off));
     sentences.emplace_back(text);
   }
   return sentences;

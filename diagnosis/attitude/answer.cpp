@@ -136,7 +136,7 @@ bool is_watched(const NominalModel& nominal, const RecordedData& data) {
          (seen.has(Scalar::position_x) && seen.has(Scalar::position_y));
 }
 
-// A body that turns about three axes has so many ways to bend what is believed of it that names
+// A body that turns about three axes has so many ways to bend its nominal model that names
 // come out of anything.
 bool is_simple(const NominalModel& nominal) {
   return nominal.model.platform.turns_about_one_axis() || nominal.model.platform.slides();
@@ -148,7 +148,7 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
                Fit& nominal_fit) {
   const Thresholds& limits = options.limits;
   // A machine of which little is known, far from its recording: a search at the noise of the
-  // readings would find nothing but ways of bending what is believed.
+  // readings would find nothing but ways of bending the nominal model.
   const bool is_far = !is_watched(nominal, data) &&
                       !(nominal_fit.chi2_per_sample() < limits.diverged_chi2_per_sample);
   Answer fine;

@@ -71,8 +71,9 @@ constexpr const char* longer = "record longer, at larger tilt and over a wider r
 bool is_told_by_charge(const std::string& kind, const std::string& rival) {
   const auto says = [](const std::string& one, const std::string& other) {
     const DisturbanceKind* known = find_kind(one);
-    return known != nullptr && std::ranges::any_of(known->screening.alike, [&](const Likeness& l) {
-             return l.kind == other && l.told_apart_by == Requirement::charge;
+    return known != nullptr &&
+           std::ranges::any_of(known->screening.confusable_kinds, [&](const ConfusableKind& l) {
+             return l.kind == other && l.distinguished_by == Requirement::charge;
            });
   };
   return says(kind, rival) || says(rival, kind);

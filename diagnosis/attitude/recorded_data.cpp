@@ -283,7 +283,7 @@ bool tame_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
   const int64_t in_bursts = drop_bursts(residuals_of(near, data.train), limits.noise, data.train);
   const std::vector<Prediction> residuals = residuals_of(near, data.train);
   const HeavyTails tails = heavy_tails(residuals, data.train, limits.noise);
-  tame(tails, residuals, data.train);
+  robustify(tails, residuals, data.train);
   const std::vector<Prediction> tamed = residuals_of(near, data.train);
   bool changed = in_bursts > 0;
   for (int k = 0; k < 6; ++k) {
@@ -300,7 +300,7 @@ bool tame_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
   const Fit held = propagate_model(near, data.held, limits);
   if (std::isfinite(held.chi2)) {
     held_in_bursts = drop_bursts(residuals_of(held, data.held), limits.noise, data.held);
-    tame(tails, residuals_of(held, data.held), data.held);
+    robustify(tails, residuals_of(held, data.held), data.held);
   }
   if (const long long all = in_bursts + held_in_bursts; all > 0) {
     data.outliers += all;

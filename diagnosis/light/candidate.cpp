@@ -108,7 +108,7 @@ LightCandidates light_candidates(const LightLab& lab, const LightBelief& nominal
   LightCandidates all{{}, limits, &lab, nominal};
   for (const LightEffectKind& kind : all_light_effect_kinds()) {
     if (!can_show(kind, runs)) continue;
-    // What is believed of the tilt already is a nuisance of every trial.
+    // A nominal tilt with a sigma is a nuisance parameter of every trial.
     const bool is_believed = std::ranges::any_of(
         nominal.uncertain, [&](const LightPrior& p) { return p.key.starts_with(kind.name + "."); });
     if (is_believed) continue;

@@ -121,7 +121,7 @@ Disturbance believed_tilt(const NominalModel& nominal, const Tilt& tilt) {
 
 // As effects of either domain, where it is beyond doubt.
 void add_tilt(const std::optional<Tilt>& tilt, Diagnosis& motion, Diagnosis& light) {
-  // What was believed of it stands in no experiment.
+  // Its nominal value stands in no experiment.
   const auto is_tilt = [](const FittedParameter& p) {
     return p.key == tilt_belief || p.key.ends_with(std::string("].") + tilt_key);
   };

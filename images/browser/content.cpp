@@ -65,7 +65,7 @@ Json table_json(const Table& table, size_t most_rows) {
           {"columns", std::move(columns)}};
 }
 
-// Of every stretch of points the lowest and the highest, so that no peak is lost.
+// Of every interval of points the lowest and the highest, so that no peak is lost.
 std::vector<size_t> kept_points(const std::vector<double>& y, size_t most) {
   std::vector<size_t> kept;
   const size_t stretches = std::max<size_t>(1, most / 2);

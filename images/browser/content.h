@@ -1,4 +1,4 @@
-// What a page says, as the JSON that its script reads, and that script.
+// The content of a page as the JSON that its script reads, and that script.
 #pragma once
 
 #include <cstdint>

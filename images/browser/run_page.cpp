@@ -100,8 +100,8 @@ std::string page_html(const RunPage& page, const PageLimits& limits) {
   body += "<script id=\"run\" type=\"application/json\">";
   const std::string content = script_text(page_content(page, limits));
   body += content;
-  // What the content holds cannot name its own hash, so that no other script runs; and the same
-  // run gives the same page.
+  // The content cannot name its own hash, so that no other script runs; and the same run gives the
+  // same page.
   const std::string nonce = content_hash(content);
   body += "</script>\n<script nonce=\"" + nonce + "\">\n";
   body += page_script();

@@ -26,7 +26,7 @@ struct PageFigure {
 struct PowerStage {
   std::string label;      // "absorbed by plate"
   Estimate power_W;       // that is lost here, or at the start and the end, that is there
-  bool is_total = false;  // start, end, and what is left between
+  bool is_total = false;  // start, end, and the remainders between
 };
 
 // A plot whose x axis is that of the slider: a line follows it.

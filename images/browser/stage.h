@@ -1,4 +1,4 @@
-// What a page shows in three dimensions, as plain data: a body among lamps, in one state or many.
+// The three-dimensional scene of a page, as plain data: a body among lamps, in one state or many.
 #pragma once
 
 #include <optional>
@@ -75,7 +75,7 @@ struct StageState {
   std::vector<Estimate> figures = {};  // one for each of the stage's
 };
 
-// What a slider moves along. Several axes span a grid of states, the first running fastest.
+// The axis of a slider. Several axes span a grid of states, the first running fastest.
 struct StageAxis {
   std::string name;  // "tilt"
   std::string unit;
@@ -112,7 +112,7 @@ struct SceneStage {
   std::vector<size_t> light_of_state;  // which of them a state shows; empty: each its own
   StageCamera camera;
   double radius_m = 1.0;    // of a sphere about the origin that holds the body
-  std::string remark = {};  // what is not as it is in reality, for people
+  std::string remark = {};  // difference from reality, as printed
 };
 
 }  // namespace photorque

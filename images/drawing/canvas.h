@@ -68,7 +68,7 @@ inline constexpr double quarter_turn_rad = std::numbers::pi / 2.0;
 // The advance of `text` in DejaVu Sans, in points; the same on every canvas. `text` is cleaned.
 double text_width(const std::string& text, const TextStyle& style);
 
-// What a PDF file says about itself.
+// The metadata of a PDF file.
 struct PdfText {
   std::string title, subject, program;
 };
@@ -98,7 +98,7 @@ class Canvas {
   // Pixels of 0xAARRGGBB without premultiplication, row 0 at the top of `box`, in sharp cells.
   void image(const PageBox& box, int width, int height, std::span<const uint32_t> argb);
 
-  // What `draw` does is confined to `box`.
+  // Draws with clipping to `box`.
   template <class Draw>
   void clipped(const PageBox& box, const Draw& draw) {
     begin_clip(box);

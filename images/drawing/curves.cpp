@@ -138,7 +138,7 @@ bool meets(const PageBox& box, const PagePoint& a, const PagePoint& b) {
   return clip(a.x, b.x - a.x, box.x, box.right()) && clip(a.y, b.y - a.y, box.y, box.bottom());
 }
 
-// What a hanging bar amounts to, over it.
+// The value of a hanging bar, above it.
 void draw_bar_numbers(Canvas& canvas, const ChartPanel& panel) {
   TextStyle style = tick_style;
   style.align = TextAlign::centre;
@@ -173,7 +173,7 @@ bool covers_a_curve(const ChartPanel& panel, const PageBox& box) {
   return false;
 }
 
-// What stands beside a curve's name in the legend; `left` is the middle of its left side.
+// The sample beside a curve's name in the legend; `left` is the middle of its left side.
 void draw_sample(Canvas& canvas, const Plot::Curve& curve, const Stroke& stroke,
                  const PagePoint& left) {
   const double middle_x = left.x + 0.5 * legend_sample;

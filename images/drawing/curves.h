@@ -10,11 +10,11 @@
 
 namespace photorque {
 
-// The colour and dashes of the i-th curve. Seven colours that colour-blind readers tell apart, then
-// the same with dashes. Source: M. Okabe and K. Ito, "Color Universal Design" (2008); their yellow
-// is left out because it is lost on white.
+// The colour and dashes of the i-th curve. Seven colours that are distinct for colour-blind
+// readers, then these with dashes. Source: M. Okabe and K. Ito, "Color Universal Design" (2008);
+// their yellow is left out because it is lost on white.
 Stroke curve_stroke(size_t index);
-// The same for a curve that may have a colour, width and dashes of its own; `index` is its place.
+// The stroke of a curve that may have its own colour, width and dashes; `index` is its place.
 Stroke curve_stroke(const Plot::Curve& curve, size_t index);
 
 // One pair of axes on the page.
@@ -28,9 +28,9 @@ struct ChartPanel {
   PagePoint at(double x_value, double y_value) const;
 };
 
-// The same line with at most four points per `resolution` of x: first, lowest, highest, last. Only
-// where x never falls and there are more points than that; other lines return unchanged.
-// What is drawn differs by less than `resolution`; a million samples stay a small SVG file.
+// A line thinned to at most four points per `resolution` of x: first, lowest, highest, last. Only
+// where x never falls and there are more points than that; other lines return unchanged. What is
+// drawn differs by less than `resolution`; a million samples stay a small SVG file.
 std::vector<PagePoint> thinned(std::span<const PagePoint> line, double resolution);
 
 // Half the width of a bar, in units of x.

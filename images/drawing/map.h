@@ -1,4 +1,4 @@
-// A map as a picture for people: axes, colour bar, unit, title, caption.
+// A map as a picture: axes, colour bar, unit, title, caption.
 #pragma once
 
 #include <cstdint>

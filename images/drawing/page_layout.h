@@ -1,4 +1,4 @@
-// What stands around a picture's body: title, caption, provenance, colour bar.
+// The frame of a picture: title, caption, provenance, colour bar.
 #pragma once
 
 #include <string>

@@ -17,7 +17,7 @@
 
 namespace photorque {
 
-// What rays through a picture hit, `oversampling`² rays per pixel on a regular grid. Every array
+// Hits of the rays through a picture, `oversampling`² rays per pixel on a regular grid. Every array
 // holds (width·oversampling)·(height·oversampling) samples, row 0 at the top of the picture.
 struct SceneView {
   int width = 0;  // of the picture in pixels
@@ -45,7 +45,7 @@ std::vector<float> edge_strength(const SceneView& view);
 // values.
 Picture shaded(const SceneView& view, const ColourScale& scale);
 
-// What `shaded` paints where nothing is hit.
+// The colour of `shaded` where nothing is hit.
 inline constexpr Rgb scene_background = {0.957, 0.957, 0.957};
 // Rays of light. Okabe and Ito's orange, darker: it must be seen on the background and on a map.
 inline constexpr Rgb ray_colour = {0.85, 0.55, 0.0};
@@ -64,8 +64,8 @@ struct Pinhole {
   Vec3 direction(const SceneView& view, int column, int row) const;
 };
 
-// The same camera moved so that all points are in a picture of this height over width, with some
-// room around them; it looks along the same direction.
+// The camera moved so that all points are in a picture of this height over width, with some room
+// around them; it looks along the same direction.
 Pinhole framing(const Pinhole& camera, std::span<const Vec3> points_m, double height_over_width);
 
 // A round opening that shines to one side, and is dark on the other.

@@ -82,7 +82,7 @@ Eigen::Vector3d as_light(const Rgb& colour) {
           linear_from_encoded(colour.blue)};
 }
 
-// A headlight alone flattens level surfaces; a sky tells up from down.
+// A headlight alone flattens level surfaces; a sky shows the upward direction.
 double brightness(const SceneView& view, size_t sample) {
   const double sky = 0.5 + 0.5 * static_cast<double>(view.normal_lab[sample].z());
   return 0.30 + 0.30 * sky + 0.40 * static_cast<double>(view.cos_view[sample]);

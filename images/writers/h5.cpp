@@ -15,7 +15,7 @@
 namespace photorque::kinds::h5 {
 namespace {
 
-// Below a group, under a name that nobody else has there.
+// Below a group, under a unique name.
 std::string place_for(const Hdf5File& file, const std::string& group, const std::string& name) {
   std::string place = group + "/" + Hdf5File::part(name);
   if (file.has(place)) throw InputError({}, name, "two results with this name", "different names");

@@ -55,7 +55,7 @@ hid_t memory_only() {
 }
 
 // Texts have a fixed length, which every reader knows; ASCII where it will do, as VTK's reader
-// wants.
+// requires.
 hid_t text_type(size_t length, bool ascii) {
   const hid_t type = required(H5Tcopy(H5T_C_S1));
   H5Tset_size(type, std::max<size_t>(1, length));

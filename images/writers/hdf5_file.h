@@ -20,7 +20,7 @@ class Hdf5File {
   Hdf5File(const Hdf5File&) = delete;
   Hdf5File& operator=(const Hdf5File&) = delete;
 
-  // What stands between slashes, of a name that may hold any sign.
+  // A part of an HDF5 path, from a name that may hold any character.
   static std::string part(const std::string& name);
 
   void group(const std::string& place);

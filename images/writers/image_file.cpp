@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 std::string bytes_of(const fs::path& path, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
                      const void* samples) {
   const std::string name = path.string();
-  OIIO::Filesystem::IOVecOutput bytes;  // outlives `output`, whose destructor writes what is left
+  OIIO::Filesystem::IOVecOutput bytes;  // outlives `output`, whose destructor writes the rest
   const auto output = OIIO::ImageOutput::create(name);
   const auto check = [&](bool succeeded) {
     if (succeeded) return;

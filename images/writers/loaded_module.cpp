@@ -1,4 +1,4 @@
-// The module: the functions of images/writers/image_file.h for whoever loads it.
+// The module: the functions of images/writers/image_file.h for the program that loads it.
 #include "images/writers/loading.h"
 
 extern "C" __attribute__((visibility("default"))) const photorque::PictureFunctions*

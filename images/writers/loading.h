@@ -10,7 +10,7 @@
 
 namespace photorque {
 
-// What the module gives to the program that loads it.
+// The functions of the module for the program that loads it.
 struct PictureFunctions {
   std::string build;  // version and hash of the sources: the program's own, or it is refused
   decltype(&write_exr) exr;

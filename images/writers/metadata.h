@@ -1,4 +1,4 @@
-// What every file says about itself, and maps as channels of image files.
+// Metadata of every file, and maps as channels of image files.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -28,7 +28,7 @@ std::vector<ImageChannel> map_channels(const Map& map);
 // Description: map_json in one line. Texts and numbers: "photorque:unit", "photorque:x_low", …
 ImageMetadata map_metadata(const Map& map, const Provenance& provenance);
 
-// The same for a picture without a grid: description is {"title", "provenance"}.
+// Metadata of a picture without a grid: description is {"title", "provenance"}.
 ImageMetadata picture_metadata(const std::string& title, const Provenance& provenance);
 
 }  // namespace photorque

@@ -1,4 +1,4 @@
-// Maps and plots as PNG pictures for people.
+// Maps and plots as PNG pictures.
 //
 // "Description" is JSON with unit, extents and provenance.
 #include "core/text/format.h"
@@ -32,7 +32,7 @@ class PngWriter final : public Writer {
 }  // namespace
 
 WriterKind kind() {
-  return {"png", "Maps with colour bar and plots, as pictures for people",
+  return {"png", "Maps with colour bar and plots, as pictures",
           [] { return std::make_unique<PngWriter>(); }};
 }
 

@@ -19,8 +19,8 @@ std::vector<std::filesystem::path> write_product(const Product& product,
                                                  const std::filesystem::path& folder,
                                                  const std::vector<std::string>& formats = {});
 
-// The same straight into `folder`, which may then hold a part when something fails: for folders
-// that are published as one (StagedFiles).
+// Writes directly into `folder`, which may then hold a part when something fails: for folders that
+// are published as one (StagedFiles).
 std::vector<std::filesystem::path> write_formats(const Product& product,
                                                  const Provenance& provenance,
                                                  const std::filesystem::path& folder,
@@ -28,8 +28,8 @@ std::vector<std::filesystem::path> write_formats(const Product& product,
 
 inline constexpr const char* summary_schema = "photorque.summary/1";
 
-// What a run cost; left out where unknown. The wall time is the only number that differs between
-// two equal runs, and stands on a line of its own.
+// The cost of a run; left out where unknown. The wall time is the only number that differs between
+// two equal runs, and stands on a separate line.
 struct RunCost {
   std::optional<double> wall_time_s = {};
   std::optional<uint64_t> rays = {};

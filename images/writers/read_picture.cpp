@@ -45,7 +45,7 @@ uint32_t checksum_of(std::string_view bytes) {
 }
 
 // Whether every chunk of a PNG is there and as it was written: of one that is not, its library says
-// so on the terminal, beside the one line that this program promises.
+// so on the terminal, beside the one line of this program.
 bool has_whole_chunks(std::string_view png) {
   constexpr size_t signature = 8,
                    around = 12;  // of a chunk: length and type before, checksum after
@@ -62,8 +62,8 @@ bool has_whole_chunks(std::string_view png) {
 }
 
 // Width and height by the header: libraries make room for all of a progressive JPEG as soon as they
-// open it. Nothing where there is no header, of which they tell.
-// Source: ITU-T T.81, annex B; ISO/IEC 15948:2003, clause 11.2.2.
+// open it. Nothing where there is no header. Source: ITU-T T.81, annex B; ISO/IEC 15948:2003,
+// clause 11.2.2.
 std::optional<std::array<int64_t, 2>> stated_size(std::string_view bytes) {
   constexpr size_t png_width = 16, png_end = 24, frame_bytes = 9;
   if (bytes.starts_with("\x89PNG")) {
@@ -129,7 +129,7 @@ LinearPicture read_picture(const std::string& bytes) {
   const auto input =
       OIIO::ImageInput::open(is_png ? "picture.png" : "picture.jpg", &wanted, &memory);
   if (!input) {
-    OIIO::geterror();  // not to be found by whoever asks next
+    OIIO::geterror();  // cleared for the next caller
     throw wrong;
   }
   const OIIO::ImageSpec& spec = input->spec();

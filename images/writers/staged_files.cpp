@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* list_name = "files.json";
-// What tells of all other files: goes first and comes last.
+// The files that describe all others: goes first and comes last.
 constexpr const char* heads[] = {"summary.json", "diagnosis.json"};
 
 bool is_head(const std::string& name) {
@@ -51,7 +51,7 @@ std::set<std::string> listed(const Json& lists, const std::string& command) {
   return names;
 }
 
-// What one command has just written is no other's any more.
+// Files that one command has just written leave the lists of the others.
 void write_lists(const fs::path& path, Json lists, const std::string& command,
                  const std::set<std::string>& names, const Provenance& provenance) {
   for (auto& [other, list] : lists.items()) {
@@ -65,7 +65,7 @@ void write_lists(const fs::path& path, Json lists, const std::string& command,
   write_file_whole(path, all.dump(2) + "\n");
 }
 
-// What no command lists is somebody's own: it goes out of the way of results of that name.
+// A file that no command lists is the user's: it goes out of the way of results of that name.
 void keep_own_files(const fs::path& folder, const Json& lists, const std::set<std::string>& now) {
   std::set<std::string> results = {list_name};
   for (const auto& [command, list] : lists.items()) results.merge(listed(lists, command));
@@ -151,7 +151,7 @@ std::vector<fs::path> StagedFiles::publish_as(const std::string& command,
   keep_own_files(folder_, lists, now);
   std::set<std::string> ever = listed(lists, command);
   ever.insert(now.begin(), now.end());
-  // Whoever is killed from here on leaves a list of everything that may stand here.
+  // A run killed from here on leaves a list of everything that may stand here.
   write_lists(list_path, lists, command, ever, provenance);
   published_ = true;
   std::error_code ignored;

@@ -29,11 +29,11 @@ class StagedFiles {
   // Moves all files to where they belong and returns their paths, in the order of their names.
   std::vector<std::filesystem::path> publish();
 
-  // The same for the results of one command, which replace those of its last run in this folder:
+  // Publishes the results of one command, which replace those of its last run in this folder:
   // files.json lists what a command wrote, and files of the list that were not written again go
   // away. What no command lists and has the name of a result is kept beside it as NAME~.
-  // summary.json (of `diagnose`, diagnosis.json) goes first and comes last: where it stands, all
-  // that it tells of is of one run.
+  // summary.json (of `diagnose`, diagnosis.json) goes first and comes last: where it exists, all
+  // files that it describes belong to one run.
   std::vector<std::filesystem::path> publish_as(const std::string& command,
                                                 const Provenance& provenance);
 

@@ -1,6 +1,6 @@
 // Plots as scalable pictures.
 //
-// <title> holds the title, <desc> the provenance for people, <metadata> the same as JSON.
+// <title> holds the title, <desc> the provenance as text, <metadata> the same as JSON.
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text/format.h"

@@ -1,10 +1,10 @@
 // Maps as VTKHDF files (ImageData, version 1.0), for ParaView and VTK.
 //
 // A point stands in the middle of every bin: PointData "value" and "standard_error". VTK's reader
-// wants a volume (9.1 writes beyond its memory for a flat image, and misreads CellData), so the map
+// needs a volume (9.1 writes beyond its memory for a flat image, and misreads CellData), so the map
 // is a sheet of two equal layers, and a single row or column stands twice too. What VTK knows
-// nothing of stands in attributes of the group PointData: title, unit, labels of the axes.
-// Source of the layout: Kitware, "VTKHDF file format" (VTK documentation, release 9.1).
+// nothing of stands in attributes of the group PointData: title, unit, labels of the axes. Source
+// of the layout: Kitware, "VTKHDF file format" (VTK documentation, release 9.1).
 #include <algorithm>
 
 #include "images/drawing/map.h"
@@ -14,7 +14,7 @@
 namespace photorque::kinds::vtkhdf {
 namespace {
 
-// Where the reader wants two, one is repeated.
+// Where the reader needs two, one is repeated.
 struct Sheet {
   int width, height;
   static constexpr int layers = 2;

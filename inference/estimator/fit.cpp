@@ -178,7 +178,7 @@ class Fitter {
     const double least_gain = is_brief ? gain_in_first_windows : options_.min_gain;
     Outlook outlook(is_whole ? options_.worth_chi2 : infinity, is_whole ? options_.creep : 0.0,
                     most);
-    // After a step that went as foretold the next is likely to be taken: its derivatives, which
+    // After a step that went as predicted the next is likely to be taken: its derivatives, which
     // hold χ² as well, are asked for at once.
     bool is_on_course = false, was_refused = false;
     for (int iteration = 0; iteration < most; ++iteration) {
@@ -211,7 +211,7 @@ class Fitter {
       }
       now_ = std::move(tried);
       is_on_course = at.sums.chi2 < now.sums.chi2 - 0.25 * predicted_gain;
-      // In a curved valley a damping of a tenth would be refused again, at every second step.
+      // Along a curved minimum a damping of a tenth would be refused again, at every second step.
       const double eased = was_refused ? damping : damping * 0.1;
       damping = std::max(is_on_course ? eased : damping * 3.0, options_.min_damping);
       was_refused = false;

@@ -28,7 +28,7 @@ py::array view(const std::vector<Vec3>& vectors, const std::vector<py::ssize_t>&
 py::array view(const std::vector<Estimate>& estimates, double Estimate::*number, size_t rows,
                size_t columns, const py::object& owner);
 
-// For numbers that nobody owns: a copy.
+// For numbers without an owner: a copy.
 py::array copy_of(const std::vector<double>& numbers);
 py::array copy_of(const Vec3& vector);
 

@@ -47,7 +47,7 @@ Call::Call(std::filesystem::path experiment, py::object progress, py::object log
 Call::~Call() = default;
 
 Console Call::console() const {
-  // Workers of the library report too: they neither wait for the lock nor hear signals, but stop
+  // Workers of the library report too: they neither wait for the lock nor handle signals, but stop
   // with the caller.
   const auto is_caller = [state = state_.get()] {
     return std::this_thread::get_id() == state->caller;

@@ -1,5 +1,5 @@
-// One call from Python into the library: other Python threads go on meanwhile, progress is told,
-// Ctrl-C is heard.
+// One call from Python into the library: other Python threads go on meanwhile, progress is
+// reported, Ctrl-C ends the run.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -26,8 +26,8 @@ class Call {
   // To be handed to the run. What a callback raises, and Ctrl-C, ends the run at the next word.
   Console console() const;
 
-  // For code of the run that calls Python by itself and meets an error there: ends the run with it.
-  // Always throws.
+  // For code of the run that calls Python and meets an error there: ends the run with it. Always
+  // throws.
   using Failing = std::function<void(py::error_already_set)>;
   Failing failing() const;
 

@@ -14,7 +14,7 @@ std::shared_ptr<CheckReport> check_of(const ExperimentHandle& experiment) {
   return call.run([&] { return std::make_shared<CheckReport>(run_check(experiment.options)); });
 }
 
-// What every run does beside its work: options, callbacks, the lock let go and taken.
+// Common tasks of every run: options, callbacks, the lock let go and taken.
 std::shared_ptr<RunOptions> nothing(const ExperimentHandle& experiment, int threads,
                                     const py::object& seed, const py::object& progress,
                                     const py::object& log) {

@@ -61,7 +61,7 @@ void bind_diagnosis(py::module_& module) {
     return [member](const DiagnosisHandle& run) { return run.diagnosis.*member; };
   };
   py::class_<DiagnosisHandle, std::shared_ptr<DiagnosisHandle>>(
-      module, "Diagnosis", "What is missing from the experiment, and how sure that is.")
+      module, "Diagnosis", "The missing effects of the experiment, and their probability.")
       .def_property_readonly(
           "verdict", [](const DiagnosisHandle& run) { return name_of(run.diagnosis.verdict); },
           "\"consistent\", \"missing_physics\" or \"unexplained\".")
@@ -81,7 +81,7 @@ void bind_diagnosis(py::module_& module) {
             return run.improved(folder);
           },
           py::arg("folder") = ".",
-          "The experiment with what was found, as TOML, as it would stand in a folder.")
+          "The improved experiment, as TOML, as it would stand in a folder.")
       .def_property_readonly(
           "report_html", [](const DiagnosisHandle& run) { return run.report(); },
           "A page with charts.")

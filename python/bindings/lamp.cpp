@@ -159,7 +159,7 @@ class OwnLamp final : public Emitter {
   std::vector<double> edges_rad_, intensity_;
 };
 
-// What the provenance knows the lamp by: its light, which says more than its text.
+// The identity of the lamp in the provenance: its light, which says more than its text.
 std::string hash_of(const Beam& beam) {
   constexpr uint32_t rays = 16 * sobol_block;
   std::string bytes;

@@ -1,4 +1,4 @@
-// Lamps written in Python: for trying one out before it becomes a kind of its own.
+// Lamps written in Python: for trying one out before it becomes a kind.
 #pragma once
 
 #include <pybind11/pybind11.h>

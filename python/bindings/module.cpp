@@ -16,7 +16,7 @@ PYBIND11_MODULE(_photorque, module) {
   module.attr("__version__") = build.version;
   module.attr("git_hash") = build.git_hash;
   py::register_exception<InputError>(module, "InputError", PyExc_ValueError).doc() =
-      "The input is wrong and can be repaired: one line with file, line, key, what was found and "
+      "The input is wrong and can be repaired: one line with file, line, key, the value found and "
       "what was expected.";
   py::register_exception<NumericalError>(module, "NumericalError", PyExc_ArithmeticError).doc() =
       "The input is legal and the computation failed.";

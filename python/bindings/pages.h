@@ -1,4 +1,4 @@
-// What runs show in a browser and in viewers of glTF, from Python.
+// Pages of runs for browsers and glTF viewers, from Python.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -1,4 +1,4 @@
-// What every run gives: figures with errors, tables, maps, provenance, files.
+// The results of every run: figures with errors, tables, maps, provenance, files.
 #pragma once
 
 #include <pybind11/pybind11.h>

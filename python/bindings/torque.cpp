@@ -10,7 +10,7 @@ namespace {
 
 using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-// What a law may depend on: time, quaternion (w, x, y, z), rate.
+// Inputs of a law: time, quaternion (w, x, y, z), rate.
 constexpr size_t variables = 8;
 using Variables = std::array<double, variables>;
 using Torque = std::array<double, 3>;

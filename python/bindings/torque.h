@@ -1,4 +1,4 @@
-// Torques written in Python: for trying a law out before it becomes a kind of its own.
+// Torques written in Python: for trying a law out before it becomes a kind.
 #pragma once
 
 #include <pybind11/pybind11.h>

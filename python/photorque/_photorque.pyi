@@ -91,7 +91,7 @@ class FluxMap:
     @property
     def extent(self) -> tuple[float, float, float, float]: ...
 
-# What every run has.
+# Attributes of every run.
 class _Result:
     @property
     def figures(self) -> dict[str, Estimate]: ...

@@ -147,7 +147,7 @@ class Client:
                 continue
             self._run, measurement = found
             if measurement.sequence <= self._last_sequence:
-                # Asked once more in lockstep, perhaps because the answer was lost.
+                # Repeated in lockstep, perhaps because the answer was lost.
                 if measurement.sequence == self._last_sequence and self._last_command:
                     self._open().send(self._last_command)
                 continue

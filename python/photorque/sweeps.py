@@ -42,7 +42,7 @@ def sweep(
     progress: Callable[[str, float], None] | None = None,
 ) -> Sweep:
     """Runs every combination of the keys in `axes`, the last running fastest: any function of an experiment
-    that gives figures (trace, power, torque_map, propagate, a lambda with options of its own).
+    that gives figures (trace, power, torque_map, propagate, a lambda with other options).
 
     `figures` are names in its `figures` (all, if left out). The first error ends it. Nothing is kept on
     disk: for plans of many runs, random plans, means, constraints and searches there are the commands

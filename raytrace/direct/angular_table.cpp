@@ -35,7 +35,7 @@ double step_integral(const std::vector<double>& v, size_t i) {
 AngularTable::AngularTable(const Emitter& emitter, const std::vector<double>& edges_rad) {
   constexpr int most_splits = 6;
   double low_rad = 0.0;
-  std::vector<size_t> ends;  // of the stretches between two edges
+  std::vector<size_t> ends;  // of the intervals between two edges
   for (const double high_rad : edges_rad) {
     add_segment(emitter, low_rad, high_rad, most_splits);
     ends.push_back(segments_.size() - 1);
@@ -50,7 +50,7 @@ AngularTable::AngularTable(const Emitter& emitter, const std::vector<double>& ed
   find_angles(edges_rad);
 }
 
-// Halves the stretch while its even steps do not follow the intensity.
+// Halves the interval while its even steps do not follow the intensity.
 void AngularTable::add_segment(const Emitter& emitter, double low_rad, double high_rad,
                                int splits) {
   constexpr double inside = 1.0 - 1e-14;  // a profile may end at the edge itself

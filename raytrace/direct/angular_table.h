@@ -16,7 +16,7 @@ class AngularTable {
   AngularTable(const Emitter& emitter, const std::vector<double>& edges_rad);
 
   // Intensity per flux [1/sr]; zero beyond the last edge. Interpolated to 1e-7 of the largest of
-  // its stretch between two edges.
+  // its interval between two edges.
   double intensity_per_flux(double rise) const {
     const Segment* segment = segment_at(rise);
     return segment ? segment->intensity(rise) : 0.0;

@@ -68,7 +68,7 @@ double DiscLight::irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const
   return -normal.z() * factors[0] - away * factors[1];
 }
 
-// What of the circle about a point's foot that is seen under one angle lies on the aperture.
+// The part on the aperture of the circle about a point's foot that is seen under one angle.
 struct DiscLight::Arc {
   double cosine, sine;         // of the angle from the axis
   double half_rad, half_sine;  // half of the arc's angle α about the foot, sin α

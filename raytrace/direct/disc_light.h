@@ -16,13 +16,13 @@
 //
 //   M(h, d) = (2Φ/π²) ∫₀^π F(tan θ = u/h) sin²ω/u² dω.
 //
-// Vector irradiance in empty space has no divergence and M d²/2 is its stream function, so that
-// the power on any surface follows from M along its outline alone:
+// Vector irradiance in empty space has no divergence and M d²/2 is its stream function, so that the
+// power on any surface follows from M along its outline alone:
 //
 //   P = ½ ∮ M(h, d) (x dy − y dx).
 //
 // Edges of the beam are kinks of M, at d = |R ± h tan θ|, which a straight side of a surface meets
-// at the roots of quadratics: what is left between them is smooth.
+// at the roots of quadratics: the function between them is smooth.
 #pragma once
 
 #include <optional>
@@ -35,7 +35,7 @@
 
 namespace photorque {
 
-// What arrives at a point of a surface.
+// The light that arrives at a point of a surface.
 struct ArrivingLight {
   double irradiance_W_m2 = 0.0;
   // Its directions (unit vectors of travel), weighed by the irradiance that each brings. Over the
@@ -67,7 +67,7 @@ class DiscLight {
   // error below 1e-7.
   double irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const;
 
-  // The same with the momentum that comes with it, in the emitter's frame.
+  // The arriving light with its momentum, in the emitter's frame.
   ArrivingLight arriving(const Vec3& point_m, const Vec3& normal) const;
 
   // The six components of the flow of power and momentum at a height and a distance from the axis:
@@ -75,7 +75,7 @@ class DiscLight {
   // between axis and away from it, away from it, and around it. Not for parallel light.
   using Flow = Eigen::Array<double, 6, 1>;
   Flow flow_W_m2(double distance_m, double height_m) const;
-  // What arrives at a point with this flow.
+  // The light that arrives at a point with this flow.
   static ArrivingLight arriving_of(const Flow& flow, const Vec3& point_m, const Vec3& normal);
 
   // The irradiances A on a surface normal to the axis and B on one that looks at the axis, at a
@@ -87,8 +87,8 @@ class DiscLight {
   // to be below `tolerance_W` (> 0). Not for parallel light.
   Integral<double> power_through_W(std::span<const Vec3> polygon_m, double tolerance_W) const;
 
-  // What a side from one corner to the next adds to such a power, both in front of the aperture;
-  // counted against the clock as seen from where the light goes.
+  // The contribution of a side from one corner to the next to such a power, both in front of the
+  // aperture; counted against the clock as seen from where the light goes.
   Integral<double> along_edge_W(const Vec3& from_m, const Vec3& to_m, double tolerance_W) const;
 
   // Fractions of the way between two points at which the irradiance has a kink, where the circle

@@ -1,5 +1,5 @@
-// What a disc light (disc_light.h) is at many places, from tables over height and distance from its
-// axis.
+// The irradiance of a disc light (disc_light.h) at many places, from tables over height and
+// distance from its axis.
 //
 // Its factors have kinks only where the circle that an edge of the beam draws touches the rim of
 // the aperture, at d = |R ± h tan θ|. Between two of these, powers of half integers of the distance
@@ -104,7 +104,7 @@ class IrradianceTable {
   FactorTable<2> factors_;
 };
 
-// The same for irradiance and momentum together.
+// A table of irradiance and momentum together.
 class MomentumTable {
  public:
   static std::optional<MomentumTable> make(const DiscLight& light, double low_m, double high_m,

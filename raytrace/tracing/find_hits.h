@@ -24,7 +24,7 @@ struct HitBuffer {
   Vec3 direction(int i) const { return {ray[3][i], ray[4][i], ray[5][i]}; }
 };
 
-// Rays in an order of their own.
+// Rays in their own order.
 struct RayList {
   std::span<const Ray> rays;
   std::span<const uint16_t> order;  // indices into `rays`; empty: as they lie

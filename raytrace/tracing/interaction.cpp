@@ -204,7 +204,7 @@ void absorb(const TraceableScene::Data& scene, HitBuffer& buffer) {
   }
 }
 
-// The same again where they depend on the angle of incidence.
+// Absorbs again where the fractions depend on the angle of incidence.
 void absorb_by_angle(const TraceableScene::Data& scene, HitBuffer& buffer) {
   Hits& hits = buffer.hits;
   for (int i = 0; i < hits.count; ++i) {

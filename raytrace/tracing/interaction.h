@@ -1,4 +1,4 @@
-// What happens where rays meet surfaces: absorption, the choice of the lobe that goes on, momentum.
+// The interaction of rays with surfaces: absorption, the choice of the lobe that goes on, momentum.
 #pragma once
 
 #include <cstdint>

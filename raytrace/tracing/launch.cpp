@@ -29,7 +29,7 @@ RayPlacement::RayPlacement(const RigidTransform& body_from_emitter,
   }
 }
 
-// What is written lies apart from what is read, which the compiler must know to vectorise.
+// Input and output do not overlap, which the compiler must know to vectorise.
 void RayPlacement::place(const RayBlock& __restrict rays, RayColumns& __restrict placed,
                          Landing& __restrict landing) const {
   constexpr float min_z = 1e-6f;  // of the directions of rays that may reach the plane
@@ -136,7 +136,7 @@ std::array<uint32_t*, sobol_dimensions> pointers(SampleBlock& samples) {
           samples.bits[3].data()};
 }
 
-// What a sample of a beam's rays tells.
+// Statistics of a sample of a beam's rays.
 struct BeamSample {
   float x_low = std::numeric_limits<float>::max(), y_low = x_low;
   float x_high = -x_low, y_high = -x_low;
@@ -201,7 +201,7 @@ LaunchPlan plan_launch(const Emitter& emitter, const RigidTransform& body_from_e
                   sample.y_high,
                   {},
                   1};
-  if (centre.z() > 0.0) {  // what misses the scene need not be told apart
+  if (centre.z() > 0.0) {  // rays that miss the scene need no order
     const auto radius = static_cast<float>(scene.radius_m);
     const auto cx = static_cast<float>(centre.x()), cy = static_cast<float>(centre.y());
     plan.x_low = std::max(plan.x_low, cx - radius),

@@ -66,7 +66,7 @@ struct LaunchBuffer {
 struct LaunchPlan {
   SobolCells cells;
   RayPlacement placement;
-  // Where the rays land; bounds beyond which they need not be told apart.
+  // Where the rays land; bounds beyond which their order does not matter.
   float x_low, x_high, y_low, y_high;
   // The rays' octants are numbered by the signs of those components of their directions in the body
   // frame that have both: what a negative x, y, z adds to the number.

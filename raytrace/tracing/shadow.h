@@ -1,4 +1,4 @@
-// What stands between a flat patch of surface and an aperture: proofs that nothing does, and shadow
+// Occlusion between a flat patch of surface and an aperture: proofs that nothing does, and shadow
 // rays where something may.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What stands behind TraceableScene; for the files of raytrace only.
+// The data of TraceableScene; for the files of raytrace only.
 #pragma once
 
 #include <vector>
@@ -28,7 +28,7 @@ struct TraceableScene::Data {
   int packet_width = 8;                  // rays per packet that this machine's Embree runs natively
   std::vector<uint32_t> first_triangle;  // per instance, into `planes`
   std::vector<TrianglePlane> planes;
-  // What hits ask for often, numbered by side().
+  // Properties that hits need often, numbered by side().
   std::array<std::vector<double>, max_bands> absorbed_fraction;  // [band][side], at every angle
   std::vector<uint8_t> black;  // 1: the side absorbs everything and does nothing else
   // Null where fractions are the same at every angle; empty if they are so everywhere.

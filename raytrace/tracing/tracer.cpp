@@ -173,7 +173,7 @@ void BatchTracer::leave(const Ray& ray, double power_W) {
   sums_->power_balance.release(context_.scene->centre_m + origin, direction, power_W);
 }
 
-// What is still under way at the depth limit.
+// Books the power that is still under way at the depth limit.
 void BatchTracer::truncate() {
   for (size_t i = 0; i < next_.rays.size(); ++i) {
     const double power = total_W(&next_.power_W[i * static_cast<size_t>(bands())]);

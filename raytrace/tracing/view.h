@@ -1,4 +1,4 @@
-// What is seen from a point: the first surfaces along given rays, without light; rays to be drawn.
+// The view from a point: the first surfaces along given rays, without light; rays to be drawn.
 #pragma once
 
 #include <cstdint>

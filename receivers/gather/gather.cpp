@@ -83,7 +83,7 @@ Gathered gather_on(const Gathering& gathering, const FluxMapReceiver& map,
   }
 }
 
-// What the surface absorbs depends on the angle of incidence (glass), which bins do not keep.
+// Whether absorption depends on the angle of incidence (glass), which bins do not keep.
 bool absorbs_by_angle(const Scene& scene, const SurfaceGrid& grid) {
   return std::any_of(grid.instances.begin(), grid.instances.end(), [&](uint32_t instance) {
     const Instance& of = scene.instances[instance];

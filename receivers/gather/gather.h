@@ -4,10 +4,10 @@
 // (raytrace/direct/disc_light.h) without noise, or something may, and shadow rays to scrambled
 // Sobol points of aperture and bin are weighed. The proof is by shafts: the convex hull of two
 // balls about the bins and about the part of the aperture that can light them, tested against
-// triangles, for ever smaller groups of bins.
+// triangles, for smaller and smaller groups of bins.
 //
-// Source of the idea: E. A. Haines, J. R. Wallace, "Shaft Culling for Efficient Ray-Cast
-// Radiosity" (1991).
+// Source of the idea: E. A. Haines, J. R. Wallace, "Shaft Culling for Efficient Ray-Cast Radiosity"
+// (1991).
 #pragma once
 
 #include <span>

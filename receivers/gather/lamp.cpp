@@ -15,7 +15,8 @@ FirstContact::FirstContact(const OpticalSurface& surface, bool front, const Band
   }
 }
 
-// What arrives less the expectation of what leaves over all components, heat radiation included.
+// The arriving momentum less the expectation of the leaving one over all components, heat radiation
+// included.
 Vec3 FirstContact::by_law(const Vec3& direction, const Vec3& normal) const {
   const Incidence incidence(direction, normal);
   std::array<double, components.size()> carried{};

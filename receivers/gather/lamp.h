@@ -83,7 +83,7 @@ class PlacedLamp {
   // its intensity, and where the line to `at_m` begins; 0 where none comes so.
   double along_direction_W_m2(const Vec3& direction, const Vec3& at_m, const Vec3& normal,
                               Vec3& from_m) const;
-  // The same for a point of the aperture that was drawn evenly.
+  // The irradiance from a point of the aperture that was drawn evenly.
   double from_point_W_m2(const Vec3& from_m, const Vec3& at_m, const Vec3& normal) const;
 
  private:

@@ -1,10 +1,10 @@
 // Light on bins that nothing can shade, by quadrature. For the files of this folder only.
 //
 // Where the irradiance is smooth over a tile of bins, it is the polynomial through its values at
-// Chebyshev points, whose last coefficients tell how far it is from the truth; where they tell too
-// much, or an edge of a beam crosses the tile, the tile is halved. What is left in single bins is
-// integrated along the outline of the surface in the bin (raytrace/direct/disc_light.h), which
-// edges cut at known points.
+// Chebyshev points, whose last coefficients bound its error; where they are too large, or an edge
+// of a beam crosses the tile, the tile is halved. Single bins that remain are integrated along the
+// outline of the surface in the bin (raytrace/direct/disc_light.h), which edges cut at known
+// points.
 #pragma once
 
 #include <span>
@@ -49,7 +49,7 @@ class OpenLight {
              const OpenEntries& entries) const;
 
  private:
-  // What the sides of bins add to their power, each for the two bins that share it; see
+  // Contributions of the sides of bins to their power, each for the two bins that share it; see
   // DiscLight::along_edge_W(). Of one lamp.
   using Sides = std::unordered_map<uint64_t, Integral<double>>;
 

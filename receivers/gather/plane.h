@@ -44,7 +44,7 @@ bool is_flat(const Scene& scene, const SurfaceGrid& grid);
 // The pieces of a flat grid; a bin that one instance fills is a single parallelogram.
 BinPatches bin_patches(const Scene& scene, const SurfaceGrid& grid);
 
-// What gathering knows about the surface and the lamps. For the files of this folder only.
+// The surface and the lamps as gathering uses them. For the files of this folder only.
 
 // A rectangle of bins.
 struct BinTile {
@@ -64,7 +64,7 @@ class GatherPlane {
   const TraceableScene& scene() const { return scene_; }
   const SurfaceGrid& grid() const { return grid_; }
   const Bands& bands() const { return bands_; }
-  // What an instance's surface does with light on this side.
+  // The optical surface of an instance on this side.
   const OpticalSurface& surface(uint32_t instance) const {
     const Instance& of = scene_.scene().instances[instance];
     return scene_.scene().surfaces[side_ == Side::back ? of.back_surface : of.front_surface];

@@ -32,7 +32,7 @@ struct OpenTile {
   uint32_t lamp;
 };
 
-// What was found of one square of bins, the item of parallel work.
+// Visibility of one square of bins, the item of parallel work.
 struct TileSight {
   std::vector<OpenTile> open;      // lamp by lamp
   std::vector<ShadedPair> shaded;  // likewise
@@ -66,7 +66,7 @@ class Gathering {
   std::vector<TileSight> sights_;
 };
 
-// What stops gathering: anything but one flat surface and lamps with uniform apertures.
+// Whether gathering is possible: one flat surface and lamps with uniform apertures.
 bool is_gatherable(const Scene& scene, const SurfaceGrid& grid, std::span<const Beam> beams);
 
 // A ray that may reach a bin: `power_W` of its light if nothing is in the way. Emitter's frame.

@@ -16,7 +16,7 @@ namespace {
 
 constexpr size_t torque_axes = 3;
 
-// What light does to the surfaces of a plane, per power of light: its torque about a point.
+// Effect of light on the surfaces of a plane, per power of light: its torque about a point.
 class Torque {
  public:
   using Value = Vec3;

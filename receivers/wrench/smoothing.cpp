@@ -8,7 +8,7 @@ namespace {
 
 constexpr Eigen::Index per_wrench = std::tuple_size_v<WrenchComponents>;
 
-// Azimuths without the last, if that is the first once more.
+// Azimuths without the last, if that repeats the first.
 std::span<const double> once_around(const std::vector<double>& around_rad) {
   constexpr double turn = 6.28318530717958647693;
   const bool closed = std::abs(around_rad.back() - around_rad.front() - turn) < 1e-9;
@@ -41,7 +41,7 @@ double unresolved(const Eigen::MatrixXd& rest, std::span<const double> elevation
   return std::max(0.0, sum / weights);
 }
 
-// What is common to both halves and what is not, of the mean of both, in one degree.
+// The common and the different power of both halves, for their mean, in one degree.
 struct Powers {
   double common = 0.0, noise = 0.0;
 };

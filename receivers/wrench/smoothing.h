@@ -3,7 +3,7 @@
 // Every direction is known twice, from independent rays. The parts of each degree of the spherical
 // harmonics that both know alike are the wrench's own, the rest is noise: each degree is kept in
 // the ratio of the first to all (N. Wiener, Extrapolation, Interpolation, and Smoothing of
-// Stationary Time Series, 1949), and what is left over and what was taken away is the error.
+// Stationary Time Series, 1949), and the remaining noise and the removed part are the error.
 #pragma once
 
 #include <optional>

@@ -12,7 +12,7 @@
 
 namespace photorque {
 
-// What a file holds.
+// The content of a file.
 struct SpadFile {
   std::string system;  // what the table is of
   // Force and torque under light of 1 Pa pressure (so that 1 m² is 1 N): scale by the irradiance

@@ -280,7 +280,7 @@ Map component_map(const WrenchTable& table, const VectorColumn& column, int axis
   map.title = (std::string(column.name) == "force" ? "Force along " : "Torque about ") +
               ("body " + letter(axis)) + (name == "body" ? "" : " on " + name);
   map.unit = column.unit;
-  // Where the table goes all the way round, its first nodes once more close the picture.
+  // Where the table goes all the way round, its first nodes, repeated, close the picture.
   const size_t around_nodes = table.around_rad.size();
   const double missing_rad =
       2.0 * pi - (table.around_rad.back() - table.around_rad.front()) - 2.0 * half_around_rad;

@@ -1,5 +1,5 @@
-// A table of wrenches over angles, as results for people and other programs, with pictures that
-// show attitudes and directions where they are: discs of tilt and heading, half spheres of
+// A table of wrenches over angles, as results with pictures and for other programs, with pictures
+// that show attitudes and directions where they are: discs of tilt and heading, half spheres of
 // directions.
 #pragma once
 
@@ -19,7 +19,7 @@ namespace photorque {
 // Between the nodes: trigonometric in the angle around, cubic in the other, through the poles.
 std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name);
 
-// An angle as somebody stated it: −60 and not −60.00000000000001.
+// An angle as stated: −60 and not −60.00000000000001.
 double stated_deg(double angle_rad);
 
 // The table "wrench_table_NAME" with a row per node (angles in degrees, components and standard

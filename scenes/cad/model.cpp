@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<std::pair<const char*, double>, 6> units = {
     {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}, {"um", 1e-6}, {"in", 0.0254}, {"ft", 0.3048}}};
 
-// Half of the light is absorbed: nobody said anything.
+// Half of the light is absorbed: nothing was stated.
 SettingsNode unknown_optics() {
   SettingsNode::Table table;
   table["absorptance"] = {0.5};
@@ -98,7 +98,7 @@ GltfModel read_cad_bytes(const std::string& bytes, const std::string& file, CadF
   inside.metres_per_unit = conventions.metres_per_unit;
   GltfModel model = read_gltf_bytes(
       text, file, [](const std::string&) { return std::nullopt; }, inside);
-  // What was read is the file, not what was made of it.
+  // The input is the file that was read, not the converted model.
   model.inputs.front() = {file, content_hash(bytes)};
   const std::set<std::string> described = described_materials(options);
   for (const std::string& material : materials) {

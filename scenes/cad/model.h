@@ -14,7 +14,7 @@ enum class CadFormat { stl, obj };
 // By the ending of the name, in any case.
 std::optional<CadFormat> cad_format(const std::filesystem::path& path);
 
-// What such a file does not say.
+// Conventions that such a file does not state.
 struct CadConventions {
   double metres_per_unit = 0.0;  // > 0
   bool y_is_up = false;          // (x, y, z) is body (x, −z, y), as in glTF; else the body's own
@@ -31,7 +31,7 @@ std::vector<std::string> cad_units();
 GltfModel read_cad(const std::filesystem::path& path, const CadConventions& conventions,
                    const GltfOptions& options = {});
 
-// The same for bytes at hand; `file` is how messages call them.
+// Reads given bytes; `file` is how messages call them.
 GltfModel read_cad_bytes(const std::string& bytes, const std::string& file, CadFormat format,
                          const CadConventions& conventions, const GltfOptions& options = {});
 

@@ -137,7 +137,7 @@ class TextReader {
     ++word_;
   }
 
-  // What follows a keyword on its line, up to `end` or the end of the solid.
+  // The text that follows a keyword on its line, up to `end` or the end of the solid.
   std::string read_name(std::string_view end) {
     std::string name;
     for (++word_; word_ < words_.size(); ++word_) {

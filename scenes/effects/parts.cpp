@@ -35,7 +35,7 @@ std::vector<LightWall> walls_of(const Scene& scene, const SurfaceGrid& grid, dou
     wall.node = scene.instances[i].node;
     const uint32_t one[] = {i};
     for (const SurfaceFace& face : faces_of(scene, one)) {
-      // What lies behind the receiver neither shades nor lights it.
+      // Parts behind the receiver neither shade nor light it.
       const bool above = std::ranges::any_of(face.corner_body_m, [&](const Vec3& p) {
         return p.dot(grid.normal_body) > plane_m + 1e-6;
       });

@@ -1,4 +1,4 @@
-// What acts on light and power beside what the experiment states.
+// Effects on light and power in addition to the experiment.
 //
 // A plain value that every effect writes into and the forward model reads; as it is constructed,
 // nothing acts. Effects of several kinds combine by writing into one state after the other.

@@ -61,7 +61,7 @@ bool is_meant(const LightEffectKind& kind, const Settings& effect) {
                              [&](const EffectParameter& p) { return effect.has(p.key); });
 }
 
-// A width, times a factor, that a lamp can have: nobody wrote what lies beyond.
+// A width, times a factor, that a lamp can have: no value is stated beyond.
 double widened(const std::string& key, double value, double factor) {
   if (key == "exponent") return std::min(value / (factor * factor), std::max(value, 1e9));
   constexpr double below = 1.0 - 1e-6;  // 180 deg itself are too many
@@ -85,7 +85,7 @@ void widen(SettingsNode& source, double scale) {
   }
 }
 
-// An emitter that gives a share of its power.
+// An emitter that gives a fraction of its power.
 class DimmedEmitter final : public Emitter {
  public:
   DimmedEmitter(std::shared_ptr<const Emitter> full, double share)
@@ -103,7 +103,7 @@ class DimmedEmitter final : public Emitter {
   double share_;
 };
 
-// What a trace with these effects does not show, one line for each.
+// Effects that a trace does not show, one line for each.
 std::vector<std::string> notices_of(const Experiment& experiment,
                                     const std::vector<Settings>& effects) {
   std::set<std::string> traced = {"led_failed"};
@@ -222,7 +222,7 @@ LightState stated_effects(const Experiment& experiment, const LightParts& parts)
       }
     }
     meant->act(state, index_of(effect, *meant, parts), x);
-    // What a diagnosis says beside the numbers that act.
+    // Numbers of a diagnosis that have no effect on a run.
     for (const char* said : {"u_m", "v_m", "darkest"}) {
       if (effect.has(said)) effect.raw(said);
     }

@@ -8,7 +8,7 @@ std::vector<LightEffectKind> surroundings_effect_kinds() {
   using Index = LightEffectKind::Index;
   using Numbers = std::span<const double>;
   return {
-      // The same at every place of the receiver and at every attitude.
+      // Uniform over the receiver and all attitudes.
       {.name = "ambient_light",
        .explanation = "light of the room is added to that of the lamps",
        .parameters = {{.key = "irradiance_W_m2", .scale = 20.0, .lowest = 0.0, .highest = 1e5}},

@@ -1,4 +1,4 @@
-// What in a scene makes results doubtful, although it can be traced.
+// Properties of a scene that make results doubtful.
 #pragma once
 
 #include <cstdint>

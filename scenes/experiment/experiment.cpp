@@ -38,7 +38,7 @@ void require_spectrum_inside(const Settings& source, const Beam& beam, const Ban
   throw source.error("", outside.str(), "[scene] bands_nm that hold all of it");
 }
 
-// What stands or spreads farther leaves the range that single precision can trace in.
+// Sources that are farther or wider leave the range that single precision can trace in.
 void require_traceable(const Settings& source, const Beam& beam) {
   const double away_m = beam.lab_from_emitter.translation_m.stableNorm();
   if (!(away_m <= largest_distance_m)) {
@@ -158,7 +158,7 @@ std::vector<NamedReceiver> make_receivers(const ExperimentFile& file, const Scen
     const NamedReceiver& added = receivers.back();
     if (!taken.emplace(added.kind, added.name).second) {
       throw settings.error("name", "a second " + added.kind + " called \"" + added.name + "\"",
-                           "a name of its own");
+                           "a unique name");
     }
   }
   return receivers;
@@ -244,7 +244,7 @@ Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture)
   require_scene_file(file);
   if (file.textures && !picture) {
     throw file.settings.get(scene_key::scene)
-        .error(scene_key::textures, "true", "false: nobody here reads pictures");
+        .error(scene_key::textures, "true", "false: this program cannot read pictures");
   }
   GltfModel model = read_model(file, picture);
   require_triangles(model.scene, *file.scene_file);

@@ -71,7 +71,7 @@ struct Camera {
 // above, the sphere just inside the picture.
 Camera camera_framing(double radius_m);
 
-// What an experiment file says.
+// The content of an experiment file.
 struct ExperimentFile {
   std::filesystem::path path;
   // The whole file, overrides included.
@@ -103,7 +103,7 @@ struct ExperimentFile {
   std::optional<Settings> camera;
 
   // A table that this reader leaves to others ([array], [platform], [environment], [[disturbance]],
-  // [sensors], [recording]), each item with its own record of the keys read: whoever reads one
+  // [sensors], [recording]), each item with its own record of the keys read: the reader of one
   // calls finish() on it. Empty when the file has none.
   std::vector<Settings> others(const std::string& key) const;
 };
@@ -114,8 +114,8 @@ struct ExperimentFile {
 ExperimentFile read_experiment_file(const std::filesystem::path& path,
                                     std::span<const std::string> overrides = {});
 
-// The same for a text that need not be a file's: `path` is what messages call it, and the files
-// that it names are relative to the folder of that path.
+// Reads a text that need not be a file's: `path` is what messages call it, and the files that it
+// names are relative to the folder of that path.
 ExperimentFile read_experiment_text(const std::filesystem::path& path, const std::string& text,
                                     std::span<const std::string> overrides = {});
 
@@ -134,7 +134,7 @@ struct Experiment {
   RigidTransform lab_from_body;  // from [attitude]
   Camera camera;
   std::vector<std::string> notices;  // what the scene's reader had to assume, one line each
-  // What makes results doubtful, one line each: see doubts_about().
+  // Doubts about results, one line each: see doubts_about().
   std::vector<std::string> warnings = {};
   std::vector<std::pair<std::string, std::string>> inputs;  // experiment, overrides, scene files
 
@@ -143,7 +143,7 @@ struct Experiment {
 
 // Loads what the file names. Throws InputError for: no [scene], a scene without triangles, no
 // source, a source whose spectrum leaves the bands, a receiver on a node that does not exist, and
-// every key that nobody read; for textures without a `picture` reader too.
+// every key that was not read; for textures without a `picture` reader too.
 Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture = {});
 
 // read_experiment_file() and resolve_experiment().

@@ -163,7 +163,7 @@ std::optional<DirectionGrid> read_light_directions(const Settings& root) {
                        read_direction_axis(table, azimuth, azimuth_step)};
 }
 
-// A mistyped name is told before what would fit another kind of file.
+// A mistyped name is reported before keys of another kind of file.
 void require_model(const Settings& scene, const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) {

@@ -38,7 +38,7 @@ class JointPositions {
   explicit JointPositions(const Joint& joint);
 
   const std::vector<double>& angles_rad() const { return angles_rad_; }
-  // The weights of what was found at these angles, which sum to one.
+  // The weights of the results at these angles, which sum to one.
   std::vector<double> weights(double angle_rad) const;
 
  private:

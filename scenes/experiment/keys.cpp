@@ -1,4 +1,4 @@
-// What file.cpp and experiment.cpp read.
+// The keys that file.cpp and experiment.cpp read.
 #include "scenes/experiment/keys.h"
 
 #include "receivers/kind.h"

@@ -100,10 +100,12 @@ inline constexpr TableKey trace("trace", "how much work the light is worth");
 }  // namespace trace_key
 
 namespace torque_map_key {
-inline constexpr NumbersKey tilt("tilt_deg", {0.0, pi}, "rising; every tilt with every heading",
-                                 {.usually = "that of `[attitude]`"});
-inline constexpr NumbersKey heading("heading_deg", {-2.0 * pi, 2.0 * pi}, "rising",
-                                    {.usually = "that of `[attitude]`"});
+inline constexpr NumbersKey tilt(
+    "tilt_deg", {0.0, pi}, "rising; every tilt with every heading",
+    {.usually = "that of `[attitude]`; without the table 0, 10, 20, 30"});
+inline constexpr NumbersKey heading(
+    "heading_deg", {-2.0 * pi, 2.0 * pi}, "rising",
+    {.usually = "that of `[attitude]`; without the table 0, 45, … 315"});
 inline constexpr NumbersKey azimuth(
     "azimuth_deg", {-pi, pi}, "instead, for one `sun`: directions towards it in body axes, rising",
     {.optional = true});

@@ -58,7 +58,7 @@ fs::path named_file(const fs::path& folder, const std::string& text) {
 
 std::vector<fs::path> files_named_in(const fs::path& path, const std::string& bytes) {
   const std::string text_of_json = json_of(path, bytes);
-  // Whoever reads the model says what is wrong with it.
+  // The reader of the model reports its faults.
   if (extent_of_json(text_of_json).depth > deepest_json) return {};
   const auto json = nlohmann::json::parse(text_of_json, nullptr, false);
   std::vector<std::string> texts;

@@ -13,7 +13,8 @@ namespace photorque {
 // The file that a text names from a folder; empty where it names none.
 std::filesystem::path named_file(const std::filesystem::path& folder, const std::string& text);
 
-// What a model's file (glTF, GLB) names in turn: its buffers and pictures. `bytes` are the file's.
+// The files that a model's file (glTF, GLB) names: its buffers and pictures. `bytes` are the
+// file's.
 std::vector<std::filesystem::path> files_named_in(const std::filesystem::path& path,
                                                   const std::string& bytes);
 

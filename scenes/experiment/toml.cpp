@@ -28,7 +28,7 @@ SettingsNode to_settings(const toml::node& node, const std::string& name) {
     SettingsNode::Table items;
     for (const auto& [key, item] : *table) {
       SettingsNode& entry = items[std::string(key.str())] = to_settings(item, name);
-      // The key, not its value: a table made by a dotted key has no place of its own.
+      // The key, not its value: a table made by a dotted key has no place in the file.
       entry.where.line = static_cast<int>(key.source().begin.line);
     }
     result.value = std::move(items);
@@ -208,7 +208,7 @@ std::string bare_line(const std::string& text, int number) {
   return std::string(trimmed(std::string_view(line).substr(0, line.find('#'))));
 }
 
-// What TOML expects instead of a line that it cannot read: the usual slips by name.
+// The expected text for a line that TOML cannot read: the usual slips by name.
 std::string expected_line(const std::string& line) {
   const size_t equals = line.find('=');
   if (equals == std::string::npos) return "TOML";

@@ -12,7 +12,7 @@ namespace photorque {
 // Dates and times become their ISO 8601 text. Throws InputError with the line of a syntax error.
 SettingsNode parse_toml(const std::string& text, const std::string& name);
 
-// The same for a file.
+// Reads a file.
 SettingsNode read_toml(const std::filesystem::path& path);
 
 // Sets one value as the command line's `--set KEY=VALUE` does: "source[0].power_W=10".

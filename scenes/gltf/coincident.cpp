@@ -226,7 +226,7 @@ std::map<Face, int> levels_of(const std::vector<Pair>& pairs) {
 void move_faces(Scene& scene, const std::map<Face, int>& levels, double step_m) {
   std::vector<int> users(scene.meshes.size(), 0);
   for (const Instance& instance : scene.instances) ++users[instance.mesh];
-  uint32_t copied = UINT32_MAX;  // the last instance that was given a mesh of its own
+  uint32_t copied = UINT32_MAX;  // the last instance that was given a separate mesh
   for (const auto& [face, level] : levels) {
     if (level == 0) continue;
     const PlacedFace at = *placed(scene, face);

@@ -56,7 +56,7 @@ std::optional<ListedLight> light_at(const Document& document, int node, const ch
   return ListedLight{lights[which], which, gltf::pointer("extensions", extension, "lights", which)};
 }
 
-// What a light is, without its place.
+// A light without its place.
 GltfLight described_light(const Document& document, const ListedLight& listed) {
   const auto& [light, number, where] = listed;
   constexpr double widest_rad = 0.5 * pi, usual_rad = 0.25 * pi;
@@ -220,7 +220,7 @@ Settings source_at_light(const Settings& source, const std::vector<GltfLight>& l
     fill_in("direction", numbers_node(light.direction, where));
     aimed_here = !stems.contains("direction");
   }
-  // A cone is the beam of an LED; lamps of other kinds have beams of their own.
+  // A cone is the beam of an LED; lamps of other kinds have their own beams.
   const auto stated = keys.find("kind");
   const auto* text =
       stated == keys.end() ? nullptr : std::get_if<std::string>(&stated->second.value);

@@ -35,7 +35,7 @@ struct GltfLight {
 std::vector<GltfLight> read_gltf_lights(const std::filesystem::path& path, double metres_per_unit,
                                         bool may_leave_folder = false);
 
-// The same from bytes, `file` is how messages call them.
+// Reads lights from bytes; messages call them `file`.
 std::vector<GltfLight> read_gltf_lights_bytes(const std::string& bytes, const std::string& file,
                                               const GltfOpen& open, double metres_per_unit,
                                               uint64_t largest_bytes = 4ull << 30);

@@ -30,7 +30,7 @@ struct MeshClosure {
 // Meshes with more than 100,000 open edges are not searched for T-junctions.
 MeshClosure closure_of(const Scene& scene);
 
-// One line for people when there are cracks; empty for closed bodies and plain sheets.
+// One line of text when there are cracks; empty for closed bodies and plain sheets.
 std::string describe_closure(const MeshClosure& closure);
 
 }  // namespace photorque

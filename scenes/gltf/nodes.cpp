@@ -28,7 +28,7 @@ std::vector<int> roots_of(const Document& document) {
   return roots;
 }
 
-// Meshes that are deformed before they are drawn would be traced in a shape nobody sees.
+// Meshes that are deformed before they are drawn would be traced in another shape than drawn.
 void refuse_deformation(const Document& document, int index) {
   const tinygltf::Node& node = document.model.nodes[static_cast<size_t>(index)];
   const tinygltf::Mesh& mesh = document.model.meshes[static_cast<size_t>(node.mesh)];

@@ -1,4 +1,4 @@
-// What the materials of a glTF document do with light.
+// Optical properties of the materials of a glTF document.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct MaterialOptics {
   OpticsOrigin origin = OpticsOrigin::derived;
 };
 
-// What an experiment says of materials, by name.
+// Materials of an experiment, by name.
 using MaterialOverrides = std::map<std::string, SheetOptics>;
 
 // Reads the experiment's [[material]] tables, all of them, whether their material is in use or not.
@@ -32,7 +32,7 @@ MaterialOverrides read_overrides(const Document& document, const GltfOptions& op
 //   1. an override of the same name;
 //   2. the material's extras: {"photorque": {"absorptance": 0.9, …}}, keys as in read_sheet();
 //   3. the values meant for drawing, by the rule of derived_surface().
-// Throws InputError as read_sheet() does, and for keys in extras.photorque that nobody knows.
+// Throws InputError as read_sheet() does, and for keys in extras.photorque that are unknown.
 MaterialOptics material_optics(const Document& document, int index, int bands,
                                const MaterialOverrides& overrides, const SurfaceFiles& files);
 
@@ -54,7 +54,8 @@ MaterialOptics material_optics(const Document& document, int index, int bands,
 // = 0). It is a stand-in for measured values: drawing colours say little about absorptance.
 OpticalSurface derived_surface(const nlohmann::json& material, int bands, std::string name);
 
-// The same with the base colour multiplied by a picture's mean, linear red, green and blue.
+// The derived surface with the base colour multiplied by a picture's mean, linear red, green and
+// blue.
 OpticalSurface derived_surface(nlohmann::json material, const std::array<double, 3>& picture,
                                int bands, std::string name);
 

@@ -276,7 +276,7 @@ class Assembly {
     return model_.materials.back();
   }
 
-  // What `open` finds is an input.
+  // Files that `open` finds are inputs.
   SurfaceFiles recorded(const SurfaceFiles& open) {
     if (!open) return {};
     return [this, open](const std::string& name) {
@@ -289,7 +289,7 @@ class Assembly {
     };
   }
 
-  // Materials of the same name and values are common; one line tells of them all.
+  // Materials of the same name and values are common; one line names them all.
   void add_notice(const std::string& line) {
     if (told_.insert(line).second) model_.notices.push_back(line);
   }

@@ -1,10 +1,10 @@
 // glTF 2.0 files (.gltf and .glb) as scenes.
 //
-// What is read: the default scene's node hierarchy with any invertible transforms, meshes of
+// Read: the default scene's node hierarchy with any invertible transforms, meshes of
 // triangles, strips and fans, sparse accessors, texture coordinates 0, EXT_mesh_gpu_instancing, and
-// of materials what optics.h says. What is ignored, with a notice where it could surprise:
+// of materials what optics.h says. Ignored, with a notice where it could surprise:
 // points and lines, textures and images (opened only for GltfOptions::picture), cameras, lights,
-// animations (the rest pose counts). What is refused because the geometry would be wrong without
+// animations (the rest pose counts). Refused because the geometry would be wrong without
 // it: skins, morph targets with non-zero weights, and every required extension that is not known to
 // leave geometry alone.
 //
@@ -31,7 +31,8 @@
 
 namespace photorque {
 
-// A picture that a model carries. This folder opens none: whoever reads an experiment says how.
+// A picture that a model carries. This folder opens none: the reader of an experiment supplies the
+// function.
 struct BaseColours {
   int width = 0, height = 0;  // texels, at least 1
   std::vector<float> rgb;     // linear red, green and blue in [0, 1]; row by row from the top
@@ -87,8 +88,7 @@ struct GltfModel {
 // options' limits. Positions are those of the file, exactly; transforms are in double.
 GltfModel read_gltf(const std::filesystem::path& path, const GltfOptions& options = {});
 
-// The same for bytes at hand; `name` is how messages call them, and external buffers come from
-// `open`.
+// Reads given bytes; `name` is how messages call them, and external buffers come from `open`.
 GltfModel read_gltf_bytes(const std::string& bytes, const std::string& name, const GltfOpen& open,
                           const GltfOptions& options = {});
 

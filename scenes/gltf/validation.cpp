@@ -46,7 +46,7 @@ class Checker {
       throw wrong(where + "/byteStride", text(view.byteStride),
                   "at most the byteLength, " + text(view.byteLength));
     }
-    // From the JSON: tinygltf sets targets by itself.
+    // From the JSON: tinygltf sets targets.
     if (view.byteStride > 0 && document_.json["bufferViews"][i].value("target", 0) ==
                                    TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER) {
       throw wrong(where + "/byteStride", "it on a view of indices", "none");

@@ -1,4 +1,4 @@
-// What is wrong in a glTF document although its shape is right.
+// Faults in a glTF document whose shape is right.
 #pragma once
 
 #include "scenes/gltf/file/document.h"

@@ -41,7 +41,7 @@ Vec3 to_gltf_axes(const Vec3& body) {
   return {body.x(), body.z(), -body.y()};
 }
 
-// The last digits of sines and cosines differ between mathematical libraries; nobody needs them.
+// The last digits of sines and cosines differ between mathematical libraries; they are not needed.
 double stable(double x) {
   return std::round(x * 1e9) / 1e9 + 0.0;
 }

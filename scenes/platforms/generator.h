@@ -51,7 +51,7 @@ struct PlatformModel {
 
 // Builds the platform. Throws InputError for parameters that make no solid, two parts of one node,
 // a parent after its child, an unknown material or shape, a part without mass, and every key that
-// nobody reads.
+// is not read.
 PlatformModel generate_platform(const Settings& parameters);
 
 // The platform as a scene: one glTF node for every name in the parts' paths, a child placed

@@ -1,4 +1,4 @@
-// The generated platform as a scene, and its mass properties for people and programs.
+// The generated platform as a scene, and its mass properties as text and data.
 #include <map>
 #include <sstream>
 

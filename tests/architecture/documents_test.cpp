@@ -1,6 +1,8 @@
-// What the documents say of the tree, as far as a program can check it: files, commands, kinds,
-// packages and words.
+// Statements of the documents about the tree that a program can check: files, commands, kinds,
+// packages; and the phrases of all texts.
 #include <gtest/gtest.h>
+
+#include <cctype>
 
 #include "tests/architecture/tree.h"
 
@@ -193,42 +195,201 @@ TEST(Comments, FilesThatTheyNameExist) {
   EXPECT_GT(checked, 30u);
 }
 
-// Words that an expert would have to translate, with the field's word for each.
-TEST(Words, HeadersAndDocumentsSpeakTheFields) {
-  static const std::map<std::string, std::string> words = {
-      {R"(flies|flown|flying|flights?)", "propagates, propagated, run"},
-      {R"(beliefs?|believes?|believed)", "nominal model, prior, assumed"},
-      {R"(concealed|conceals?|concealing)", "injected, injects"},
-      {R"(astray|valleys?)", "diverged, local minimum"},
-      {R"(foretells?|foretold|foretelling)", "predicts, predicted"},
-      {R"((a|the|this|its|their|small|no|same) shares?)", "fraction"},
-      {R"(mean departure)", "first moment of the BSDF"},
-      {R"(ledgers?)", "power balance"},
-      {R"(pulsations?)", "angular frequency"},
-      {R"(furniture)", "page layout"},
-      {R"(wanders?|wandering|wandered)", "migrates"},
-      {R"(mends?|mended|mending)", "repairs"},
-      {R"(structure left)", "residual structure"},
-      {R"(sum of squares left)", "residual chi-square"},
-      {R"((kept|keeps?|held|holds?) back)", "held out"},
-  };
-  // Names that users script against, and the parts of docs/proof.md that a run writes.
-  static const std::regex kept(
-      R"(`[^`\n]*`|longest_\w+|most_\w+|"mended"|beliefs_refined|<!-- \w+ begin -->[^]*?<!-- \w+ end -->)");
-  std::string all;
-  for (const auto& [word, instead] : words) all += (all.empty() ? "" : "|") + word;
-  const std::regex any("\\b(" + all + ")\\b", std::regex::icase);
-  std::vector<fs::path> files = documents();
-  for (const fs::path& file : all_sources()) {
-    if (file.extension() == ".h") files.push_back(file);
+// tests/architecture/phrases.txt: phrases that texts do not use, each with its replacement.
+struct Phrase {
+  std::vector<std::string> words;
+  std::string instead;
+  bool opens = false;                // the first words of a comment
+  std::vector<std::string> outside;  // paths where it is not looked for
+};
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> words;
+  for (size_t i = 0; i < text.size();) {
+    const auto is_letter = [&](size_t at) {
+      const auto c = static_cast<unsigned char>(text[at]);
+      return std::isalnum(c) || c == '_' || c == '\'' || c == '-' || c >= 0x80;
+    };
+    if (!is_letter(i)) {
+      if (!std::isspace(static_cast<unsigned char>(text[i]))) words.emplace_back(1, text[i]);
+      ++i;
+      continue;
+    }
+    std::string word;
+    for (; i < text.size() && is_letter(i); ++i) {
+      word += static_cast<char>(std::tolower(static_cast<unsigned char>(text[i])));
+    }
+    words.push_back(word);
   }
-  for (const fs::path& file : files) {
-    std::string text = file.extension() == ".h" ? comments_of(file) : text_of(file);
-    text = std::regex_replace(text, kept, " ");
-    for (std::sregex_iterator it(text.begin(), text.end(), any), end; it != end; ++it) {
-      const auto at = static_cast<size_t>(it->position());
-      ADD_FAILURE() << file << " says \"" << text.substr(at < 30 ? 0 : at - 30, 70)
-                    << "\"; the field's words stand in this test";
+  return words;
+}
+
+std::vector<Phrase> phrases() {
+  std::istringstream list(text_of(root / "tests/architecture/phrases.txt"));
+  std::vector<Phrase> all;
+  std::vector<std::string> outside;
+  bool opens = false;
+  for (std::string line; std::getline(list, line);) {
+    if (line.empty() || line.starts_with('#')) continue;
+    if (line.starts_with('[')) {
+      std::istringstream heading(line.substr(1, line.find(']') - 1));
+      std::string kind;
+      heading >> kind;
+      EXPECT_TRUE(kind == "everywhere" || kind == "outside" || kind == "openings") << line;
+      opens = kind == "openings";
+      if (!opens) outside.clear();
+      for (std::string path; heading >> path;) outside.push_back(path);
+      continue;
+    }
+    const size_t arrow = line.find(" => ");
+    EXPECT_NE(arrow, std::string::npos) << line;
+    all.push_back({words_of(line.substr(0, arrow)), line.substr(arrow + 4), opens, outside});
+  }
+  return all;
+}
+
+// The mark that begins a comment in this file, "md" for documents, empty for files without texts.
+std::string comment_mark(const std::string& path) {
+  if (path == "images/browser/script/page.min.js" || path.starts_with("tests/data/") ||
+      path.starts_with("tests/fuzz/corpus/") || path.starts_with("tests/fuzz/seeds/") ||
+      path.find("node_modules") != std::string::npos) {
+    return "";
+  }
+  const fs::path name = fs::path(path).filename();
+  const std::string extension = name.extension().string();
+  if (extension == ".md") return "md";
+  if (std::set<std::string>{".h", ".cpp", ".js"}.contains(extension)) return "//";
+  const bool is_script =
+      std::set<std::string>{".py", ".pyi", ".toml", ".cmake", ".sh", ".zsh"}.contains(extension) ||
+      name == "CMakeLists.txt" || (extension.empty() && path.starts_with("tools/"));
+  return is_script && fs::is_regular_file(root / path) ? "#" : "";
+}
+
+// The first words of every comment in a file.
+std::vector<std::string> openings_of(const std::string& text, const std::string& mark) {
+  std::istringstream lines(text);
+  std::vector<std::string> openings;
+  bool was_comment = false;
+  for (std::string line; std::getline(lines, line);) {
+    const size_t begin = line.find_first_not_of(' ');
+    const bool is_comment =
+        begin != std::string::npos && line.compare(begin, mark.size(), mark) == 0;
+    if (is_comment && !was_comment) openings.push_back(line.substr(begin + mark.size()));
+    was_comment = is_comment;
+  }
+  return openings;
+}
+
+TEST(Words, TextsUseNoPhraseOfTheList) {
+  const std::vector<Phrase> all = phrases();
+  std::multimap<std::string, const Phrase*> by_first;
+  for (const Phrase& phrase : all) {
+    ASSERT_FALSE(phrase.words.empty());
+    by_first.emplace(phrase.words.front(), &phrase);
+  }
+  ASSERT_GT(by_first.size(), 90u);
+  size_t files = 0;
+  for (const std::string& path : tree()) {
+    const std::string mark = comment_mark(path);
+    if (mark.empty()) continue;
+    ++files;
+    const std::string text = text_of(root / path);
+    const auto find = [&](const std::string& prose, bool in_openings) {
+      const std::vector<std::string> words = words_of(prose);
+      for (size_t i = 0; i < (in_openings ? std::min<size_t>(1, words.size()) : words.size());
+           ++i) {
+        const auto [begin, end] = by_first.equal_range(words[i]);
+        for (auto it = begin; it != end; ++it) {
+          const Phrase& phrase = *it->second;
+          if (phrase.opens != in_openings || words.size() - i < phrase.words.size() ||
+              !std::equal(phrase.words.begin(), phrase.words.end(),
+                          words.begin() + static_cast<long>(i)) ||
+              std::ranges::any_of(phrase.outside,
+                                  [&](const std::string& p) { return path.starts_with(p); })) {
+            continue;
+          }
+          std::string around;
+          for (size_t k = i < 6 ? 0 : i - 6; k < std::min(words.size(), i + 8); ++k) {
+            around += words[k] + " ";
+          }
+          ADD_FAILURE() << path << " says \"" << around << "\"; instead: " << phrase.instead
+                        << " (tests/architecture/phrases.txt)";
+        }
+      }
+    };
+    find(mark == "md" ? prose_of_document(text) : prose_of_code(text, mark), false);
+    if (mark == "md") continue;
+    for (const std::string& opening : openings_of(text, mark)) find(opening, true);
+  }
+  EXPECT_GT(files, 1000u);
+}
+
+TEST(Words, PhrasesAreFoundInCommentsStringsAndDocuments) {
+  const auto holds = [](const std::string& prose, const std::string& phrase) {
+    const std::vector<std::string> words = words_of(prose), wanted = words_of(phrase);
+    return std::search(words.begin(), words.end(), wanted.begin(), wanted.end()) != words.end();
+  };
+  EXPECT_TRUE(holds(prose_of_code("int x;  // one\n// two, three\n", "//"), "one two"));
+  EXPECT_TRUE(holds(prose_of_code("f(\"zero one \"\n  \"two\");", "//"), "one two"));
+  EXPECT_TRUE(holds(prose_of_code("x = 1  # One\n", "#"), "one"));
+  EXPECT_TRUE(holds(prose_of_document("One\ntwo.\n"), "one two"));
+  EXPECT_FALSE(holds(prose_of_code("int one = two(three, four);", "//"), "one"));
+  EXPECT_FALSE(holds(prose_of_code("f(\"one\");  // `two`", "//"), "one"));
+  EXPECT_FALSE(holds(prose_of_code("f(\"one\");  // `two`", "//"), "two"));
+  EXPECT_FALSE(holds(prose_of_document("`one` <!-- x begin -->one<!-- x end -->"), "one"));
+  EXPECT_EQ(openings_of("// One\n// two\nint x;\n  // Three\n", "//"),
+            (std::vector<std::string>{" One", " Three"}));
+}
+
+// Prose of a document: paragraphs and items of lists, without tables, code and what commands write.
+std::vector<std::string> paragraphs_of(const std::string& document) {
+  static const std::regex item(R"(^\s*([-*]|\d+\.) )");
+  std::istringstream lines(prose_of_document(document));
+  std::vector<std::string> paragraphs(1);
+  bool is_code = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("```")) is_code = !is_code;
+    const bool ends = line.empty() || line.starts_with('|') || line.starts_with('#') ||
+                      line.starts_with('<') || line.starts_with("    ") ||
+                      line.starts_with("```") || is_code;
+    if (ends || std::regex_search(line, item)) paragraphs.emplace_back();
+    if (!ends) paragraphs.back() += std::regex_replace(line, item, "") + " ";
+  }
+  return paragraphs;
+}
+
+TEST(Words, SentencesOfDocumentsHaveAtMost35Words) {
+  static const std::regex end(R"([.:;?!]\s+)"), word(R"(\S+)"), link(R"(\]\([^)]*\))");
+  size_t sentences = 0;
+  for (const fs::path& document : documents()) {
+    for (const std::string& paragraph : paragraphs_of(text_of(document))) {
+      const std::string text = std::regex_replace(paragraph, link, "]");
+      for (std::sregex_token_iterator it(text.begin(), text.end(), end, -1), last; it != last;
+           ++it) {
+        const std::string sentence = *it;
+        const auto count = std::distance(
+            std::sregex_iterator(sentence.begin(), sentence.end(), word), std::sregex_iterator());
+        EXPECT_LE(count, 35) << document << ": " << sentence;
+        sentences += count > 0 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(sentences, 1000u);
+}
+
+TEST(Words, LinesOfDocumentsHaveAtMost140Characters) {
+  std::vector<fs::path> files = documents();
+  files.push_back(root / "CHANGELOG.md");
+  for (const fs::path& document : files) {
+    std::istringstream lines(prose_of_document(text_of(document)));
+    bool is_code = false;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with("```")) is_code = !is_code;
+      if (is_code || line.starts_with('|') || line.starts_with("    ") || line.starts_with('!') ||
+          line.starts_with('<'))
+        continue;
+      const auto letters = std::ranges::count_if(line, [](char c) { return (c & 0xC0) != 0x80; });
+      EXPECT_LE(letters, 140) << document << ": " << line;
     }
   }
 }

@@ -1,4 +1,4 @@
-// Nobody but its own file knows a kind of disturbance by name: others ask for what is known of it.
+// Only its own file names a kind of disturbance: others ask for what is known of it.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -18,22 +18,22 @@ const fs::path source_root = PHOTORQUE_SOURCE_DIR;
 const std::map<std::string, std::set<std::string>> allowed = {
     // A gyro has a bias, and senses the turning Earth, whether the torques are modelled or not.
     {"attitude/filtering/motion_model.cpp", {"earth_rotation", "gyro_bias"}},
-    // What `balance` measures is this very kind.
+    // `balance` measures this kind.
     {"attitude/studies/balance.cpp", {"static_unbalance"}},
     // A chart and a key of diagnosis.json that had this name before the kind.
     {"tools/pages/charts.cpp", {"empirical_torque"}},
     {"diagnosis/json.cpp", {"empirical_torque"}},
-    // What motion and light share is this very kind.
+    // Motion and light share this kind.
     {"diagnosis/light/together.cpp", {"gravity_tilt"}},
     // Kinds of the same form, named by one of the two.
     {"attitude/disturbances/bearing/turbine_torque.cpp", {"room_draft"}},
     {"attitude/disturbances/mass/battery_discharge.cpp", {"mass_shift", "static_unbalance"}},
     // A key of that table's name.
     {"attitude/disturbances/fields/helmholtz_cage.cpp", {"orbit"}},
-    // What `new` writes.
+    // `new` writes these kinds.
     {"tools/verbs/new_experiment.cpp", {"bearing_drag", "static_unbalance"}},
-    // Light in the run is this kind; what says the same by other means is refused, and the orbit
-    // learns where the Sun is.
+    // Light in the run is this kind; kinds with the same effect are refused, and the orbit takes
+    // the direction of the Sun.
     {"attitude/disturbances/fields/light_pressure.cpp", {"radiation_pressure"}},
     {"tools/coupling/couple.cpp", {"orbit", "planet_light", "power_balance", "radiation_pressure"}},
     // The trade compares ways by the disturbances that they are.

@@ -1,4 +1,4 @@
-// The rules of ARCHITECTURE.md, held against the sources.
+// The rules of ARCHITECTURE.md, compared with the sources.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ std::set<std::string> rooms_of_the_page() {
   return rooms;
 }
 
-// What the sources say: for every room with sources, the rooms that it includes.
+// The rooms of the sources: for every room with sources, the rooms that it includes.
 std::map<std::string, std::set<std::string>> rooms_of_the_sources() {
   std::map<std::string, std::set<std::string>> rooms;
   for (const std::string& folder : top_folders) {
@@ -228,7 +228,7 @@ TEST(Rooms, LibrariesNeitherPrintNorExit) {
 
 TEST(Rooms, OnlyTheTwoExceptionsAreThrown) {
   static const std::regex thrown(R"(\bthrow\s+([A-Za-z_:]+))");
-  // What begins with a small letter is a function or a variable that makes one of the two.
+  // A name with a small first letter is a function or a variable that makes one of the two.
   for (const std::string& folder : top_folders) {
     for (const fs::path& file : sources_of(folder)) {
       const std::string code = code_of(file);
@@ -351,7 +351,7 @@ TEST(Rooms, InterfacesAreThoseOfThePageWithAtMostThreeVirtualFunctions) {
   }
 }
 
-// Nobody multiplies what settings returned by a factor of units.
+// No value of settings is multiplied by a factor of units.
 TEST(Rooms, UnitsOfKeysAreConvertedInSettingsAlone) {
   static const std::regex converted(
       R"(\b(number|number_or|numbers|uncertain|vector3|vector3_or|get|get_or)\s*\([^;]*\)\s*[*/]\s*)"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -9,6 +10,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace photorque::tree {
@@ -82,6 +84,94 @@ inline std::string comments_of(const fs::path& file) {
 inline std::string code_of(const fs::path& file) {
   static const std::regex noise(R"(//[^\n]*|/\*[^]*?\*/|"(\\.|[^"\\\n])*")");
   return std::regex_replace(text_of(file), noise, " ");
+}
+
+// The comments and the string literals with blanks of a source, without its code: words of one text
+// follow each other, and '\x01' stands for everything between two texts and for names in
+// backquotes. `mark` begins a comment: "//" or "#".
+inline std::string prose_of_code(const std::string& text, const std::string& mark) {
+  const bool is_cpp = mark == "//";
+  std::string prose;
+  const auto add = [&](std::string_view part) {
+    bool is_name = false;
+    for (const char c : part) {
+      if (c == '`') is_name = !is_name;
+      if (c == '`' || !is_name) prose += c == '`' ? '\x01' : c;
+    }
+  };
+  // A literal of one word is a name, unless it continues the literal before it.
+  bool continues = false;
+  const auto add_string = [&](std::string_view part) {
+    if (!continues && part.find(' ') == std::string_view::npos) {
+      prose += '\x01';
+    } else {
+      prose += part;
+      continues = true;
+    }
+  };
+  const auto up_to = [&](const std::string& end, size_t from) {
+    return std::min(text.find(end, from), text.size());
+  };
+  for (size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    if (text.compare(i, mark.size(), mark) == 0) {
+      const size_t begin = text.find_first_not_of("/#", i), end = up_to("\n", i);
+      prose += ' ';
+      if (begin < end) add(std::string_view(text).substr(begin, end - begin));
+      i = end;
+    } else if (is_cpp && text.compare(i, 2, "/*") == 0) {
+      const size_t end = up_to("*/", i + 2);
+      add(std::string_view(text).substr(i + 2, end - i - 2));
+      i = std::min(end + 2, text.size());
+    } else if (is_cpp && c == 'R' && text.compare(i, 2, "R\"") == 0) {
+      const size_t open = up_to("(", i);
+      const std::string close = ")" + text.substr(i + 2, open - i - 2) + "\"";
+      const size_t end = up_to(close, open);
+      prose += '\x01' + text.substr(open + 1, end - open - 1) + '\x01';
+      i = std::min(end + close.size(), text.size());
+    } else if (!is_cpp && (text.compare(i, 3, "\"\"\"") == 0 || text.compare(i, 3, "'''") == 0)) {
+      const size_t end = up_to(text.substr(i, 3), i + 3);
+      prose += '\x01';
+      add(std::string_view(text).substr(i + 3, end - i - 3));
+      prose += '\x01';
+      i = std::min(end + 3, text.size());
+    } else if (c == '"' || (c == '\'' && (!is_cpp || i == 0 || !std::isalnum(text[i - 1])))) {
+      size_t end = i + 1;
+      while (end < text.size() && text[end] != c && text[end] != '\n') {
+        end += text[end] == '\\' ? 2 : 1;
+      }
+      end = std::min(end, text.size());
+      if (c == '\'' && is_cpp) {
+        prose += '\x01';
+      } else {
+        add_string(std::string_view(text).substr(i + 1, end - i - 1));
+      }
+      i = std::min(end + 1, text.size());
+    } else {
+      const bool is_blank = std::isspace(static_cast<unsigned char>(c)) != 0;
+      prose += is_blank ? ' ' : '\x01';
+      continues = continues && is_blank;
+      ++i;
+    }
+  }
+  return prose;
+}
+
+// A document without names in backquotes and without the parts that commands write,
+// `<!-- NAME begin -->` to `<!-- NAME end -->`.
+inline std::string prose_of_document(const std::string& text) {
+  static const std::regex begin(R"(<!-- ([^\n]*) begin -->)");
+  std::string prose;
+  auto from = text.cbegin();
+  for (std::smatch found; std::regex_search(from, text.cend(), found, begin);) {
+    prose.append(from, found[0].first);
+    const size_t end = text.find("<!-- " + found[1].str() + " end -->",
+                                 static_cast<size_t>(found[0].second - text.cbegin()));
+    from = end == std::string::npos ? text.cend() : text.cbegin() + static_cast<long>(end);
+  }
+  prose.append(from, text.cend());
+  static const std::regex name(R"(`[^`\n]+`)");
+  return std::regex_replace(prose, name, "\x01");
 }
 
 // The words of a photorque_kinds() list in a folder's CMakeLists.txt, such as "lamps/led", in

@@ -76,8 +76,8 @@ TEST(Balance, FindsTheOffsetWithinItsErrors) {
   }
 }
 
-// What the recording has of the battery's current is all of it: counted twice with what the model
-// would draw, the shift of a third of an ampere hour would be off by 3e-6 m.
+// The recorded current of the battery is the whole current: counted twice with what the model would
+// draw, the shift of a third of an ampere hour would be off by 3e-6 m.
 TEST(Balance, TheMeasuredCurrentCountsOnce) {
   const BalanceRun run = unbalanced(true, 6, true);
   ASSERT_NE(run.recording.find("battery_current_A"), nullptr);
@@ -119,7 +119,8 @@ TEST(Balance, WhatTheModelLacksIsSaidAndWidensTheErrors) {
   }
 }
 
-// Three hours without a reading tell nothing of the motion: both stretches begin anew.
+// Three hours without a reading do not determine the motion: both segments have their own initial
+// states.
 TEST(Balance, AGapCutsTheRecording) {
   BalanceRun run = unbalanced(true, 8);
   const size_t half = run.recording.rows() / 2;
@@ -128,7 +129,7 @@ TEST(Balance, AGapCutsTheRecording) {
   run.recording.report.gaps = {{run.recording.time_s[half - 1], run.recording.time_s[half]}};
   std::erase_if(run.recording.channels,
                 [](const Channel& c) { return c.name.starts_with("command"); });
-  // The commands of the first stretch are over before it is used.
+  // The commands of the first segment are over before it is used.
   for (size_t i = 0; i < half; ++i) {
     if (run.recording.time_s[i] > 115.0) continue;
     for (Channel& c : run.recording.channels) c.values[i] = NAN;

@@ -1,6 +1,6 @@
 // Means over blocks of readings against what a model predicts of them, for motions that turn far
-// within a block. The readings are noiseless and the model is the true one: what is left is the
-// error of comparing a mean with instants.
+// within a block. The readings are noiseless and the model is the true one: the remaining error is
+// that of comparing a mean with instants.
 #include <gtest/gtest.h>
 
 #include "attitude/observation/prediction.h"

@@ -37,7 +37,7 @@ const Table::Column& column(const Table& t, const std::string& name) {
   throw std::runtime_error("no column " + name);
 }
 
-// What the paper's own inputs determine must come out as printed, to its digits.
+// Figures that the paper's inputs determine agree to its printed digits.
 TEST(PaperFigures, AreReproducedWhereThePaperGivesTheInputs) {
   EXPECT_NEAR(figure("com_resolution_m").ours, 1.79e-7, 0.005e-7);
   EXPECT_NEAR(figure("stepper_torque_N_m").ours, 1.23e-5, 0.005e-5);
@@ -61,7 +61,7 @@ TEST(PaperFigures, EquatorialFieldIsThatOfThe1940s) {
 }
 
 // The paper: a gap that opens like a spring halves the ratio of drags from 19.63 to about 9. A like
-// bearing opens by the same factor; its film opens further, which the spring cannot tell.
+// bearing opens by the same factor; its film opens further, which the spring does not show.
 TEST(PaperFigures, SpringOpensTheGapAsInThePaperAndTheFilmOpensItFurther) {
   const UnloadedDrag drag = unloaded_drag();
   EXPECT_NEAR(drag.ratio_spring, 19.63 / 9.0, 0.25);
@@ -69,7 +69,7 @@ TEST(PaperFigures, SpringOpensTheGapAsInThePaperAndTheFilmOpensItFurther) {
   EXPECT_GT(drag.rated_load_N, 100.0);
 }
 
-// Light is traced elsewhere: what was found comes back beside the paper's figures, and nothing
+// Light is traced elsewhere: the given figures are returned beside the paper's figures, and nothing
 // else.
 TEST(PaperFigures, OfLightAreThoseGiven) {
   EXPECT_TRUE(std::isnan(figure("array_power_W").ours));

@@ -16,8 +16,7 @@ PropagationRun run_of(const std::string& toml) {
       Settings(std::make_shared<const SettingsNode>(parse_toml(toml, "run.toml"))));
 }
 
-// Instruments that look back, walk and pause; commands; a cable; an appendage with states of its
-// own.
+// Instruments that look back, walk and pause; commands; a cable; an appendage with extra states.
 const std::string pendulum = R"([platform]
 topology = "tabletop"
 mass_kg = 8.0

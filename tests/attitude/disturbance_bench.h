@@ -1,4 +1,4 @@
-// A platform with chosen disturbances, and what acts on it.
+// A platform with chosen disturbances, and its effects.
 #pragma once
 
 #include <gtest/gtest.h>

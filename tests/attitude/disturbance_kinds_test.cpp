@@ -1,4 +1,4 @@
-// What is said of kinds of disturbance that are none.
+// Errors for kinds of disturbance that do not exist.
 #include <gtest/gtest.h>
 
 #include "core/errors.h"
@@ -16,8 +16,8 @@ TEST(Disturbances, UnknownKindIsOneClearLine) {
   }
 }
 
-// What sets the field, the turning of the laboratory or the battery's current for all others acts
-// once.
+// A disturbance that sets the field, the rotation of the laboratory or the battery's current for
+// all others may be used once.
 TEST(Disturbances, ThatSetTheSameForAllAreRefusedTwice) {
   const SettingsNode cage = table({{"kind", node("helmholtz_cage")},
                                    {"field_lab_T", numbers({1e-5, 0, 0})}}),

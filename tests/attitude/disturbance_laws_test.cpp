@@ -1,5 +1,5 @@
-// Laws that hold for every registered disturbance: a new kind is tested without being asked, or the
-// first test here fails for want of an example of it.
+// Laws that hold for every registered disturbance: a new kind is tested automatically, or the first
+// test here fails without an example of it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -284,8 +284,8 @@ TEST_P(EveryDisturbance, DerivativesAgreeWithCentralDifferences) {
   expect_parameter_slopes(model, model.disturbances.size() - 1, state);
 }
 
-// The same with all of them acting: one disturbance's torque may depend on what another did to the
-// field, the centre of mass or the inertia.
+// Derivatives with all of them acting: one disturbance's torque may depend on what another did to
+// the field, the centre of mass or the inertia.
 TEST(Disturbances, DerivativesAgreeWhenAllActTogether) {
   AttitudeModel model = bench_model();
   model.schedule.append(0.0, {.command_body_N_m = {1e-4, -2e-4, 3e-4},
@@ -305,7 +305,7 @@ TEST(Disturbances, DerivativesAgreeWhenAllActTogether) {
 }
 
 // Turning the whole laboratory about the vertical, with its field and the Earth's axis, changes
-// nothing, for all that have no horizontal direction of their own.
+// nothing, for all without a horizontal direction.
 std::vector<std::string> kinds_without_heading() {
   static const std::map<std::string, std::string> headed = {
       {"tether", "pulls to zero attitude"},
@@ -340,7 +340,7 @@ TEST_P(EveryKindWithoutHeading, DoesNotKnowWhereNorthIs) {
   }
 }
 
-// What stands still takes no power, what brakes takes some: T·ω ≤ 0 for every drag.
+// A body at rest takes no power, a brake takes some: T·ω ≤ 0 for every drag.
 class EveryDrag : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Kind, EveryDrag,
                          testing::Values("bearing_drag", "dry_friction", "air_friction",

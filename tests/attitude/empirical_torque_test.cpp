@@ -203,7 +203,7 @@ TEST(EmpiricalTorque, StepsEndAtTheKnotsOfATableInTime) {
   EXPECT_LE(motion.statistics.steps, 30);
 }
 
-// What is written reads back as the same shape.
+// Written shapes are read back unchanged.
 TEST(EmpiricalTorque, ShapesAreWrittenAsTheyAreRead) {
   const std::vector<Entries> all = {
       {{"axes", words({"vertical", "lab"})}, {"heading_orders", numbers({1, 3})}},

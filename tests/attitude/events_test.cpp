@@ -146,7 +146,7 @@ TEST(Propagation, RefusesStatesThatAreNone) {
   EXPECT_THROW(propagate(dynamics, state, std::vector<double>{1.0}), InputError);
 }
 
-// Shares of a disc: two unit discs a radius apart share 2π/3 − √3/2.
+// Fractions of a disc: two unit discs a radius apart share 2π/3 − √3/2.
 TEST(Eclipse, UncoveredShareMatchesClosedForms) {
   EXPECT_EQ(uncovered_fraction(1.0, 2.0, 3.0), 1.0);
   EXPECT_EQ(uncovered_fraction(1.0, 2.0, 0.9), 0.0);

@@ -51,7 +51,7 @@ TEST(ExternalAir, OneFaceOfADiscFeelsHalf) {
   EXPECT_DOUBLE_EQ(torque_N_m(one_face, 1.0), 0.5 * torque_N_m(disc(0.25), 1.0));
 }
 
-// The same torque by summing Blasius' local wall stress 0.332 ρ v²/√Re_x over both faces.
+// The torque by summing Blasius' local wall stress 0.332 ρ v²/√Re_x over both faces.
 TEST(ExternalAir, SweptPlateSumsTheLocalWallStress) {
   const AirPart plate{
       .shape = AirShape::swept_plate, .length_m = 0.2, .inner_m = 0.1, .outer_m = 0.4};

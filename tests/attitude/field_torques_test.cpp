@@ -185,7 +185,7 @@ TEST(EarthRotation, IsFeltByRotors) {
   EXPECT_LT((momentum(end) - momentum(start)).norm(), 1e-11 * momentum(start).norm());
 }
 
-// What a north-finding gyro at rest reads: 15.041 deg/h.
+// The reading of a north-finding gyro at rest: 15.041 deg/h.
 TEST(EarthRotation, GyroAtRestReadsFifteenDegreesPerHour) {
   const AttitudeModel model = with(bench_model(), "earth_rotation", {});
   const PlatformState state = state_of(model, turned(0.3, {0, 1, 1}));

@@ -168,7 +168,7 @@ TEST(MotionOfAFilter, HasTheTransitionOfItsMean) {
       VecX column[2];
       for (const int side : {0, 1}) {
         FilterState moved = somewhere(model);
-        // Makes the dynamics anew at the parameter.
+        // Rebuilds the dynamics at the parameter.
         moved.covariance *= 1e-20;
         model.add(moved, (side == 0 ? step : -step) * VecX::Unit(model.size(), k));
         model.advance(moved, 0.04, gyro_rad_s);
@@ -236,7 +236,7 @@ TEST(Consistency, IsLostWithTheWrongNoise) {
   EXPECT_GT(camera.per_number(), 1.0 + 10.0 * std::sqrt(2.0 / camera.numbers));
 }
 
-// What the smoother claims is never more than what the filter claims, in any direction.
+// The smoother's covariance is never above the filter's, in any direction.
 TEST(Smoother, IsNowhereLessCertainThanTheFilter) {
   const PropagationRun run = drawn_run();
   const SimulatedRun simulated = simulate_run(run, 3);
@@ -315,7 +315,7 @@ TEST(Estimates, FindTheScaleOfAGyroThatTurns) {
   run.model.platform.inertia_kg_m2 = 0.1 * Mat3::Identity();
   run.model = with(run.model, "gyro_scale", {{"scale", numbers({0, 0, 0})}});
   for (Parameter& p : run.model.disturbances.back().parameters) p.sigma = 0.01;
-  // Constant rates tell scale from bias by what is known of the bias alone.
+  // Constant rates separate scale from bias only by the prior of the bias.
   run.model = with(run.model, "gyro_bias", {{"bias_rad_s", numbers({0, 0, 0})}});
   for (Parameter& p : run.model.disturbances.back().parameters) p.sigma = 1e-5;
   run.sensors = instruments(1e-4, 2e-4, 0.0);

@@ -1,4 +1,4 @@
-// What the schedule holds of the lamps' current, and the torque that follows it.
+// The lamps' current in the schedule, and the torque that follows it.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -16,7 +16,7 @@ PlanetSurface even(double albedo, double emissivity) {
   return {{albedo, 0.0, 0.0}, {emissivity, 0.0, 0.0}};
 }
 
-// What a plate of this normal (axes of planet_axes()) gets of each kind of light.
+// Each kind of light on a plate of this normal (axes of planet_axes()).
 PlanetIrradiance on_plate(const std::vector<PlanetPart>& parts, const PlanetSurface& surface,
                           const Vec3& normal, const Mat3& axes, const Vec3& to_sun,
                           double season = 0.0) {
@@ -110,7 +110,7 @@ TEST(PlanetLight, AgreesWithPointsThrownOnTheSphere) {
     return sum;
   };
   EXPECT_LT((flow(24, 128) - expected).norm(), 2e-4 * expected.norm());
-  EXPECT_LT((flow(4, 12) - expected).norm(), 3e-3 * expected.norm());  // as flights have it
+  EXPECT_LT((flow(4, 12) - expected).norm(), 3e-3 * expected.norm());  // the usual number of parts
 }
 
 // 22 December is the northern winter: more snow in the north, less infrared.

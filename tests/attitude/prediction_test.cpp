@@ -1,4 +1,4 @@
-// What instruments should have read, from the model, against what `propagate` records.
+// Predicted readings of instruments against those that `propagate` records.
 #include "attitude/observation/prediction.h"
 
 #include <gtest/gtest.h>

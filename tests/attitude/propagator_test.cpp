@@ -131,7 +131,7 @@ TEST(FreeBody, AgreesWithQuadruplePrecisionForADay) {
       static_cast<double>(trajectory.statistics.iterations) / trajectory.statistics.steps, cpu_s);
 }
 
-// What rounding does to n steps is a random walk: a few units in the last place times √n. A drift
+// The rounding error of n steps is a random walk: a few units in the last place times √n. A drift
 // of half a unit a step, always to one side, would be a hundred times as much.
 TEST(FreeBody, KeepsEnergyAndMomentumToRounding) {
   const Mat3 inertia_kg_m2 = Vec3(500, 200, 300).asDiagonal();

@@ -123,7 +123,7 @@ TEST(Recording, RealFilesAreMendedAndEverythingIsCounted) {
   EXPECT_EQ(report.gaps[0].from_s, 0.4);
   EXPECT_EQ(report.gaps[0].to_s, 2.0);
   EXPECT_THAT(report.text(), HasSubstr("1 gaps"));
-  // What was read, kept and left out adds up.
+  // Counts of rows read, kept and left out add up.
   EXPECT_EQ(report.rows_read, report.rows_kept + report.repeated_times + report.backward_times +
                                   report.rows_without_time + report.malformed_rows);
 }
@@ -289,7 +289,7 @@ TEST(Recording, DecimalCommasAreReadWhereTheyDoNotSeparateCells) {
   // With commas between cells too, every row has more of them than the header.
   EXPECT_THAT(complaint("t_s,gyro_x_rad_s\n0,0,1,5\n0,1,2,5\n0,2,2,5\n"),
               HasSubstr(":2: found a row of 4 cells, expected 2, as in the header"));
-  // What only looks like it is no number at all, and is left out like any other.
+  // A cell that only looks like a number is left out like any other.
   EXPECT_EQ(complaint("t_s;a\n0;1\n1;x,5\n2;1,2,3\n3;2\n"), "none");
 }
 

@@ -86,8 +86,8 @@ TEST(Sticking, HasExactDerivatives) {
   EXPECT_NEAR(t.derivatives[2] / closed_form, 1.0, 2e-3);
 }
 
-// Of a wheel whose angle nobody asks for nothing is left once it stands but derivatives that die
-// away: ω = ω₀ − (τ/I) t until it stops, so ∂ω/∂τ = −t/I before and nothing after.
+// A wheel at rest whose angle is not used has only derivatives that die away: ω = ω₀ − (τ/I) t
+// until it stops, so ∂ω/∂τ = −t/I before and nothing after.
 TEST(Sticking, DerivativesThatDiedAwayCostNoSteps) {
   constexpr double friction_N_m = 1e-3, start_rad_s = 1.0;
   AttitudeModel model = with(bench_model(), "dry_friction", {{"torque_N_m", node(friction_N_m)}});

@@ -91,7 +91,7 @@ TEST(Sun, KeplersEquationHoldsForEveryEllipse) {
   }
 }
 
-// Eight instants at once are eight: each lane has an anomaly of its own.
+// Eight instants at once are eight: each lane has a different anomaly.
 TEST(Sun, KeplersEquationHoldsInEveryLane) {
   const double e_rad[] = {-3.0, -1.7, -0.4, -1e-4, 0.0, 0.3, 1.5, 2.9};
   for (const double eccentricity : {0.0167, 0.29, 0.6, 0.95}) {

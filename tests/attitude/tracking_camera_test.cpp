@@ -53,7 +53,7 @@ TEST(SpotCentre, UnderABackgroundIsAsGoodAsAFittedGaussian) {
   EXPECT_NEAR(covariance(0, 0) / expected, 1.0, 0.01);
 }
 
-// A long even line of light along x, where only its ends tell: along the line the centre is less
+// A long even line of light along x, where only its ends matter: along the line the centre is less
 // certain than across it.
 TEST(SpotCentre, SuffersFromMotionAlongItAlone) {
   const Spot still{{20.0, 20.0}, 1e5, 1.0, Vec2::Zero()};
@@ -337,8 +337,8 @@ TEST(SimulatedImages, AreReadFasterThanTheCameraTakesThem) {
   EXPECT_GT(320.0 / wall.count(), 160.0);
 }
 
-// What propagate records scatters as the geometry says, at a tilt where x, y and z differ from
-// zero tilt.
+// Recorded attitudes scatter as the geometry predicts, at a tilt where x, y and z differ from zero
+// tilt.
 TEST(CameraWithGeometry, MakesTheNoiseOfARecording) {
   Sensors sensors;
   sensors.camera.emplace().geometry = cross_camera();

@@ -1,5 +1,5 @@
 // Files in and out: what is no file is refused, what is written appears whole, what killed
-// processes left is told from the work of living ones.
+// processes left is distinguished from the work of living ones.
 #include "core/files.h"
 
 #include <gmock/gmock.h>
@@ -92,7 +92,7 @@ TEST_F(FilesInAFolder, LeftoversOfTheDeadGoAndThoseOfTheLivingStay) {
   EXPECT_TRUE(fs::exists(folder_ / ".of_the_user.part"));
 }
 
-// Whoever may write beside a result cannot lay a link where its temporary will be.
+// A user who may write beside a result cannot place a link where its temporary will be.
 TEST_F(FilesInAFolder, TemporariesAreNewAndOfNamesThatCannotBeForeseen) {
   const fs::path file = folder_ / "map.csv";
   EXPECT_NE(temporary_beside(file), temporary_beside(file));

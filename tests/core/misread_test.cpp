@@ -1,4 +1,4 @@
-// What is wrong with keys beside a choice.
+// Mistakes of keys beside a choice.
 #include <gmock/gmock.h>
 
 #include "core/settings/keys.h"

@@ -215,7 +215,7 @@ TEST(RotationTable, BytesGiveItBackAndOthersAreRefused) {
 }
 
 // Found by reading and by fuzzing: sums that wrapped round let places beyond the table through, and
-// a box among its own children was followed for ever.
+// a box among its own children was followed without end.
 TEST(RotationTable, BytesThatPointElsewhereAreRefused) {
   const std::string bytes = make_rotation_table(exact(sideways), up_to(30, 1e-3, 3)).bytes();
   constexpr size_t first_box = 88, first_sample = first_box + 48, children = first_box + 148;

@@ -77,7 +77,7 @@ TEST(Snapshot, SaysWhereBytesAreMissingOrLeft) {
   EXPECT_FALSE(snapshot.is_whole());
 }
 
-// Lengths that no bytes stand for must not be believed.
+// Lengths that no bytes stand for must not be trusted.
 TEST(Snapshot, TakesNoMemoryForLengthsBeyondItsBytes) {
   uint64_t length = uint64_t{1} << 60;
   Snapshot taken;

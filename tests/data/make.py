@@ -16,7 +16,7 @@ def as_float32(original, copy):
 
 
 def without_needless_digits(original, copy):
-    """The same numbers, each as the shortest text that reads back equal."""
+    """Numbers, each as the shortest text that reads back equal."""
     lines = original.read_text().splitlines()
     short = [line if line.startswith("#") else ",".join(map(shortest, line.split(",")))
              for line in lines]

@@ -55,8 +55,8 @@ INSTANTIATE_TEST_SUITE_P(All, CaseOfAnotherProgram,
                                          "11", "12"),
                          [](const auto& one) { return std::string(one.param); });
 
-// Strong friction, which `propagate` made of the true model: the belief lacks it. Platforms that
-// the experiment calls free, and that rest on something because it names a bearing's drag.
+// Strong friction, which `propagate` made of the true model: the nominal model lacks it. Platforms
+// that the experiment calls free, and that rest on something because it names a bearing's drag.
 std::set<std::string> names_found(const std::string& name, const std::vector<std::string>& runs) {
   const fs::path folder = outside::reference_data("faults") / name;
   const Settings settings(std::make_shared<const SettingsNode>(read_toml(folder / "belief.toml")));
@@ -81,7 +81,7 @@ TEST(StrongFriction, OfAPendulum) {
   EXPECT_EQ(names_found("dry_pendulum", {"run.csv.gz"}), Names({"dry_friction"}));
 }
 
-// Each alone has the wrong sign beside the drag that is believed.
+// Each alone has the wrong sign beside the nominal drag.
 TEST(StrongFriction, BesideADragThatBothStandInFor) {
   EXPECT_EQ(names_found("spin_pair", {"run1.csv.gz", "run2.csv.gz"}),
             Names({"air_pressure_drag", "dry_friction"}));

@@ -1,4 +1,4 @@
-// A law that nobody knows, from the recording to the file that flies it again.
+// An unknown law, from the recording to the file that propagates it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ Fitted fitted(unsigned seed, const Extra& extra, const std::string& label) {
   return f;
 }
 
-// What a diagnosis says of a trial, as far as improved.toml needs it.
+// A diagnosis of a trial, as far as improved.toml needs it.
 Diagnosis told(const Fitted& f) {
   Diagnosis d;
   d.verdict = Verdict::unexplained;
@@ -79,7 +79,7 @@ Diagnosis told(const Fitted& f) {
   return d;
 }
 
-// improved.toml, flown, goes where the fitted model goes.
+// improved.toml, propagated, follows the fitted model.
 void expect_same_flight(const Fitted& f, const Diagnosis& d) {
   const std::string text = improved_experiment(nominal_text, d, ".");
   PropagationRun run = read_propagation(
@@ -128,7 +128,7 @@ TEST(EmpiricalLaw, FadingFliesAgainWithItsTimeConstant) {
   EXPECT_THAT(d.empirical[0].formula, HasSubstr("exp(−t/(25"));
 }
 
-// The same of an exponent.
+// The law with a fitted exponent.
 TEST(EmpiricalLaw, PowerOfTheTiltFliesAgainWithItsExponent) {
   const Fitted f = fitted(
       3,

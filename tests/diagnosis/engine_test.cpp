@@ -203,7 +203,7 @@ TEST(Trial, NumbersBeyondPhysicsAreFittedAnew) {
 // differences of the compliances are known, far better than each of them: what is fitted below zero
 // goes back to it together, and the motion stays what it was.
 TEST(Trial, CompliancesGoBackWithinPhysicsTogether) {
-  // What is stated of the centre of mass brings their mean below zero.
+  // The stated centre of mass brings their mean below zero.
   const Vec3 compliance_s2 = Vec3(1e-8, 8e-8, 1.3e-7) - Vec3::Constant(1.6e-7);
   for (unsigned seed = 31; seed < 37; ++seed) {
     const NamedRecording seen = recorded(seed, [&](const State& s) {

@@ -1,5 +1,5 @@
 // Motion that turns far within the blocks into which a recording is averaged: 3.6 rad/s in blocks
-// of a tenth of a second, as 600 s at 160 Hz are. Recordings of a small integration of their own.
+// of a tenth of a second, as 600 s at 160 Hz are. Recordings of a small independent integration.
 #include <gtest/gtest.h>
 
 #include "diagnosis/attitude/diagnose.h"

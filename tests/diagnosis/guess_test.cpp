@@ -140,7 +140,7 @@ TEST_F(Guess, RatesAboutOneAxisTellNoMoments) {
 }
 
 // Swapped, reversed or in degrees, the rates of a thrown body follow no inertia; where the stated
-// one is only a guess nothing but the wheel tells it from a mirror image.
+// one is only a guess only the wheel distinguishes it from a mirror image.
 TEST_F(Guess, RatesThatFollowNoInertiaAreReadAnew) {
   const Recording recording = thrown(racquet, {4.0, 2.0, 3.0}, 0.003, 5, 2e-3, 900.0);
   const Mat3 guessed = Mat3::Identity();
@@ -283,7 +283,7 @@ TEST_F(Guess, BlanksAndDecimalCommasAreRead) {
   EXPECT_EQ(guess_columns(german)[1].channel, "angle_deg");
 }
 
-// The experiment that is guessed of a wheel names what acts on it, in words of another maker.
+// The experiment that is guessed of a wheel names its effects, in words of another maker.
 TEST_F(Guess, AWheelIsDiagnosedByItsGuess) {
   constexpr double dry = 0.01, form = 1.2e-4, start_rad_s = 30.0;
   std::mt19937_64 random(3);

@@ -26,7 +26,7 @@ NamedRecording with_bias(NamedRecording r, const BiasOverTime& bias_rad_s) {
   return r;
 }
 
-// What an unknown torque does to the motion must not matter.
+// The effect of an unknown torque on the motion must not matter.
 Vec3 unknown_torque(const State& s) {
   return 4e-6 * Vec3(std::sin(0.11 * s.time_s), std::cos(0.07 * s.time_s), 0.3);
 }
@@ -44,7 +44,7 @@ std::vector<BiasHistory> histories_of(const std::vector<NamedRecording>& recordi
   return bias_histories(pieces);
 }
 
-// What a gyro of the class that is assumed reads: scale and misalignment of one per cent.
+// Readings of a gyro of the assumed class: scale and misalignment of one per cent.
 NamedRecording with_gyro_matrix(NamedRecording r, unsigned seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal(0.0, 0.01);

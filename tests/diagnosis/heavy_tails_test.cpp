@@ -13,7 +13,7 @@ namespace {
 constexpr double tail_interval_s = 0.1;
 constexpr int tailed = 5;
 
-// A gyro's z alone, with what is left of it.
+// A gyro's z alone, with its residuals.
 struct LeftRun {
   std::vector<Observation> seen;
   std::vector<Prediction> residuals;
@@ -129,7 +129,7 @@ TEST(HeavyTails, TamedReadingsHaveTheBoundOfTheMeanAndTheirStatedLevel) {
       return sum / static_cast<double>(count);
     };
     raw_square += std::pow(mean_of(), 2) / draws;
-    tame(tails, run.residuals, run.seen);
+    robustify(tails, run.residuals, run.seen);
     tamed_square += std::pow(mean_of(), 2) / draws;
     for (size_t i = 0; i < count; ++i)
       run.residuals[0].off[i][tailed] = run.seen[0].gyro_rad_s[i][2];
@@ -149,8 +149,8 @@ TEST(HeavyTails, TamingMovesWithTheMotion) {
   const auto noise = [] { return noise_of(3, std::student_t_distribution<double>(3.0)); };
   const auto parabola = [](double t) { return 20.0 - 3.0 * t + 0.05 * t * t; };
   LeftRun alone = left_run(300, noise()), moved = left_run(300, sum_of(noise(), parabola));
-  tame(tails, alone.residuals, alone.seen);
-  tame(tails, moved.residuals, moved.seen);
+  robustify(tails, alone.residuals, alone.seen);
+  robustify(tails, moved.residuals, moved.seen);
   for (size_t i = 0; i < 300; ++i) {
     const double time_s = alone.seen[0].time_s[i];
     EXPECT_NEAR(moved.seen[0].gyro_rad_s[i][2] - parabola(time_s), alone.seen[0].gyro_rad_s[i][2],
@@ -181,7 +181,7 @@ TEST(HeavyTails, AnAttitudeIsTurnedAboutItsLabAxisAlone) {
   HeavyTails tails;
   tails[0] = HeavyTail{3.0, 0.1, 1e-4};
   std::vector<Observation> runs = {seen};
-  tame(tails, {residuals}, runs);
+  robustify(tails, {residuals}, runs);
   const Vec3 left = rotation_vector(runs[0].attitude[wrong] * attitude.conjugate());
   // An error of a hundred scales is as good as none.
   EXPECT_LT(std::abs(left.x()), 4e-4);

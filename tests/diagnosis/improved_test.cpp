@@ -1,4 +1,4 @@
-// improved.toml: what the user wrote, and what was found, read back by the program itself.
+// improved.toml: the text of the user and the found effects, read back by the program.
 #include "diagnosis/improved.h"
 
 #include <gmock/gmock.h>
@@ -46,7 +46,7 @@ TEST(Improved, KeepsTheUsersTextToTheLastComment) {
   EXPECT_THAT(improved_experiment(written, d, "."), StartsWith(written + "\n"));
 }
 
-// What was uncertain and fitted acts as fitted; as it was written it stays as a comment.
+// Uncertain values act as fitted; as it was written it stays as a comment.
 TEST(Improved, PutsFittedNominalValuesInTheirPlaces) {
   const std::string text = improved_experiment(written, sample_diagnosis(), ".");
   const Disturbance unbalance = read_attitude_model(read(text)).model.disturbances.at(0);
@@ -64,7 +64,7 @@ TEST(Improved, PutsFittedNominalValuesInTheirPlaces) {
 }
 
 // Of the second disturbance, in another unit, over several lines, beside comments and brackets in
-// texts; what the file says in another way is told in a comment.
+// texts; values that the file states in another way appear in a comment.
 TEST(Improved, FindsNominalValuesHoweverTheyAreWritten) {
   const std::string many = R"([platform]
 topology = "tabletop"
@@ -156,7 +156,7 @@ TEST(Improved, PropagatesTheFirstRecordingAgain) {
   EXPECT_EQ(propagate(run).recording.rows(), 2001u);
 }
 
-// An appendage that swings begins as it was fitted, but in a flight of the user's own.
+// An appendage that swings begins as it was fitted, but in a run of the user's.
 TEST(Improved, BeginsWithWhatSwingsBesideTheBody) {
   Diagnosis d = sample_diagnosis();
   d.effects = {{"flexible_mode",
@@ -266,7 +266,7 @@ TEST(Improved, HoldsAnEmpiricalTorque) {
   }
 }
 
-// A sentence with a line break must not become a line of its own.
+// A sentence with a line break must not become a separate line.
 TEST(Improved, CommentsStayComments) {
   Diagnosis d = sample_diagnosis();
   d.sentence = "one\nmass_kg = 3";

@@ -18,7 +18,8 @@ namespace {
 
 using Names = std::set<std::string>;
 
-// What a recording of motion cannot reveal, or nobody can forget: see the reasons in their files.
+// Kinds that a recording of motion does not show, or that an experiment cannot lack: see the
+// reasons in their files.
 const Names not_screened = {
     "empirical_torque", "helmholtz_cage", "mass_error",         "orbit",
     "planet_light",     "power_balance",  "radiation_pressure", "stepper_quantization",
@@ -61,15 +62,16 @@ TEST(KindRegistry, EveryExceptionHasAReasonAndNothingElse) {
   }
 }
 
-TEST(KindRegistry, LikenessesNameKinds) {
+TEST(KindRegistry, ConfusableKindsAreKinds) {
   for (const DisturbanceKind& kind : disturbance_kinds()) {
-    for (const Likeness& like : kind.screening.alike) {
+    for (const ConfusableKind& like : kind.screening.confusable_kinds) {
       EXPECT_NE(find_kind(like.kind), nullptr) << kind.name << " is like " << like.kind;
     }
   }
 }
 
-// What a fit assumes fits the law: its keys make the disturbance, and each starts within bounds.
+// The assumptions of a fit agree with the law: its keys make the disturbance, and each starts
+// within bounds.
 TEST(KindRegistry, TheKeysOfAFitAreThoseOfTheLaw) {
   const AttitudeModel model = bench_model();
   for (const Effect& effect : catalogue(context_of(model))) {

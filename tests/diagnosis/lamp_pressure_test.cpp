@@ -1,5 +1,5 @@
 // Whether a torque follows the light of the lamps or is there all the time: their recorded current
-// tells.
+// decides.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

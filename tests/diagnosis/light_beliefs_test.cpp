@@ -1,5 +1,5 @@
-// What an experiment knows of light and power to within an error. The recordings are made by
-// validation/light, which shares nothing with the program.
+// Priors of an experiment on light and power. The recordings are made by validation/light, which
+// shares nothing with the program.
 #include "diagnosis/light/beliefs.h"
 
 #include <gmock/gmock.h>
@@ -24,7 +24,7 @@ class LightBeliefs : public testing::Test {
  protected:
   static constexpr double brighter = 0.97, stated_W = 6.29;
 
-  // What the expression finds, written anew.
+  // Replaces all matches of the expression.
   void rewrite(const char* expression, const std::string& format) {
     const std::string before = text_;
     text_ = std::regex_replace(text_, std::regex(expression), format);

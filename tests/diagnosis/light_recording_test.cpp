@@ -1,4 +1,4 @@
-// Readers of scans, sweeps and runs: told apart by their headers, and what is dropped is counted.
+// Readers of scans, sweeps and runs: recognised by their headers, with dropped rows counted.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ fs::path light_file(const std::string& name, const std::string& text) {
 TEST(LightRecordings, AScanAmongCommentsAndTornRows) {
   const auto scan = read_light_recording(
       light_file("scan.csv",
-                 "# operator: nobody\nsome words of an "
+                 "# operator: none\nsome words of an "
                  "instrument\nu_m,v_m,irradiance_W_m2,tilt_deg,heading_deg\n"
                  "0.01,0.02,300.5,12,60\n0.01,0.03\n0.02,0.02,nan,12,60\n0.03,0.02,301,12,60\n"),
       {});
@@ -65,7 +65,7 @@ TEST(LightRecordings, CopiesOfARowAreLeftOut) {
   EXPECT_EQ(sweeps.rows(), 2u);
 }
 
-// Currents read to a hundredth where the lamps are darkest: the light of a steady stretch is that
+// Currents read to a hundredth where the lamps are darkest: the light of a steady interval is that
 // of their mean, 0.7 A and 0.07 A but for ± 1 mA in turn.
 TEST(LightRecordings, NoiseOfTheLampsCurrentIsNoneOfTheirLight) {
   std::string rows = "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,led_current_A\n";

@@ -1,4 +1,4 @@
-// Machines that are no table-top platforms: one axis, free flight, whatever was recorded of them.
+// Machines that are no table-top platforms: one axis, free bodies, any channels.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -64,7 +64,7 @@ TEST(Machines, AWheelThatCoastsDownIsNamedByItsDryTorqueAndItsDrag) {
   for (const Alternative& a : d.alternatives) EXPECT_THAT(a.kinds, Not(Contains("room_draft")));
 }
 
-// The same wheel with a hum that no law has, beside which the two names stand. Each gate that they
+// A wheel with a hum that no law explains, beside which the two names stand. Each gate that they
 // pass takes them away where it asks for what nothing can give.
 TEST(Machines, NamesBesideTheRestPassEveryGate) {
   constexpr double dry = 0.01, form = 1.2e-4, start_rad_s = 30.0;
@@ -213,7 +213,7 @@ TEST(Machines, RecordingsAreCutWhereSomethingHappened) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> noise(0.0, 1e-7);
   for (int i = 0; i < 60; ++i) {
-    // Two stretches of other rates, the firing noted in row 20; in row 40 one that nobody noted.
+    // Two segments of other rates, the firing noted in row 20; in row 40 one that was not noted.
     const double t = i < 20 ? i : i < 40 ? 20.0 - (i - 20) : 3.0 * (i - 40);
     angle.values.push_back(1e-5 * t + noise(random));
     thruster.values.push_back(i == 20 ? 1.0 : 0.0);
@@ -235,8 +235,8 @@ TEST(Machines, RecordingsAreCutWhereSomethingHappened) {
   EXPECT_EQ(jumped.all.size(), 4u);
 }
 
-// What an encoder counts in steps, and what swings less and less, has no kinks: an angle that turns
-// evenly by a tenth of a step a row, and one of an amplitude that falls to e^-5.
+// Steps of an encoder and decaying oscillations are not kinks: an angle that turns evenly by a
+// tenth of a step a row, and one of an amplitude that falls to e^-5.
 TEST(Machines, StepsOfAnEncoderAndTheBeginningOfADecayAreNoKinks) {
   Platform axle;
   axle.topology = Topology::one_axis;

@@ -55,7 +55,7 @@ Quat turned_by(const Quat& q, const Vec3& turn) {
 }
 
 // Gauss and Newton, derivatives by differences: the pose of markers where they are stated from the
-// images of those in truth, all weighing the same.
+// images of the true ones, all weighing the same.
 Quat pose_from(const Quat& truth, const Board& errors) {
   const Board board = stated_m();
   Quat pose = truth;
@@ -84,7 +84,7 @@ Vec3 turn_seen(const Quat& truth, const Board& errors) {
   return turn.angle() * turn.axis();
 }
 
-// What the law says of these errors.
+// The rotation by these errors according to the law.
 Vec3 turn_by_law(const TrackingCamera& camera, const Quat& attitude, const Board& errors) {
   AttitudeModel model = bench_model();
   std::vector<double> all;

@@ -1,4 +1,4 @@
-// What a diagnosis names, for tests to look at.
+// The names of a diagnosis, for tests.
 #pragma once
 
 #include <stdexcept>

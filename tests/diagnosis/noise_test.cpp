@@ -169,7 +169,7 @@ TEST(NoiseSearch, MeasuresALevelThatIsNotAsStated) {
   }
 }
 
-// What is missing from the model is not noise, however strong.
+// A missing effect is not noise, however strong.
 TEST(NoiseSearch, TakesNoPhysicsForNoise) {
   Session pulsed;
   pulsed.pulse_N_m = 1e-3;

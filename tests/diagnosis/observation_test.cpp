@@ -65,8 +65,8 @@ TEST(Observation, BlocksStandWhereTheMotionIs) {
       for (size_t i = 0; i < blocks.blocks(); ++i) {
         const double t_s = blocks.time_s[i];
         const Quat off = blocks.attitude[i] * Top::lab_from_body(t_s).conjugate();
-        // What stays is the curvature: of the wobble 0.06 rad/s² T²/24 = 5″ and more in blocks of
-        // odd rows.
+        // The curvature remains: of the wobble 0.06 rad/s² T²/24 = 5″ and more in blocks of odd
+        // rows.
         EXPECT_LT(rotation_vector(off).norm(), 7.0 * arcsec) << t_s;
         if (!gyro) continue;
         // And of the rate, ω″ T²/24 = 1.5e-5 rad/s.
@@ -137,7 +137,7 @@ TEST(FreeRates, ThatAreRightOrSayNothingStayAsTheyAre) {
   // Two axes reversed are the same motion seen from elsewhere.
   Observation turned = rates_read_as(Vec3(-1, -1, 1).asDiagonal());
   EXPECT_EQ(repair_free_rates({&turned, 1}, inertia), "");
-  // Of a ball nothing follows, of other physics nothing that an axis could mend.
+  // Of a ball nothing follows, of other physics nothing that an axis could repair.
   Observation mirrored = rates_read_as(Vec3(1, 1, -1).asDiagonal());
   EXPECT_EQ(repair_free_rates({&mirrored, 1}, Mat3::Identity()), "");
   Observation driven = right;

@@ -20,7 +20,7 @@ struct State {
   double time_s = 0.0;
 };
 
-// What acts besides gravity and drag, in body axes.
+// Torques besides gravity and drag, in body axes.
 using Extra = std::function<Vec3(const State&)>;
 
 inline Mat3 inertia_kg_m2() {

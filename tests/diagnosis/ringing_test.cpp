@@ -1,5 +1,5 @@
-// What a swinging appendage does to a platform that turns about one axis, against the step response
-// of a damped oscillator as every textbook has it.
+// The effect of a swinging appendage on a platform with one axis, against the textbook step
+// response of a damped oscillator.
 #include "diagnosis/attitude/effects/flexible_mode.h"
 
 #include <gtest/gtest.h>

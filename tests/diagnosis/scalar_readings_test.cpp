@@ -26,8 +26,8 @@ std::vector<std::string> named_in(const Diagnosis& d) {
   return kinds;
 }
 
-// What the recording of rigid_body_recording.h holds, in other columns. `from`: the attitude as the
-// camera saw it, row by row.
+// The recording of rigid_body_recording.h in other columns. `from`: the attitude as the camera saw
+// it, row by row.
 NamedRecording rewritten(NamedRecording run, const std::vector<std::string>& columns,
                          const std::function<std::vector<double>(const Quat&)>& from,
                          bool keeps_gyro) {
@@ -161,7 +161,7 @@ TEST(ScalarReadings, AGyroWithExchangedAxesIsNotTakenForAnotherSequence) {
   EXPECT_EQ(read.angles->text, "");
   Observation seen = read.all.front();
   const Vec3 before = seen.gyro_rad_s[10];
-  // A piece that is too short to tell by itself is read as the others are.
+  // A piece that is too short to decide alone is read as the others are.
   const size_t end = seen.blocks(), cut = end - 12;
   std::vector<Observation> pieces = {seen.part(0, cut), seen.part(cut, end)};
   EXPECT_EQ(repair_conventions({&pieces[1], 1}), "");
@@ -263,7 +263,7 @@ TEST(ScalarReadings, TheLengthOfARateNamesTheDragOfABody) {
   EXPECT_LT(drag.holdout->chi2_per_sample_after, 2.0);
 }
 
-// What the experiment does not have is not compared, and that is said.
+// An instrument that the experiment lacks is not compared, with a note.
 TEST(ScalarReadings, AnUndeclaredAccelerometerIsNotCompared) {
   NamedRecording run = rigid_body::recorded(5, dipole_torque);
   for (const char* name : {"accel_x_m_s2", "accel_y_m_s2", "accel_z_m_s2"}) {

@@ -1,5 +1,5 @@
 // Machines off the bearing: one angle of a spacecraft that the Sun presses on, and what slides on a
-// table. Recordings by closed forms and by a small integration of their own.
+// table. Recordings by closed forms and by a small independent integration.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ using testing::UnorderedElementsAre;
 const char* const puck_toml =
     "[platform]\ntopology = \"planar\"\n[sensors.position]\nnoise_m = 3e-4\n";
 
-// Down a slope under viscous drag: v → −g s/c exponentially, each axis by itself.
+// Down a slope under viscous drag: v → −g s/c exponentially, each axis alone.
 Recording puck(double slope_x, double slope_y, double drag_1_s, uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> noise(0.0, 3e-4);
@@ -83,7 +83,7 @@ TEST(Pucks, WhatOnlySlidesOutIsBrakedByFriction) {
   EXPECT_NEAR(parameter(d, "sliding_friction", "coefficient").value[0], coefficient, 0.02);
 }
 
-// A wall that it bounces off is a start anew, no force.
+// A wall that it bounces off is a new initial state, no force.
 TEST(Pucks, AWallIsNoForce) {
   Recording free = puck(0, 0, 0, 3);
   for (double& x : free.channels[0].values) {
@@ -120,7 +120,7 @@ noise_arcsec = 0.1
 )";
 
 // A roll between firings under a torque per unit of inertia [rad/s²] that changes so slowly that it
-// is constant over a stretch, and shakes by a white torque besides; a start of its own each.
+// is constant over a segment, and shakes by a white torque besides; an initial state for each.
 template <typename Torque>
 Recording roll(const Torque& torque, double shaking, uint64_t seed) {
   std::mt19937_64 random(seed);

@@ -92,7 +92,7 @@ void change(std::vector<std::string>& lines, Chance& chance) {
     case 5:
       std::swap(line, lines[chance.below(lines.size())]);
       break;
-    case 6: {  // the key of another line with a value of its own
+    case 6: {  // the key of another line with another value
       const std::string key = std::string(chance.one_of(lines));
       lines.insert(place, key.substr(0, key.find('=')) + "= " + chance.one_of(values));
       break;

@@ -81,7 +81,7 @@ class Mutator {
   std::mt19937_64 random_;
 };
 
-// What a custom mutator calls; the seed goes on by itself, the same on every machine.
+// The function that a custom mutator calls; the seed advances, the same on every machine.
 uint64_t changes_of_bytes = 0;
 
 std::string changed(const std::string& bytes, uint64_t seed) {

@@ -1,4 +1,4 @@
-// What mutators share: chance, and the fuzzer's own changes of bytes.
+// Shared by mutators: chance, and the fuzzer's own changes of bytes.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// What fuzz targets share. A target is one reader of files from outside: any bytes must give what
-// it reads or an InputError, nothing else.
+// Shared by fuzz targets. A target is one reader of files from outside: any bytes must give what it
+// reads or an InputError, nothing else.
 #pragma once
 
 #include <fcntl.h>
@@ -29,8 +29,8 @@ void may_refuse(const Read& read) {
   }
 }
 
-// A folder of this process in memory, for what is written under a name; in
-// PHOTORQUE_FUZZ_FOLDER, if whoever runs this means to tidy up.
+// A folder of this process in memory, for what is written under a name; in PHOTORQUE_FUZZ_FOLDER,
+// if the caller removes it afterwards.
 inline const std::filesystem::path& folder_in_memory() {
   static const std::filesystem::path folder = [] {
     const char* const wanted = std::getenv("PHOTORQUE_FUZZ_FOLDER");

@@ -1,4 +1,4 @@
-// What stands in HDF5 files, read back by the library itself.
+// The content of HDF5 files, read back by the library.
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
@@ -101,7 +101,7 @@ TEST_F(Hdf5Files, HoldEveryFigureTableAndCurve) {
   H5Fclose(file);
 }
 
-// The layout that VTK's reader wants: numbers in the order z, y, x, points in the middle of bins.
+// The layout that VTK's reader needs: numbers in the order z, y, x, points in the middle of bins.
 TEST_F(Hdf5Files, AreVtkImages) {
   const Map map = sample_product().maps.front();
   const hid_t file = open(file_in("", map.name, "vtkhdf").string());

@@ -150,7 +150,7 @@ TEST_F(MapFiles, PngIsThePictureWithADescription) {
   expect_description_of(map, page.spec.get_string_attribute("ImageDescription"));
 }
 
-// The share of pixels of a saturated red, which no map of sequential colours has.
+// The fraction of pixels of a saturated red, which no map of sequential colours has.
 double red_share(const Picture& picture) {
   size_t red = 0;
   for (size_t i = 0; i < picture.rgb.size(); i += 3) {

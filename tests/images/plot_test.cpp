@@ -23,7 +23,7 @@ std::vector<PagePoint> noisy_line(size_t count, unsigned seed) {
   return line;
 }
 
-// A waterfall: what is lost hangs between what was there before it and what is left.
+// A waterfall: what is lost hangs between what was there before it and the remainder.
 TEST(Plot, BarsHangBetweenTwoValuesWithTheirNamesUnderThem) {
   Plot plot{"falls", "Falls", "", "power [W]", {}, false, false, {}};
   const auto bar = [&](const std::string& name, double x, double from, double to) {
@@ -272,7 +272,7 @@ TEST(PlotHtml, BreaksTheLineAtAGap) {
   EXPECT_EQ(paths_of(svg_of(plot_html(plot)), "stroke", blue).size(), 2u);
 }
 
-// A page may hold many: each is a document of its own, and fetches nothing.
+// A page may hold many: each is a separate document, and fetches nothing.
 TEST(PlotHtml, IsAnImageThatHoldsItself) {
   Plot plot = constant_plot();
   plot.title = "Rate <1 & more";

@@ -59,7 +59,7 @@ TEST(ReadPicture, RefusesWhatIsNone) {
   EXPECT_THROW(read_picture(good.substr(0, 40)), InputError);
 }
 
-// Its library told the terminal of each, beside the error.
+// Its library printed each on the terminal, beside the error.
 TEST(ReadPicture, RefusesDamageWithoutAWordOfItsOwn) {
   const std::string good = two_texels();
   testing::internal::CaptureStderr();
@@ -72,7 +72,7 @@ TEST(ReadPicture, RefusesDamageWithoutAWordOfItsOwn) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-// The same with another size in its header, whose checksum is right (ISO 3309, as PNG has it).
+// A picture with another size in its header, whose checksum is right (ISO 3309, as PNG has it).
 std::string of_size(uint32_t width, uint32_t height) {
   std::string bytes = two_texels();
   const auto put = [&](size_t at, uint32_t value) {

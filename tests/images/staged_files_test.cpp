@@ -1,4 +1,4 @@
-// Results replace those of the command's last run, and nobody else's files.
+// Results replace those of the command's last run, and no other files.
 #include "images/writers/staged_files.h"
 
 #include <gmock/gmock.h>

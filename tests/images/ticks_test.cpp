@@ -21,7 +21,7 @@ std::vector<AxisRange> many_ranges() {
   return ranges;
 }
 
-// What a reader makes of a label.
+// The number that a reader takes from a label.
 double parsed(std::string label) {
   const size_t minus = label.find("−");
   if (minus != std::string::npos) label.replace(minus, std::string("−").size(), "-");

@@ -59,7 +59,7 @@ TEST_F(Writers, PutTheProvenanceInEveryFile) {
   }
 }
 
-// Long enough apart for a time of day to differ: OpenImageIO writes one if it is not told not to.
+// Long enough apart for a time of day to differ: OpenImageIO writes one unless it is disabled.
 TEST_F(Writers, WriteTheSameBytesASecondLater) {
   const auto first = write_product(sample_product(), sample_provenance(), folder / "a");
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));
@@ -94,7 +94,7 @@ TEST_F(Writers, RefuseFoldersThatCannotBeWritten) {
   }
 }
 
-// What fails after some bytes: no file may be longer than a limit.
+// Makes writing fail after some bytes: no file may be longer than a limit.
 class LongestFile {
  public:
   explicit LongestFile(size_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -47,7 +47,7 @@ TEST(Decide, NothingThatDoesNotPredictIsSaid) {
   EXPECT_EQ(decided(nothing, mutant).finding, Finding::nothing_missing);
 }
 
-// More evidence than any other, and never held against what was held out, where the others were.
+// More evidence than any other, and never compared with the held-out data, where the others were.
 TEST(Decide, WhatWasNeverAskedToPredictIsNotSaid) {
   std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
                                      explanation({0, 1}, 200.0, 1.0)};
@@ -64,7 +64,7 @@ TEST(Decide, ANameThatIsHardlyMissedIsNotSaid) {
   const std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
                                            explanation({0, 1}, 103.0, 1.0)};
   EXPECT_EQ(decided(trials).chosen, 1u);
-  // What may act besides makes the name no less sure.
+  // A further possible effect makes the name no less sure.
   EXPECT_GT(decided(trials).confidence, 0.99);
   Thresholds::Decision mutant;
   mutant.min_log_odds = 1.0;

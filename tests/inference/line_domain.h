@@ -384,7 +384,7 @@ inline Term smooth(Eigen::Index bumps) {
   return t;
 }
 
-// Noise along a line of its own, with `signal` added.
+// Noise along a separate line, with `signal` added.
 inline Series recorded(uint64_t seed, const Eigen::VectorXd& signal, double sign = 1.0) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;

@@ -127,7 +127,7 @@ TEST(Undetermined, IsFlaggedAndNeverGetsAnErrorOfZero) {
   for (const Eigen::Index i : known.undetermined) EXPECT_TRUE(std::isinf(known.standard_error(i)));
   EXPECT_TRUE(std::isinf(found.scatter_errors()[3]));
   EXPECT_EQ(found.at[3], 7.0);  // where the fit began
-  // What is known is as if c and d were no parameters.
+  // The result is as if c and d were no parameters.
   const Eigen::MatrixXd two = twin.design.leftCols(2);
   const Eigen::MatrixXd covariance = (two.transpose() * two).inverse();
   EXPECT_NEAR(known.matrix(0, 0) / covariance(0, 0), 1.0, 1e-9);

@@ -1,4 +1,4 @@
-// What a fit expects to leave of runs that it never saw, against draws of straight lines.
+// The expected residual of a fit on runs that it never saw, against draws of straight lines.
 #include "inference/estimator/evidence.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace photorque::inference {
 namespace {
 
-// y = slope · t, t from `from` in steps of 1; each run begins with an offset of its own.
+// y = slope · t, t from `from` in steps of 1; each run begins with its own offset.
 LinearRun line(std::mt19937_64& random, double from, Eigen::Index rows, double slope) {
   std::normal_distribution<double> normal;
   LinearRun run{Eigen::MatrixXd::Ones(rows, 2), Eigen::VectorXd(rows)};

@@ -1,4 +1,4 @@
-// The search for what is missing, end to end, in a domain that has nothing to do with motion: terms
+// The search for missing effects, end to end, in a domain that has nothing to do with motion: terms
 // added to a line. Tests also run a mutant, thresholds with which they must fail.
 #include "inference/search.h"
 
@@ -141,7 +141,7 @@ TEST(Search, FindsAStrongTermByWayOfPieces) {
   ASSERT_TRUE(has_diverged(domain.nominal(train), domain.limits()));
   const Answered a = answer(known_terms(), train, held);
   EXPECT_EQ(a.names, Names{"degree 2"});
-  // What is reported was fitted to the whole: one intercept, a slope, an amplitude.
+  // The reported values were fitted to the whole: one intercept, a slope, an amplitude.
   const LineFit& fit = a.trials[a.decision.chosen].fit;
   ASSERT_EQ(fit.value.size(), 3);
   EXPECT_NEAR(fit.value[2], 120.0, 4.0 + 120.0 / (amplitude_sigma * amplitude_sigma));
@@ -191,7 +191,7 @@ TEST(Search, CallsUnknownWhatOnlyTheEmpiricalTermFits) {
   }
 }
 
-// The same bump without an empirical term to take it up: structure is left.
+// A bump without an empirical term to absorb it: structure is left.
 TEST(Search, CallsUnknownWhatLeavesStructure) {
   std::vector<Term> terms = known_terms();
   terms.pop_back();

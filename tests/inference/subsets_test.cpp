@@ -1,4 +1,4 @@
-// Gains of sets of terms, predicted about a fit, against least squares of every set by itself.
+// Gains of sets of terms, predicted about a fit, against least squares of every single set.
 #include "inference/subsets.h"
 
 #include <gtest/gtest.h>

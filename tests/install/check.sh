@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs into a folder of its own and uses what is there as a stranger would: a CMake project, pkg-config,
+# Installs into a separate folder and uses the result as another project would: a CMake project, pkg-config,
 # the manual page, the completions.
 #   check.sh BUILD_FOLDER SOURCE_FOLDER
 set -euo pipefail
@@ -53,7 +53,7 @@ echo "$foreign of $(nm -D --defined-only "$library" | wc -l) are not"
 echo "== Headers: nothing missing, nothing of others"
 for header in $(cd "$prefix/include/photorque" && find . -path ./core/precompiled.h -prune -o -name '*.h' -print); do
   for included in $(sed -n 's/^#include "\(.*\)".*/\1/p' "$prefix/include/photorque/$header"); do
-    [[ -f "$prefix/include/photorque/$included" ]] || { echo "$header wants $included"; exit 1; }
+    [[ -f "$prefix/include/photorque/$included" ]] || { echo "$header includes $included"; exit 1; }
   done
 done
 if grep -rE '#include <(embree|tbb|OpenImageIO|tiffio|nlohmann|CLI|toml|cairo)' "$prefix/include"; then exit 1; fi

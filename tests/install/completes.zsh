@@ -1,4 +1,4 @@
-# What zsh offers when a person presses the tab key: a shell of its own behind a terminal.
+# Completions of zsh after the tab key: a separate shell behind a terminal.
 #   completes.zsh FOLDER_OF_COMPLETIONS 'BEGINNING OF A LINE'     prints the completed line
 zmodload zsh/zpty
 zpty shell zsh -f -i

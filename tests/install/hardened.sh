@@ -7,7 +7,7 @@
 #                                         started, or below it
 set -euo pipefail
 
-# Prints what is missing in a file.
+# Prints the protections that a file lacks.
 missing() {
   local file="$1" headers segments dynamic symbols
   headers="$(readelf -hW "$file")"
@@ -45,7 +45,7 @@ tell() {  # words, function, file ...
 }
 
 if [[ "${1:-}" == "--search" ]]; then
-  # What is looked for is found where it is.
+  # The checks find missing protections.
   place="$(mktemp -d)"
   trap 'rm -rf "$place"' EXIT
   echo 'int main() {}' >"$place/empty.cpp"

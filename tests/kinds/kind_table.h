@@ -1,4 +1,4 @@
-// What the registry says of every kind of disturbance, as the table of docs/disturbances.md.
+// The registry's row of every kind of disturbance, as the table of docs/disturbances.md.
 #pragma once
 
 #include <cstdio>

@@ -106,7 +106,7 @@ class Browser:
             return answer["result"]
 
     def value(self, script):
-        """What a JavaScript expression gives; promises are waited for."""
+        """The value of a JavaScript expression; asynchronous ones are awaited."""
         answer = self.call("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in answer:
             details = answer["exceptionDetails"]

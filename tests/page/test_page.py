@@ -380,7 +380,7 @@ class Diagnose(PageTest):
         self.assertEqual([value for value, *_ in shown], dipole["value"])
         self.assertEqual([error for _, error, _ in shown], dipole["sigma"])
         self.assertFiguresAgree(found)
-        # The platform moves, and the readings of the residual become less by what was found.
+        # The platform moves, and the readings of the residual decrease with the improved model.
         before = self.stage()
         self.browser.value("""(() => { const slider = document.getElementById('axis-0');
           slider.value = 300; slider.dispatchEvent(new Event('input')); })()""")
@@ -401,14 +401,14 @@ class Diagnose(PageTest):
         self.browser.value("[...document.querySelectorAll('.chart')].find((c) => !c.hidden).querySelector('svg').focus()")
         self.browser.key("ArrowRight")
         reading = self.browser.value("[...document.querySelectorAll('.chart')].find((c) => !c.hidden).querySelector('.reading').textContent")
-        self.assertIn("measured minus model with what was found: ", reading)
+        self.assertIn("measured minus improved model: ", reading)
 
     def test_a_scan_shows_its_readings_and_what_they_miss(self):
         write_square(self.folder)
         lab = self.folder / "scanned.toml"
         lab.write_text(LAB + "[sensors.irradiance]\nnoise_W_m2 = 0.2\n")
         run("trace", lab, "--out", self.folder / "believed", "--quiet")
-        # The lamp gives a fifth less than is believed; noise by a rule that Python and nobody else has.
+        # The lamp gives a fifth less than stated; noise by a rule in Python.
         scan, state = [], 1
         for row in rows(self.folder / "believed/irradiance_board.csv"):
             total = 0.0
@@ -427,7 +427,7 @@ class Diagnose(PageTest):
         self.assertGreater(self.colours(), 50)
         names = self.browser.value("[...document.querySelectorAll('.map-section option')].map((o) => o.textContent)")
         self.assertEqual([name.split(":")[0] for name in names],
-                         ["Measured", "Nominal model", "Measured minus nominal model", "Measured minus model with what was found"])
+                         ["Measured", "Nominal model", "Measured minus nominal model", "Measured minus improved model"])
         box = self.browser.value("""(() => {
           const field = document.querySelector('.field');
           field.scrollIntoView({ block: 'center' });

@@ -1,6 +1,6 @@
-// The same circuits solved as plainly as possible: every unknown by a bracketed search without
-// derivatives, in 80-bit floats, nested as the network is nested. Slow, and shares nothing but the
-// circuit's equations with the solver under test.
+// The circuits of the solver under test, solved as plainly as possible: every unknown by a
+// bracketed search without derivatives, in 80-bit floats, nested as the network is nested. Slow,
+// and shares nothing but the circuit's equations with the solver under test.
 #pragma once
 
 #include <algorithm>

@@ -95,7 +95,7 @@ TEST(PhotovoltaicDerivatives, CurrentAtAVoltageMovesWithEveryPhotocurrent) {
   }
 }
 
-// The same maxima, whichever law gives the cells' voltages.
+// The maxima are equal for each law of the cells' voltages.
 TEST(PhotovoltaicDerivatives, EveryLawOfTheDiodeGivesTheSameMaxima) {
   for (const int strings : {1, 2}) {
     ArrayUnderTest array(strings);

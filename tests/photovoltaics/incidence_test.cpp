@@ -32,7 +32,7 @@ TEST(CellFront, ReflectsWhatTheTextbookSays) {
   EXPECT_EQ(front.transmitted(0.0, any_m), 0.0);
 }
 
-// What the paper's equation 29 does: T = cos θ.
+// The transmission of the paper's equation 29: T = cos θ.
 TEST(CellFront, CosineTwiceIsTheCosine) {
   CellFront front;
   front.cosine_twice = true;
@@ -54,7 +54,7 @@ TEST(CellFront, QuarterWaveAndHalfWaveFilmsAreTheirClosedForms) {
               1e-15);
 }
 
-// The same by the characteristic matrix of the film, fields instead of a sum of reflected waves
+// Reflectance by the characteristic matrix of the film, fields instead of a sum of reflected waves
 // (Born and Wolf, section 1.6.2).
 double matrix_reflectance(double angle, double f, double thickness_m, double n, double wave_m) {
   using Complex = std::complex<double>;

@@ -163,8 +163,8 @@ TEST(PhotovoltaicNetwork, CurrentFallsWithVoltage) {
   }
 }
 
-// What the cells make is what the array delivers and its diodes burn: for clamps, the drop times
-// the current that the cells do not carry.
+// The power of the cells equals that of the array plus the loss in its diodes: for clamps, the drop
+// times the current that the cells do not carry.
 TEST(PhotovoltaicNetwork, EnergyIsConserved) {
   const ArrayWiring wiring = regular_wiring(3, 4, options(1, 4, reference::clamp(), {}));
   for (uint64_t seed = 0; seed < 30; ++seed) {

@@ -14,7 +14,7 @@ namespace {
 using testing::input_error_of;
 using testing::plate;
 
-// Appends a mesh of its own vertices.
+// Appends a mesh with separate vertices.
 void join(Mesh& all, const Mesh& more) {
   const auto first = static_cast<uint32_t>(all.vertices_m.size());
   all.vertices_m.insert(all.vertices_m.end(), more.vertices_m.begin(), more.vertices_m.end());
@@ -84,7 +84,7 @@ TEST(CellPlaces, SeparatePiecesOfAMeshAreCellsNumberedRowByRow) {
   }
 }
 
-// The same array as equal rectangles over a sheet with gaps: the same light on every cell.
+// The array as equal rectangles over a sheet with gaps: the same light on every cell.
 TEST(CellPlaces, MeshAndRegularRectanglesGiveTheSameArray) {
   const Scene squares = testing::scene_of(six_squares());
   const SurfaceGrid grid = grid_over(squares);

@@ -28,8 +28,8 @@ TEST(BandResponsivity, LineOnAnEdgeGivesItsCurrentInBothBands) {
   }
 }
 
-// 0 W without a word is no answer: light that the table does not reach is told; sunlight beyond
-// both ends of a table that falls to zero there is not.
+// 0 W without a word is no answer: light outside of the table is reported; sunlight beyond both
+// ends of a table that falls to zero there is not.
 TEST(LightOutside, OfTheTableIsTold) {
   const QuantumEfficiency silicon = silicon_quantum_efficiency();
   const auto told = [](const QuantumEfficiency& efficiency, const Spectrum& spectrum) {

@@ -1,4 +1,4 @@
-"""What the tests of the module share: the program beside it, and folders to compare."""
+"""Shared by the tests of the module: the program beside it, and folders to compare."""
 
 import os
 import pathlib
@@ -25,7 +25,7 @@ def files_of(folder):
 
 
 class FolderTest(unittest.TestCase):
-    """Has a folder of its own."""
+    """Has a separate folder."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()

@@ -38,7 +38,7 @@ TEST(SurfaceLaws, AbsorptancePlusReflectanceIsOneAtEveryAngle) {
 }
 
 // χ² of the directions that leave a surface on which light falls evenly from everywhere, in 16
-// classes that are equally likely where the surface cannot be told from its surroundings.
+// classes that are equally likely where the surface is indistinguishable from its surroundings.
 template <typename Send>
 double furnace_chi2(const Send& send) {
   constexpr int rays = 1 << 18, classes = 16;
@@ -72,7 +72,7 @@ TEST(SurfaceLaws, NothingShowsInAWhiteFurnace) {
   }
 }
 
-// What the furnace must not let pass: a lobe that is not reciprocal, one that forgets light
+// Mutants that the furnace must find: a lobe that is not reciprocal, one that forgets light
 // reflected more than once, and a surface that keeps a hundredth.
 TEST(SurfaceLaws, TheFurnaceFindsMutants) {
   const auto even_in_solid_angle = [](double, const Draw& draw) {
@@ -110,7 +110,7 @@ TEST(SurfaceLaws, ScatteringIsReciprocal) {
                                    : send_ray(kind.surface, cosine, draw);
       if (sent.z() < lowest) continue;
       const double there = scattering_1_sr(kind.surface, cosine, sent, 0);
-      // The same pair of directions, turned so that the light comes from `sent`.
+      // The pair of directions, turned so that the light comes from `sent`.
       const double sine = std::sqrt(1 - cosine * cosine), out_sine = std::hypot(sent.x(), sent.y());
       const double along = out_sine > 0 ? sent.x() / out_sine : 1.0;
       const Vec3 back(sine * along, sine * std::sqrt(std::max(0.0, 1 - along * along)), cosine);
@@ -185,7 +185,7 @@ TEST(SurfaceLaws, RaysCarryTheMeanDepartureAway) {
 }
 
 // A slanted plate of every kind in parallel light: what it absorbs is its fraction at that angle,
-// what was emitted is all found again, and the force on the surface is what the rays lost.
+// all emitted power is accounted for, and the force on the surface is what the rays lost.
 TEST(SurfaceLaws, PowerAndMomentumBalanceAtEveryBounce) {
   for (const SurfaceKind& kind : surface_kinds(0.7)) {
     for (const double cosine : {1.0, 0.3}) {

@@ -39,7 +39,7 @@ Outcome illuminate(Scene scene, const Vec3& direction, uint64_t rays = 1 << 20, 
   for (size_t k = 0; k < 3; ++k) {
     outcome.force[k] = result.sums[0].estimate(k);
     outcome.torque[k] = result.sums[0].estimate(3 + k);
-    // The same momentum by another route: what the rays lost.
+    // The momentum by another route: what the rays lost.
     const Estimate& by_rays = result.power_balance.force_N[k];
     EXPECT_NEAR(outcome.force[k].value, by_rays.value,
                 4 * std::hypot(by_rays.standard_error, outcome.force[k].standard_error) +

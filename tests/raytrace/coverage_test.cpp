@@ -168,7 +168,8 @@ Coverage coverage_with(int replicates) {
 constexpr const char* figure_names[] = {"power",    "force x",  "force z",
                                         "torque x", "torque y", "torque z"};
 
-// 1000 seeds tell a fraction of 95 % to 0.7 %, and errors that are a fifth too small are found out.
+// 1000 seeds resolve a fraction of 95 % to 0.7 %, and errors that are a fifth too small are found
+// out.
 TEST(Coverage, IntervalsHoldPowerForceTorqueAndBinsNinetyFivePercentOfTheTime) {
   for (const int replicates : {8, 16}) {
     const Coverage coverage = coverage_with(replicates);

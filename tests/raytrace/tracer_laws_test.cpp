@@ -1,4 +1,4 @@
-// What must hold for every scene: balances, independence of threads, one way for all surfaces.
+// Laws of every scene: balances, independence of threads, one way for all surfaces.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -104,7 +104,7 @@ class ThreadCounter final : public Receiver {
   mutable std::mutex mutex_;
   mutable std::condition_variable arrived_;
   mutable std::set<std::thread::id> threads_;
-  mutable bool missing_ = false;  // waited in vain
+  mutable bool missing_ = false;  // waited without success
 };
 
 TEST(Threads, SameBitsAtOneTwoAndSeven) {

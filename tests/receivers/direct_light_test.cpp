@@ -1,5 +1,4 @@
-// What gathering is made of: the light of a disc on a point, tables and rules of quadrature,
-// shafts.
+// Parts of gathering: the light of a disc on a point, tables and rules of quadrature, shafts.
 #include <gtest/gtest.h>
 
 #include <random>

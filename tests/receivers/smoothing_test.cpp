@@ -10,7 +10,7 @@
 namespace photorque {
 namespace {
 
-constexpr int around = 73, rings = 37;  // the first azimuth once more after a whole turn
+constexpr int around = 73, rings = 37;  // the first azimuth repeated after a whole turn
 
 WrenchTable sphere_table() {
   std::vector<double> azimuth_rad, elevation_rad;

@@ -250,7 +250,7 @@ TEST(Sunlit, AgreesWithRays) {
   }
 }
 
-// The same comparison notices a third more light from one box.
+// The comparison notices a third more light from one box.
 TEST(Sunlit, ComparisonWithRaysNoticesAThird) {
   std::mt19937 random(7);
   Scene scene = drawn_scene(random);
@@ -306,7 +306,7 @@ TEST(Sunlit, AgreesWithTheLookupOfACube) {
   }
 }
 
-// What the quadrature does not know is left to rays.
+// Scenes that the quadrature does not cover use rays.
 TEST(Sunlit, IsForPlainSurfacesInTheLightOfOneSun) {
   Scene scene;
   add(scene, rectangle(Vec3::Zero(), Vec3(2, 0, 0), Vec3(0, 2, 0)), grey_surface("b", 0.5, 0.0),

@@ -62,7 +62,7 @@ TEST(Doubts, NameLampsInsideClosedParts) {
   for (const Vec3& outside : {Vec3(0, 0, 1.0), Vec3(0, 0, 1.5), Vec3(5, 0, 0)}) {
     EXPECT_TRUE(doubts_about(scene, std::vector<Beam>{lamp_at(outside)}, {}).empty());
   }
-  // What was outside is inside once the platform has turned under it.
+  // A lamp outside is inside after the platform has turned.
   const std::vector<Beam> corner = {lamp_at({1.2, 0, 0})};
   EXPECT_TRUE(doubts_about(scene, corner, {}).empty());
   EXPECT_EQ(doubts_about(scene, corner, lab_from_body_at(M_PI / 4, M_PI / 2)).size(), 0u);

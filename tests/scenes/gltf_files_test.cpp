@@ -1,4 +1,4 @@
-// The same model in every container, and with files beside it.
+// One model in every container, and with files beside it.
 #include <unistd.h>
 
 #include <filesystem>

@@ -118,7 +118,7 @@ TEST(GltfLights, ADirectionalLightIsASunAndKeysOfTheUserWin) {
   EXPECT_LT((looks(1) - Vec3(0, 1, -1).normalized()).norm(), 1e-12);
 }
 
-// A cone is the beam of an LED; a lamp of another kind at a spot's place has a beam of its own.
+// A cone is the beam of an LED; a lamp of another kind at a spot's place has its own beam.
 TEST(GltfLights, AnyKindOfSourceCanStandWhereASpotStands) {
   const fs::path folder = written(lamp_file(),
                                   "[[source]]\nlight = \"lamp\"\nkind = \"laser\"\npower_W = 2\n"

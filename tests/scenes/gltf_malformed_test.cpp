@@ -18,14 +18,14 @@ const std::filesystem::path corpus = photorque::outside::third_party("models/mal
 // Files that the validator calls wrong and that are read all the same, because what is wrong cannot
 // change a triangle, a transform or an optical property.
 const std::map<std::string, std::string> tolerated = {
-    {"mesh/accessor_attribute_uint32.gltf", "an attribute nobody reads (_CUSTOM_ATTR)"},
-    {"mesh/accessor_unaligned.gltf", "an attribute nobody reads (COLOR_0)"},
+    {"mesh/accessor_attribute_uint32.gltf", "an unused attribute (_CUSTOM_ATTR)"},
+    {"mesh/accessor_unaligned.gltf", "an unused attribute (COLOR_0)"},
     {"mesh/accessor_without_bytestride.gltf",
      "without a stride elements are tightly packed, also when attributes share a view"},
     {"mesh/bufferview_target_override.gltf", "targets are hints to graphics hardware"},
-    {"mesh/invalid_attribute.gltf", "an attribute nobody reads (UNKNOWN)"},
-    {"mesh/invalid_attribute_escaped_name.gltf", "an attribute nobody reads (~UNKNOWN/2)"},
-    {"mesh/invalid_indexed_attribute.gltf", "attributes nobody reads (TEXCOORD_00, ...)"},
+    {"mesh/invalid_attribute.gltf", "an unused attribute (UNKNOWN)"},
+    {"mesh/invalid_attribute_escaped_name.gltf", "an unused attribute (~UNKNOWN/2)"},
+    {"mesh/invalid_indexed_attribute.gltf", "unused attributes (TEXCOORD_00, ...)"},
     {"mesh/morph_attribute_invalid_count.gltf", "morph targets are not applied (weights refused)"},
     {"mesh/morph_attribute_no_base.gltf", "morph targets are not applied"},
     {"mesh/morph_bufferview_target_override.gltf", "targets are hints to graphics hardware"},

@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(
       return std::filesystem::path(test.param.file).stem().string().insert(0, "Model_");
     });
 
-// What the models' READMEs and exporters say beyond sizes.
+// Properties that the models' READMEs and exporters state beside sizes.
 TEST(GltfModels, ShareTheMeshOfNodesThatShareIt) {
   const auto file = models / "blender/02_shared_mesh/02_shared_mesh.gltf";
   PHOTORQUE_NEEDS_THIRD_PARTY("models");
@@ -146,7 +146,7 @@ TEST(GltfModels, UnpackASatelliteFromDraco) {
   EXPECT_FALSE(model.scene.meshes[0].uv.empty());
 }
 
-// The same engine plain and packed: 11 bits of each mesh.
+// An engine plain and packed: 11 bits of each mesh.
 TEST(GltfModels, UnpackTheSameEngineAsThePlainOne) {
   const auto packed = models / "2CylinderEngine_draco/2CylinderEngine.gltf";
   PHOTORQUE_NEEDS_THIRD_PARTY("models");

@@ -149,7 +149,7 @@ TEST(SurfaceSettings, GlassRoughnessAndSlopesReachTheSurface) {
       {{"specular", node_of(0.8)}, {"absorptance", node_of(0.2)}, {"roughness", node_of(0.5)}});
   ASSERT_TRUE(satin.bsdf && satin.bsdf->specular);
   EXPECT_EQ(satin.specular[0], 0.8);
-  // The same lobe as of alpha = 0.25, which is wider than that of a wavy mirror.
+  // A lobe like that of alpha = 0.25, which is wider than that of a wavy mirror.
   const OpticalSurface wavy =
       read({{"specular", node_of(1.0)}, {"slope_error_mrad", node_of(2.0)}});
   EXPECT_LT(satin.bsdf->specular->mean_direction(1.0).z(), 0.9);

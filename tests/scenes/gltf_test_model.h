@@ -185,7 +185,7 @@ inline SceneSize size_of(const Scene& scene) {
   return size;
 }
 
-// What reading says: empty when it works. Anything but InputError ends the test.
+// The message of reading: empty when it works. Anything but InputError ends the test.
 inline std::string refusal_of(const std::function<void()>& read) {
   try {
     read();

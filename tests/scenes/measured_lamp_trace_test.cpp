@@ -18,7 +18,7 @@
 namespace photorque {
 namespace {
 
-// What Lambert's law sends from a point to a square of side 2a at distance z in front of it,
+// The power by Lambert's law from a point to a square of side 2a at distance z in front of it,
 // centred on the axis: four times the view factor to a rectangle with a corner on the axis. Source:
 // J. R. Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-3.
 double lambert_on_square(double a_over_z) {

@@ -11,7 +11,7 @@
 
 namespace photorque {
 
-// What keeps the triangles from being a closed surface with every edge once in each direction;
+// The fault of triangles that are not a closed surface with every edge once in each direction;
 // empty if nothing does.
 inline std::string fault_of_closed_mesh(const Mesh& mesh) {
   std::map<std::pair<uint32_t, uint32_t>, int> uses;

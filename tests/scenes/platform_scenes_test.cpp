@@ -81,7 +81,7 @@ TEST_P(CommittedPlatform, ComesBackFromItsFileWhereItWasPut) {
     ASSERT_EQ(read.triangles.size(), original.triangles.size());
     double farthest_m = 0.0;
     for (size_t i = 0; i < original.triangles.size(); ++i) {
-      for (size_t k = 0; k < 3; ++k) {  // the reader may number vertices anew
+      for (size_t k = 0; k < 3; ++k) {  // the reader may renumber vertices
         const Vec3& written_m = original.vertices_m[original.triangles[i][k]];
         const Vec3& read_m = read.vertices_m[read.triangles[i][k]];
         const Vec3 error_m =

@@ -23,7 +23,7 @@ if not pathlib.Path("/usr/bin/mkdocs").exists() or not pathlib.Path("/usr/share/
 
 
 class Page(html.parser.HTMLParser):
-    """What a page links, and the places in it that can be linked."""
+    """The links and anchors of a page."""
 
     def __init__(self, text):
         super().__init__()

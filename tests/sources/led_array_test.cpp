@@ -219,7 +219,7 @@ TEST(LedArray, LedsDifferByTheStatedSpread) {
   EXPECT_NEAR(std::sqrt(across / n), aim_deg * degree_rad,
               5.0 * aim_deg * degree_rad / std::sqrt(4.0 * n));
   EXPECT_NEAR(exitance, n + sum, 1e-6);  // direct light is gathered from the same powers
-  // The same LEDs on another panel; other LEDs by another seed.
+  // Equal LEDs on another panel; other LEDs by another seed.
   table["pitch_m"] = {0.05};
   EXPECT_EQ(make_beams("led_array", table)[77].emitter->power_W(), beams[77].emitter->power_W());
   table["spread_seed"] = {int64_t{2}};

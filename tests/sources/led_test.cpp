@@ -74,7 +74,7 @@ TEST(Led, SaysWhatIsWrong) {
   expect_error("led", changed(led(), {{"power_W", {-3.0}}}), "power_W: found -3");
   expect_error("led", changed(led(), {{"power_W", {0.0}}}), "power_W: found 0");
   expect_error("led", changed(led(), {{"aperture_diameter_m", {0.0}}}), "aperture_diameter_m");
-  // Their squares were no numbers, which was told as a failure of the computation.
+  // Their squares were no numbers, which was reported as a failure of the computation.
   expect_error("led", changed(led(), {{"aperture_diameter_m", {1e-160}}}), "a number >= 1e-12 m");
   expect_error("led", changed(led(), {{"fwhm_deg", {1e-160}}}), "fwhm_deg: found 1e-160");
   expect_error("led", changed(led(), {{"aim_m", vector_node(0, 0, 0)}}), "also aim_m");
@@ -127,7 +127,7 @@ TEST(Etendue, BareMillimetreDieNeeds43MillimetresForAThreeDegreeCone) {
   make_beams("led", lamp(0.0430), context);
   ASSERT_EQ(notices.size(), 1u);
   EXPECT_THAT(notices[0], testing::HasSubstr("43.11 mm"));
-  EXPECT_NO_THROW(make_beams("led", lamp(0.01)));  // nobody listens
+  EXPECT_NO_THROW(make_beams("led", lamp(0.01)));  // without a listener
 }
 
 TEST(Etendue, GrowsWithTheDieAndTheIndexSquared) {

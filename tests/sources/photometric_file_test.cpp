@@ -28,7 +28,7 @@ PhotometricLamp lamp_of(const PhotometricFile& file) {
 }
 
 const std::string small_ies =
-    "IESNA:LM-63-2002\n[TEST] by hand\n[MANUFAC] nobody\nTILT=NONE\n"
+    "IESNA:LM-63-2002\n[TEST] by hand\n[MANUFAC] maker\nTILT=NONE\n"
     "1 1000 2 3 1 1 2 -0.1 -0.1 0\n1 1 10\n0 45 90\n0\n100 50 0\n";
 
 // The text with one of its pieces replaced.
@@ -83,7 +83,7 @@ TEST(IesFile, WrongVerticalCountsAreRefused) {
 TEST(IesFile, SaysWhatIsInIt) {
   const PhotometricFile file = read_ies(small_ies, "lamp.ies");
   EXPECT_EQ(file.format, "IESNA:LM-63-2002");
-  EXPECT_EQ(file.labels.at(1), (std::pair<std::string, std::string>("MANUFAC", "nobody")));
+  EXPECT_EQ(file.labels.at(1), (std::pair<std::string, std::string>("MANUFAC", "maker")));
   EXPECT_EQ(file.table.intensity, (std::vector<double>{200, 100, 0}));
   EXPECT_EQ(file.stated_flux_lm, 1000.0);
   EXPECT_EQ(file.opening.shape, Opening::Shape::ellipse);

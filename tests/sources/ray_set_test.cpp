@@ -58,7 +58,7 @@ void expect_equal(const RaySet& a, const RaySet& b) {
   }
 }
 
-// The same lamp in two formats; 10,000 rays of one program in two of its formats.
+// One lamp in two formats; 10,000 rays of one program in two of its formats.
 TEST(RaySamples, AreAllReadAndAgreeAcrossFormats) {
   PHOTORQUE_NEEDS_THIRD_PARTY("photometry");
   const auto compare = [&](const char* first, const char* second, double tolerance) {
@@ -93,7 +93,7 @@ TEST(RaySamples, ComeBackAsWritten) {
   }
 }
 
-// The closed forms of these beams, as far as 20,000 rays can tell: a fraction p of them errs by
+// The closed forms of these beams, to the precision of 20,000 rays: a fraction p of them errs by
 // √(p(1 − p)/n).
 TEST(RaySamples, HoldTheEncircledFluxOfTheirBeam) {
   PHOTORQUE_NEEDS_THIRD_PARTY("photometry");
@@ -135,7 +135,7 @@ TEST(RayLamp, LightOfTheLastDirectionCounts) {
   const RayLamp dark_before(1.0, set);
   EXPECT_EQ(dark_before.relative_intensity(0.2), 1.0);
   EXPECT_EQ(dark_before.relative_intensity(0.5), 0.0);
-  // Directions that no number tells from the axis are one.
+  // Directions that equal the axis to rounding are one.
   set.rays = {ray(0.0, 1.0), ray(0.0, 1.0), ray(0.0, 1.0), ray(1e-160, 1.0), ray(1e-158, 1.0)};
   EXPECT_EQ(RayLamp(1.0, set).relative_intensity(0.0), 1.0);
 }
@@ -260,7 +260,7 @@ TEST(LightToolsRays, TakeNoDecimalCommaNoFluxOfZeroAndEachKeywordOnce) {
   EXPECT_THAT(refusal("", ray), testing::HasSubstr("lt_length_units: found no such line"));
 }
 
-// What the experiment says of a file goes to the beam; what the file says for itself is said.
+// The experiment's keys of a file go to the beam; what the file says for itself is said.
 TEST(RayFile, IsScaledToItsHeaderAndSaysSo) {
   const fs::path folder = fs::path(testing::TempDir()) / "ray_set_test";
   write_file_whole(folder / "three.tm25ray", write_tm25(three_rays()));

@@ -1,4 +1,4 @@
-// What the tests of sources share: settings made by hand, and rays from Sobol points.
+// Shared by the tests of sources: settings made by hand, and rays from Sobol points.
 #pragma once
 
 #include <filesystem>

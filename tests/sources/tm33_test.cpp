@@ -1,4 +1,4 @@
-// IES TM-33: the same lamps in XML and in LM-63, whose reader is tested by itself, and every way in
+// IES TM-33: the same lamps in XML and in LM-63, whose reader has its own test, and every way in
 // which such a file can be wrong.
 #include <gmock/gmock.h>
 
@@ -24,7 +24,7 @@ std::string int_data(const std::vector<Direction>& directions) {
 
 std::string document(const std::string& emitter, const std::string& type = "IES_C") {
   return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<IESTM33-22>\n  <Version>1.1</Version>\n"
-         "  <Header>\n    <Manufacturer>nobody &amp; sons</Manufacturer>\n"
+         "  <Header>\n    <Manufacturer>maker &amp; sons</Manufacturer>\n"
          "    <Description>a lamp\n in two lines</Description>\n"
          "    <ReportNumber>7</ReportNumber>\n  </Header>\n"
          "  <Equipment><Gonioradiometer><Type>" +
@@ -68,10 +68,9 @@ TEST(Tm33File, IsTheSameLampAsInLm63) {
   EXPECT_EQ(file.format, "IESTM33-22");
   EXPECT_EQ(file.input_power_W, 10.0);
   EXPECT_FALSE(file.stated_flux_lm);
-  EXPECT_THAT(
-      file.labels,
-      testing::ElementsAre(testing::Pair("TEST", "7"), testing::Pair("MANUFAC", "nobody & sons"),
-                           testing::Pair("LUMINAIRE", "a lamp  in two lines")));
+  EXPECT_THAT(file.labels, testing::ElementsAre(
+                               testing::Pair("TEST", "7"), testing::Pair("MANUFAC", "maker & sons"),
+                               testing::Pair("LUMINAIRE", "a lamp  in two lines")));
   EXPECT_TRUE(file.notices.empty());
   expect_same_table(read_ies(write_ies(file), ""), file);
 }

@@ -115,7 +115,7 @@ TEST_F(AttitudeCommands, BudgetRanksAndComparesWithThePaper) {
   }
 }
 
-// The paper's figures are those of its own platform.
+// The paper's figures are those of one platform.
 TEST_F(AttitudeCommands, BudgetOfAnotherPlatformIsNotComparedWithThePaper) {
   const std::string orbit = (source / "scenes/spacecraft/orbit.toml").string();
   const Outcome got = run("budget " + orbit + " --out " + at("o"));
@@ -196,7 +196,7 @@ TEST_F(AttitudeCommands, RecordingsOfAnotherSimulatorFitToTheirNoise) {
   EXPECT_GE(compared, 11);
 }
 
-// Neither a key that nobody reads nor a torque that is the same at every tilt but for rounding.
+// Neither an unread key nor a torque that is the same at every tilt but for rounding.
 TEST_F(AttitudeCommands, ABudgetEndsAndReadsItsKeys) {
   const std::string platform =
       "[platform]\ntopology = \"tabletop\"\nmass_kg = 7\ninertia_kg_m2 = [[0.09, 0, 0], [0, "

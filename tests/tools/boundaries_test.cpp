@@ -1,4 +1,4 @@
-// What strangers' numbers and names may do to a run: nothing but a result or one line.
+// Effects of hostile numbers and names on a run: nothing but a result or one line.
 #include <algorithm>
 
 #include "tests/tools/command_test.h"

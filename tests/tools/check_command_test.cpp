@@ -130,7 +130,7 @@ TEST_F(CheckCommand, FindsTheMistakesOfDifferentTablesTogether) {
   EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 3) << got.err;
 }
 
-// Keys that are wrong by themselves are all told at once, and what follows from them is not.
+// All wrong keys are reported at once, consequences of them are not.
 TEST_F(CheckCommand, FindsEveryMisspeltKeyOfAFile) {
   const std::string file = planted("nominal.toml", "fwhm_deg = 3.0", "fwhm_dge = 3.0");
   const Outcome got = run("check " + file +
@@ -173,7 +173,7 @@ TEST_F(CheckCommand, NewWritesWhatRuns) {
   ASSERT_EQ(run("new " + free).status, 0);
   const Outcome moved = run("propagate " + free + " --out " + at("out2"));
   EXPECT_EQ(moved.status, 0) << moved.err;
-  // What is there stays.
+  // Existing files stay.
   const std::string before = file_text(free);
   EXPECT_EQ(run("new " + free + " --scene " + model).status, 2);
   EXPECT_EQ(file_text(free), before);

@@ -38,7 +38,7 @@ class CheckpointCommand : public CommandTest {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
-  // Every number of a run. summary.json tells of seconds of work.
+  // Every number of a run. summary.json holds seconds of work.
   std::map<std::string, std::string> numbers(const std::string& folder) const {
     std::map<std::string, std::string> all;
     for (const auto& [name, text] : files(folder)) {

@@ -1,4 +1,4 @@
-// What the tests of the commands share: the program run as a user runs it, in a folder of its own.
+// Shared by the tests of the commands: the program run as a user runs it, in a separate folder.
 #pragma once
 
 #include <gmock/gmock.h>

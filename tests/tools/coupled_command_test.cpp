@@ -178,9 +178,9 @@ TEST_F(CoupledCommand, TorqueOfAPlateInSlantingSunlight) {
   EXPECT_LE(summary("o").at("energy_closure").at("value").get<double>(), 1e-9);
 }
 
-// The same plate on a joint about body y through its middle: r × F with the cosine of the turned
-// plate, which follows the Sun, or a schedule that the light was traced for at some angles only.
-// Turned edge-on to the light the plate's torque has a corner, which 100 attitudes do not resolve.
+// A plate on a joint about body y through its middle: r × F with the cosine of the turned plate,
+// which follows the Sun, or a schedule that the light was traced for at some angles only. Turned
+// edge-on to the light the plate's torque has a corner, which 100 attitudes do not resolve.
 TEST_F(CoupledCommand, ATableThatMissesItsToleranceIsAWarning) {
   const auto warned = [&](const std::string& further) {
     const Outcome got = run("propagate " + experiment(sun) + " --set platform.tilt_limit_deg=120 " +

@@ -1,4 +1,4 @@
-// What `diagnose` writes works where it lies, and what it is given is of one kind.
+// Files of `diagnose` work where they lie, and its recordings are of one kind.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>

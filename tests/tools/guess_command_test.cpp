@@ -55,7 +55,7 @@ TEST_F(GuessCommand, PrintsWhatItWritesAndKeepsWhatSomebodyChanged) {
   EXPECT_THAT(text, HasSubstr("topology = \"one_axis\""));
   EXPECT_EQ(first.out.substr(0, text.size()), text);
   EXPECT_THAT(first.out, HasSubstr("# photorque diagnose " + at("guess/disc.toml")));
-  // The same again is no loss; what was confirmed would be.
+  // A repeated guess is no loss; what was confirmed would be.
   EXPECT_EQ(run("diagnose --guess " + recording + " --out " + at("guess")).status, 0);
   write("guess/disc.toml", text + "# confirmed\n");
   const Outcome again = run("diagnose --guess " + recording + " --out " + at("guess"));

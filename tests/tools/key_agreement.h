@@ -1,4 +1,4 @@
-// What holds the declared keys against their readers: for keys_test.cpp.
+// Comparison of the declared keys with their readers: for keys_test.cpp.
 #pragma once
 
 #include <algorithm>
@@ -136,7 +136,7 @@ class Readers {
     const std::string said = all_of(checked(file, root, KeyCheck::by_readers));
     table = std::move(before);
     tried_[id] = said.empty() ? "nothing was said" : said;
-    // What a reader takes as it stands is known to it.
+    // A value that a reader accepts is known to it.
     const bool taken = key.type == Key::Type::other && said.empty();
     if (taken || agrees(said, key, full)) agreed_.insert(id);
   }

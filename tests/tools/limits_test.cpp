@@ -1,4 +1,4 @@
-// What a run refuses before it works, and what it warns of: each was once accepted, or ended the
+// Inputs that a run refuses, and inputs that it warns of: each was once accepted, or ended the
 // program.
 #include <nlohmann/json.hpp>
 

@@ -179,7 +179,7 @@ TEST_F(Optimise, CopiesAsBuiltFollowTheirTolerance) {
   EXPECT_NEAR(reached, full_W * (1.0 - 1.6449 * 0.03), 0.002 * full_W);
   // Of independent draws: √(f (1 − f) / n) over the density at the quantile.
   EXPECT_NEAR(error, full_W * 0.03 * std::sqrt(0.05 * 0.95 / 400.0) / 0.1031, 0.3 * error);
-  // The same draws for both: copies differ by what the designs are, cos 10.5 deg, to rounding.
+  // Equal draws for both: copies differ by what the designs are, cos 10.5 deg, to rounding.
   const auto best = csv_column(at("out/built.csv"), "best_power_on_plate_W");
   const auto nominal = csv_column(at("out/built.csv"), "nominal_power_on_plate_W");
   ASSERT_EQ(best.size(), 400u);

@@ -108,7 +108,7 @@ TEST_F(OutputFolders, BelongToOneRunAtATime) {
   ::waitpid(first, nullptr, 0);
   EXPECT_EQ(second.status, 2);
   EXPECT_THAT(second.err, HasSubstr("a folder that another run is writing into"));
-  // Whoever is killed holds nothing any more.
+  // A killed run holds no lock.
   EXPECT_EQ(run("trace " + stasis + quick + " --out " + at("o")).status, 0);
 }
 
@@ -132,8 +132,8 @@ TEST_F(OutputFolders, AreLeftCleanBySignalsWithinASecond) {
   }
 }
 
-// What cleans up after a stopped run held its lock a moment longer than the run lived (found by
-// tools/faults on fit-cell).
+// The process that cleans up after a stopped run held its lock a moment longer than the run lived
+// (found by tools/faults on fit-cell).
 TEST_F(OutputFolders, AreFreeAsSoonAsARunWasStopped) {
   for (int i = 0; i < 8; ++i) {
     const pid_t child = start(endless + " --out " + at("o"));

@@ -15,7 +15,7 @@ const std::string experiment =
 
 class PictureModule : public CommandTest {
  protected:
-  // The program in a folder of its own.
+  // The program in a separate folder.
   Outcome run_copy(const std::string& arguments, const std::string& environment = "") const {
     const std::string command = environment + at("bin/photorque") + " " + arguments + " >" +
                                 at("stdout") + " 2>" + at("stderr");
@@ -34,7 +34,7 @@ TEST_F(PictureModule, IsNotLinkedByTheProgram) {
   const Outcome libraries = run_copy("", "LD_TRACE_LOADED_OBJECTS=1 ");
   EXPECT_THAT(libraries.out, HasSubstr("libhdf5"));
   EXPECT_THAT(libraries.out, Not(HasSubstr("OpenImageIO")));
-  // What needs no picture needs no module.
+  // Commands without pictures need no module.
   EXPECT_EQ(run_copy("--version").status, 0);
   EXPECT_EQ(run_copy("--man").status, 0);
 }

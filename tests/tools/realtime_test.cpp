@@ -86,7 +86,7 @@ TEST(Packets, AMillionOfNonsenseAreRefused) {
         bytes[at / 8] ^= std::byte{static_cast<unsigned char>(1u << (at % 8))};
       }
       if (i % 16 == 1) size = (word >> 8) % bytes.size();
-      // The same bit twice leaves the packet good.
+      // One bit flipped twice leaves the packet good.
       if (size == sizeof good && std::memcmp(bytes.data(), &good, size) == 0)
         bytes[20] ^= std::byte{1};
     }

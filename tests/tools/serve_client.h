@@ -92,7 +92,7 @@ class ServeCommand : public CommandTest {
     serve_to(arguments, [&](ServeClient& client) { all = client.follow(law); });
     return all;
   }
-  // The same with a client that does what it likes.
+  // Serves a client with arbitrary actions.
   void serve_to(const std::string& arguments, const std::function<void(ServeClient&)>& act) {
     std::filesystem::remove(at("stdout"));
     std::thread server([&] { outcome_ = run("serve " + arguments + " --set serve.port=0"); });

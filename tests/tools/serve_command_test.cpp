@@ -116,7 +116,7 @@ TEST_F(Lockstep, IsTheRunThatPropagateComputesToTheBit) {
   }
 }
 
-// The same with everything else that a step may end at: switches, other tick rates, a start that is
+// Lockstep with everything else that a step may end at: switches, other tick rates, a start that is
 // no binary fraction.
 TEST_F(Lockstep, IsTheSameAtAnotherRate) {
   const std::string experiment = write("p.toml", served_platform);
@@ -239,7 +239,7 @@ TEST_F(Lockstep, LinksFollowAMeasuredTrace) {
   }
 }
 
-// Nobody is waited for any more, and nothing is commanded.
+// The run waits for no client, and nothing is commanded.
 TEST_F(Lockstep, GoesOnAloneAfterAGoodbye) {
   const std::string experiment = write("p.toml", served_platform);
   serve_to(experiment + " --set propagate.duration_s=2 --set serve.mode=\\\"lockstep\\\" --out " +
@@ -271,7 +271,7 @@ TEST_F(Paced, CommandsEndWhenTheyAreNotRenewed) {
   // Whether the first answer was in time for the first tick is the machine's affair.
   ASSERT_FALSE(rows.empty());
   if (rows.front()[3] == 0.0) rows.erase(rows.begin());
-  // The command, nothing, the command; on a busy machine perhaps once more.
+  // The command, nothing, the command; on a busy machine perhaps another.
   ASSERT_GE(rows.size(), 3u);
   for (size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(rows[i][3], i % 2 == 0 ? 1e-4 : 0.0) << i;
   EXPECT_GT(rows[1][0] - rows[0][0], 0.6);

@@ -105,8 +105,8 @@ TEST_F(Stress, CellsTooColdForADiodeAreTold) {
   EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;
 }
 
-// What an attacker with the documents alone found to be taken in silence, or told in words that
-// nobody wrote.
+// Inputs of an attacker with the documents alone that were accepted silently or gave unintended
+// messages.
 class Attack : public CommandTest {
  protected:
   const std::filesystem::path lab_ = std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "docs/tutorials";
@@ -114,7 +114,7 @@ class Attack : public CommandTest {
   std::string recorded(const std::string& name) const {
     return " --recording " + (lab_ / name).string();
   }
-  // The same experiment with more at its end.
+  // The experiment with more at its end.
   std::string bench_with(const std::string& more) const {
     std::string text = file_text(bench());
     text.replace(text.find("plate.gltf"), 10, (lab_ / "plate.gltf").string());

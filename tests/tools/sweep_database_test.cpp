@@ -33,7 +33,7 @@ class SweepDatabase : public SweepTest {
     write_plate();
     experiment(forty);
   }
-  // The table of a sweep that nobody disturbed.
+  // The table of a sweep without disturbance.
   std::string reference() const {
     const Outcome got = sweep("", "reference");
     EXPECT_EQ(got.status, 0) << got.err;
@@ -53,7 +53,7 @@ class SweepDatabase : public SweepTest {
   }
 };
 
-// SQLite would write through it, into whatever file of the user's a stranger's folder names.
+// SQLite would write through it, into whatever file of the user's a foreign folder names.
 TEST_F(SweepDatabase, ALinkIsRefused) {
   fs::create_directories(at("out"));
   fs::create_symlink(at("victim"), database());
@@ -151,7 +151,7 @@ TEST_F(SweepDatabase, InAReadOnlyFolderIsOneLine) {
 TEST_F(SweepDatabase, TellsFilesByTheirContent) {
   ASSERT_EQ(sweep().status, 0);
   const std::string small = file_text(at("out/sweep.csv"));
-  // The same content at another time, and an experiment that says the same in other words.
+  // Equal content at another time, and an experiment with equal meaning in other words.
   write_plate();
   experiment("# a comment\n" + std::string(forty));
   EXPECT_THAT(sweep().out, HasSubstr("0 run now, 41 kept"));
@@ -188,7 +188,7 @@ TEST_F(SweepDatabase, OfShardsGivesTheSameTableWhenOneWasKilled) {
   EXPECT_EQ(file_text(at("out/sweep.csv")), whole);
 }
 
-// What Slurm sets for the tasks of an array; tests/slurm has a cluster.
+// Variables that Slurm sets for the tasks of an array; tests/slurm has a cluster.
 TEST_F(SweepDatabase, OfAnArrayOfTasksIsThatOfItsShards) {
   const std::string whole = reference();
   const auto task = [this](const std::string& variables) {
@@ -229,7 +229,7 @@ TEST_F(SweepDatabase, ThatIsNoneIsNamed) {
   EXPECT_EQ(count("SELECT x FROM mine"), 1);
 }
 
-// Found by reading for it: a view that counts for ever in the place of a table was asked for its
+// Found by reading for it: a view that counts without end in the place of a table was asked for its
 // rows; a trigger would have been run by whatever is kept.
 TEST_F(SweepDatabase, WithViewsOrTriggersThatNeverEndIsRefused) {
   for (const char* change :

@@ -1,6 +1,5 @@
-// What a design is: means, worst cases, constraints, the best, failures. A black plate at a tilt θ
-// under the Sun takes P = E A cos θ; about a point h below it the light turns it with
-// E A h sin θ cos θ / c.
+// Designs: means, worst cases, constraints, the best, failures. A black plate at a tilt θ under the
+// Sun takes P = E A cos θ; about a point h below it the light turns it with E A h sin θ cos θ / c.
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>

@@ -1,4 +1,4 @@
-// What the tests of sweeps share: a black plate in sunlight, whose figures have closed forms.
+// Shared by the tests of sweeps: a black plate in sunlight, whose figures have closed forms.
 #pragma once
 
 #include <signal.h>
@@ -41,7 +41,7 @@ inline std::vector<double> csv_column(const std::filesystem::path& path, const s
   return values;
 }
 
-// What a query of a database gives, a text for every cell; one row of the error where it fails.
+// The result of a query of a database, a text for every cell; one row of the error where it fails.
 inline std::vector<std::vector<std::string>> query(const std::string& path,
                                                    const std::string& sql) {
   sqlite3* database = nullptr;

@@ -85,7 +85,7 @@ TEST_F(TrackingCommands, EstimatesAreRecordingsThatOthersRead) {
   EXPECT_EQ(balanced.status, 0) << balanced.err;
 }
 
-// What a recording says of itself, and what it cannot be compared with.
+// Notes on a recording, and channels that cannot be compared.
 TEST_F(TrackingCommands, AnEstimateSaysWhatItCouldNotRead) {
   std::string rows = "t_s,q_w,q_x,q_y,q_z,wx,gyro_y_rad_s,gyro_z_rad_s\n",
               truth = "t_s,q_w,q_x,q_y,q_z\n";

@@ -95,7 +95,7 @@ class Bodies(unittest.TestCase):
         self.assertEqual(motion.start_s, 0.0)
         start, angle = states[:, 0, 0], 0.02
         self.assertEqual(start[9], 0.2)
-        # The same body, its appendage turned: after a period everything is as it was.
+        # The body with its appendage turned: after a period everything is as it was.
         y = start.copy()
         y[8] = angle
         solution = solve_ivp(lambda t, s: motion.rates(t, s, np.zeros(3), 0.0), (0.0, period_s), y, method="DOP853",

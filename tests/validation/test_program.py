@@ -141,7 +141,7 @@ class AgainstTheProgram(unittest.TestCase):
         self.assertIn("| improved.toml that repeats the recording as well as stated | 2 of 2 |", page.read_text())
         summary = json.loads((self.folder / "out" / "summary.json").read_text())
         self.assertEqual(summary["cases"]["value"], 2)
-        # What has been diagnosed by this very program is not diagnosed again.
+        # Cases diagnosed by this program are not diagnosed again.
         stamp = self.folder / "out" / "blind" / "0" / "done.txt"
         before = stamp.stat().st_mtime_ns
         self.assertEqual(prove.main(words), 0)

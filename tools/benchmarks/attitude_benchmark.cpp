@@ -43,7 +43,7 @@ void free_body(benchmark::State& state) {
 }
 BENCHMARK(free_body)->Arg(7)->Arg(8)->Arg(9)->Arg(10)->Unit(benchmark::kMillisecond);
 
-// What most simulators do. Argument: step in ms.
+// The method of most simulators. Argument: step in ms.
 void free_body_runge_kutta_4(benchmark::State& state) {
   const double h = 1e-3 * static_cast<double>(state.range(0));
   using State = Eigen::Matrix<double, 7, 1>;

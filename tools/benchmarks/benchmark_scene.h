@@ -1,4 +1,4 @@
-// What the benchmarks' scenes are put together with.
+// Parts of the benchmarks' scenes.
 #pragma once
 
 #include <string>

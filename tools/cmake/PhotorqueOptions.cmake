@@ -4,9 +4,9 @@ set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-# Programs of the build tree look for libraries where installed ones do. Search paths of its own CMake
-# ends with a colon, and for the loader nothing after a colon is the folder in which a program is
-# started: a library that lies beside a stranger's model would be loaded.
+# Programs of the build tree look for libraries where installed ones do. CMake ends its own search paths with
+# a colon, and for the loader nothing after a colon is the folder in which a program is started: a library
+# that lies beside a foreign model would be loaded.
 set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
 
 if(NOT CMAKE_BUILD_TYPE)
@@ -90,7 +90,7 @@ if(PHOTORQUE_COVERAGE)
   add_link_options(-fprofile-instr-generate)
 endif()
 
-# What stands in the way of whoever finds a fault in a reader: for what is shipped (preset "package").
+# Protections against exploits of a fault in a reader: for what is shipped (preset "package").
 option(PHOTORQUE_HARDEN "Checks of stack, buffers and jumps, and nothing writable that need not be" OFF)
 if(PHOTORQUE_HARDEN)
   include(CheckPIESupported)

@@ -16,7 +16,7 @@ class SunlitDirections final : public LightDirections {
   SunlitDirections(const OpticalRun& run, const SunLight& sun,
                    std::unique_ptr<const SunlitBody> body, int threads)
       : run_(run), sun_(sun), body_(std::move(body)) {
-    // What is small against the largest torque is not followed further.
+    // Light with a small torque against the largest is not followed further.
     constexpr size_t few = 32;
     constexpr double small = 3e-5;
     const std::vector<RigidTransform> attitudes = fresh_directions(few, sun);

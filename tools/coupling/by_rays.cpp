@@ -13,7 +13,7 @@ WrenchComponents components_of(const Wrench& wrench) {
   return {f.x(), f.y(), f.z(), t.x(), t.y(), t.z()};
 }
 
-// What light that has met a surface before does, about a point, twice: from either half of the
+// Wrench of light after its first contact, about a point, twice: from either half of the
 // replicates.
 TwofoldWrench bounced_of(const WrenchReceiver& receiver, const BinSums& sums,
                          const Vec3& about_body_m) {

@@ -54,7 +54,7 @@ std::optional<CheckpointFile::Kept> CheckpointFile::read(const std::string& iden
   std::string all = read_file(path_, largest_checkpoint_bytes);
   const auto refuse = [&](const char* found) {
     throw InputError({path_.string()}, "", found,
-                     "a checkpoint of this run (another --out, or none there, begins anew)");
+                     "a checkpoint of this run (another --out, or none there, starts again)");
   };
   size_t at = 0;
   if (next_line(all, at) != checkpoint_format) refuse("another file");
@@ -241,7 +241,7 @@ std::vector<LampGroup> lamp_groups(const std::vector<GroupOutput>& outputs) {
   return groups;
 }
 
-// What lamps, light and battery did, among the events of the motion.
+// Events of lamps, light and battery, among those of the motion.
 void add_events(PropagationResult& result, const CoupledRun& beside) {
   std::vector<Event>& events = result.events;
   const double end_s = result.states.back().time_s;
@@ -299,7 +299,7 @@ std::vector<std::string> missed_tolerance(const RotationTable& table, double tol
           "; more light.max_traces or light.rays would bring it nearer"};
 }
 
-// The state of a run that is kept now and then, and what is told of it.
+// The state of a run that is kept now and then, and its messages.
 class KeptState {
  public:
   KeptState(const Console& console, CheckpointFile* file, std::string identity)

@@ -26,8 +26,8 @@ class CheckpointFile {
     double table_tilt_rad = 0.0;  // how far the table of light reached; 0 without one
     std::string state;
   };
-  // What the file holds of the run that follows from `identity`, program and inputs; nothing where
-  // there is no file. InputError for the state of another run and for a file that is damaged.
+  // The stored state of the run with this `identity`, program and inputs; nothing where there is no
+  // file. InputError for the state of another run and for a file that is damaged.
   std::optional<Kept> read(const std::string& identity);
 
   // Whether the time between two states has passed.
@@ -57,8 +57,8 @@ struct CoupledResult {
   std::vector<std::string> warnings;  // where the table is further off than light.tolerance
 };
 
-// Overrides that an experiment in light needs before its platform is read: an orbit learns where
-// the Sun of [[source]] stands. InputError where both name a direction and differ.
+// Overrides that an experiment in light needs before its platform is read: an orbit takes the
+// direction of the sun of [[source]]. InputError where both name a direction and differ.
 std::vector<std::string> orbit_overrides(const ExperimentFile& file);
 
 // InputError for what an experiment says of light and power twice: as a disturbance beside a scene.

@@ -118,7 +118,7 @@ void CoupledRun::begin(Propagator& motion) {
   }
   double current_A = 0.0;
   if (supply_) {
-    // What the battery gives at the start, by a step that does not count.
+    // The current of the battery at the start, by a step that does not count.
     PowerSupply trial = *supply_;
     trial.step(start_s_, 1e-3, light_of(now));
     current_A = -trial.state().battery_W / battery_voltage_V_;
@@ -269,7 +269,7 @@ void CoupledRun::run_supply() {
 void CoupledRun::exchange(Propagator& motion) {
   const double now_s = motion.step_end_s();
   if (now_s < segment_end_s_) {
-    // The run ended within the segment: what is left of it does not happen.
+    // The run ended within the segment: its remaining instants do not happen.
     std::erase_if(instants_, [&](const Instant& one) { return one.from_s >= now_s; });
     if (!instants_.empty()) instants_.back().length_s = now_s - instants_.back().from_s;
     segment_end_s_ = now_s;

@@ -17,7 +17,7 @@ namespace photorque {
 struct GroupOutput {
   LightModel::Group group;
   std::shared_ptr<const LampOutput> output;
-  // What counts of it: the weight of a joint's position, which may be negative; nothing: all.
+  // Its fraction: the weight of a joint's position, which may be negative; nothing: all.
   std::function<double(double time_s)> share = {};
   std::vector<double> corners_s = {};  // of that weight
 
@@ -47,9 +47,9 @@ struct ContinuationError {
 
 // Exchanges with the motion every LightSettings::step_s and at every switch of lamps. Between two
 // exchanges the motion goes ahead with the last current of the battery; then light and power follow
-// over the same interval, at steps of their own, along the attitudes that were passed; then the
-// charge of the motion becomes theirs. What an interval's current is wrong by moves the centre of
-// mass for one interval by less than 1e-12 m, so nothing is repeated.
+// over the same interval, at their own steps, along the attitudes that were passed; then the charge
+// of the motion becomes theirs. What an interval's current is wrong by moves the centre of mass for
+// one interval by less than 1e-12 m, so nothing is repeated.
 class CoupledRun {
  public:
   // `table` null: light is traced at every exchange. `supply` none: light alone. All must outlive
@@ -65,7 +65,7 @@ class CoupledRun {
   void follow(Propagator& motion);
   void keep(Snapshot& snapshot);
 
-  // What battery and array did so far.
+  // History of battery and array so far.
   const PowerHistory& power() const { return power_; }
   const std::vector<PowerRow>& rows() const { return rows_; }
   const std::optional<PowerSupply>& supply() const { return supply_; }

@@ -107,7 +107,7 @@ void print_summary(const Console& console, const WrenchTable& table, const SunLi
                show(mean_push_N(table) / sun.pressure_Pa) + " m2");
 }
 
-// What is done already, one direction after another; kept in a file now and then.
+// The completed directions, one after another; kept in a file now and then.
 class DoneDirections {
  public:
   DoneDirections(const OpticalRun& run, const Console& console, CheckpointFile* file)
@@ -122,7 +122,7 @@ class DoneDirections {
     keep(snapshot);
     if (!snapshot.is_whole()) {
       throw InputError({file_->path().string()}, "", "a damaged checkpoint",
-                       "a checkpoint of this run (another --out, or none there, begins anew)");
+                       "a checkpoint of this run (another --out, or none there, starts again)");
     }
     console_.line("goes on from " + file_->path().string() + ": " + std::to_string(all_.size()) +
                   " directions are done");

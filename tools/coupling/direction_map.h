@@ -27,7 +27,7 @@ struct DirectionMap {
 DirectionMap map_over_directions(const Console& console, const OpticalRun& run, int threads,
                                  const NodeWatch& watch = {}, CheckpointFile* checkpoint = nullptr);
 
-// The experiment's sun: tables may be told per unit of its pressure.
+// The experiment's sun: tables may be normalised by its pressure.
 struct SunLight {
   Vec3 towards_lab;
   double pressure_Pa = 0.0;  // irradiance over the speed of light
@@ -37,11 +37,11 @@ struct SunLight {
   RigidTransform lab_from_body(const Vec3& towards_body) const;
 };
 
-// What was found at one direction, about the point of the table.
+// The wrench at one direction, about the point of the table.
 struct DirectionWrench {
   WrenchComponents direct{};
   TwofoldWrench bounced;     // what light does that has met a surface before, twice
-  WrenchComponents error{};  // one standard error of all that being there twice does not tell
+  WrenchComponents error{};  // standard error of the parts that both halves share
   uint64_t rays = 0;
   std::vector<std::string> warnings;
 
@@ -56,8 +56,8 @@ class LightDirections {
   virtual ~LightDirections() = default;
   // From many threads at once.
   virtual DirectionWrench at(const RigidTransform& lab_from_body) const = 0;
-  // Puts what was found at each node into the table, and says how good it is; warns where a check
-  // fails. `whole`: the nodes go from pole to pole and all round.
+  // Puts the result at each node into the table, and states its error; warns where a check fails.
+  // `whole`: the nodes go from pole to pole and all round.
   virtual void fill(WrenchTable& table, const std::vector<DirectionWrench>& found, bool whole,
                     const Console& console, int threads,
                     std::vector<std::string>& warnings) const = 0;
@@ -69,11 +69,11 @@ std::unique_ptr<LightDirections> traced_directions(const OpticalRun& run, const 
                                                    const Vec3& about_body_m);
 
 // By quadrature (receivers/gather/bodies/sunlit_body.h). Null where the scene is not for that, or
-// the experiment wants rays.
+// the experiment requires rays.
 std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const SunLight& sun,
                                                    const Vec3& about_body_m, int threads);
 
-// Directions that no table has, evenly over the sphere, in which a way is held against rays.
+// Directions that no table has, evenly over the sphere, in which a method is compared with rays.
 std::vector<RigidTransform> fresh_directions(size_t count, const SunLight& sun);
 
 // The longest of these torques [N m].

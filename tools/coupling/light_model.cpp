@@ -233,7 +233,7 @@ std::string LightModel::content_key(const ExperimentFile& file) const {
       text += std::string(table) + written_out(file.settings.raw(table));
   }
   if (file.settings.has("array")) {
-    // What happens behind the cells does not change the light.
+    // Keys behind the cells do not change the light.
     text += "array" + written_out(file.settings.raw("array"),
                                   {"day", "tracker", "target", "layout", "chain"});
   }

@@ -16,7 +16,7 @@
 
 namespace photorque {
 
-// What an experiment says about light in a run of the attitude: the table [light].
+// The settings of light in a run of the attitude: the table [light].
 
 // [light]
 struct LightSettings {
@@ -51,7 +51,7 @@ bool has_light(const ExperimentFile& file);
 LightSettings read_light(const ExperimentFile& file);
 Key light_table();
 
-// What light does to the platform and its array at any attitude: traced, or from a table of traces.
+// Effect of light on the platform and its array at any attitude: traced, or from a table of traces.
 
 // The experiment's light as a function of attitude. Channels of a group of lamps, from `first`:
 // torque about the body origin and force (x, y, z, body axes), then, where there is an array, the

@@ -91,7 +91,7 @@ void add_light(const Console& console, const CoupledResult& coupled, const Propa
   append(product, power_product(*coupled.beside, product, run.history_rows));
 }
 
-// All that a run follows from but the light, to tell its checkpoint from those of others.
+// All that a run follows from but the light, to identify its checkpoint.
 std::string identity(const Provenance& provenance,
                      const std::vector<std::pair<std::string, std::string>>& seen) {
   return table_cache_version() + "seed " + std::to_string(provenance.seed) + "\n" +

@@ -29,7 +29,7 @@ std::vector<EnergyRow> energy_rows(const CoupledRun& run) {
   rows.push_back({"lost in the converter", e.converter.value()});
   rows.push_back({"load", e.load.value()});
   if (supply.design().battery) {
-    rows.push_back({"asked for by the load in vain", e.unserved.value()});
+    rows.push_back({"unserved load", e.unserved.value()});
     rows.push_back({"into the battery", e.into_battery.value()});
     rows.push_back({"out of the battery", e.out_of_battery.value()});
     rows.push_back({"lost in the battery", e.battery_loss.value()});
@@ -53,7 +53,7 @@ bool has_column(const Table& table, const std::string& name) {
 
 Plot::Curve curve(const std::string& label, const std::vector<double>& x,
                   const std::vector<double>& y) {
-  // As many points as a picture has columns to tell apart, the extremes of each stretch.
+  // As many points as a picture has columns, the extremes of each interval.
   constexpr size_t stretches = 700;
   Plot::Curve c;
   c.label = label;

@@ -1,4 +1,4 @@
-// What a run in light found, as figures, tables, plots and text.
+// The results of a run in light, as figures, tables, plots and text.
 #pragma once
 
 #include "core/product.h"

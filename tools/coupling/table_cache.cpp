@@ -30,7 +30,7 @@ std::filesystem::path own_file() {
 }  // namespace
 
 std::string table_cache_version() {
-  // The code itself, which a version does not tell apart while it is being worked on.
+  // The code itself, which a version does not identify while it is being worked on.
   return format + build_provenance().version + " " + content_hash(read_file(own_file())) + "\n";
 }
 

@@ -10,7 +10,7 @@
 
 namespace photorque {
 
-// What of the program belongs to a key: its format of tables, version and own bytes.
+// The part of a key that belongs to the program: its format of tables, version and own bytes.
 std::string table_cache_version();
 
 // A value as text, equal for equal values; without the named keys of the top level.

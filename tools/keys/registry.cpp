@@ -40,7 +40,7 @@ Key effect_table() {
   };
   return Key::tables(
       "effect",
-      {Key::choice("kind", std::move(kinds), "what acts").range_that_varies(),
+      {Key::choice("kind", std::move(kinds), "the effect").range_that_varies(),
        said("u_m", Key::a_number | Key::an_array), said("v_m", Key::a_number | Key::an_array),
        said("darkest", Key::a_number), said("count_between", Key::a_text)},
       "what a diagnosis found missing: the nominal model has it");
@@ -58,7 +58,8 @@ Key with_errors(Key key) {
   return key;
 }
 
-// What a diagnosis of light knows of an array; days, trackers and reports have no errors.
+// The keys of an array that a diagnosis of light may vary; days, trackers and reports have no
+// errors.
 Key with_errors_of_cells(Key array) {
   static const std::set<std::string> known = {
       "temperature_K", "bypass_diode", "blocking_diode",     "cell_parameters",

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "tools/keys/words.h"
+#include "tools/keys/descriptions.h"
 
 namespace photorque {
 namespace {
@@ -172,7 +172,7 @@ std::string pattern_of(const Key& key) {
   return own.stem + "_(" + units + ")";
 }
 
-// What a key has in common with the same quantity in another unit.
+// The stem of a key, common to all units of its quantity.
 std::string quantity_of(const Key& key) {
   const KeyUnit unit = unit_of_key(key.name);
   return unit.unit.empty() ? key.name : unit.stem + " of " + unit.dimension;
@@ -192,7 +192,7 @@ std::vector<const Key*> flat(const std::vector<Key>& keys) {
   return all;
 }
 
-// What a table holds.
+// The schema of a table.
 class ObjectSchema {
  public:
   ObjectSchema(const std::vector<Key>& keys, Definitions& definitions)
@@ -269,7 +269,7 @@ class ObjectSchema {
     return Json::array({{{"anyOf", std::move(instead)}}});
   }
 
-  // What each word of each choice allows and requires.
+  // Keys that each word of each choice allows and requires.
   Json choices(const std::vector<Key>& keys) const {
     Json all = Json::array();
     for (const Key& key : keys) {
@@ -307,7 +307,7 @@ class ObjectSchema {
     return {{"if", std::move(is_so)}, {"then", std::move(then)}};
   }
 
-  // What a choice requires, unless a key beside it stands for that.
+  // Keys that a choice requires, unless a key beside it replaces them.
   Json completed(const std::vector<Key>& keys, const Key::Choice& choice) const {
     std::vector<Key> own = choice.keys;
     for (const Key& key : keys) {
@@ -324,7 +324,7 @@ class ObjectSchema {
       for (const Key* one : flat(other.keys)) others.insert(quantity_of(*one));
     }
     for (const Key* one : flat(choice.keys)) mine.insert(quantity_of(*one));
-    // What is known without this key is allowed.
+    // Keys known without this key are allowed.
     for (const Key& one : keys_) {
       mine.insert(quantity_of(one));
       if (one.name == key.name || holds(one, key)) continue;

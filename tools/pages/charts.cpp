@@ -92,7 +92,7 @@ const std::vector<ScanView>& scan_views() {
        [](const LightSeries& l, size_t i) { return l.before[i]; }},
       {"residual", "Measured minus nominal model", true,
        [](const LightSeries& l, size_t i) { return l.measured[i] - l.before[i]; }},
-      {"after", "Measured minus model with what was found", true,
+      {"after", "Measured minus improved model", true,
        [](const LightSeries& l, size_t i) { return l.measured[i] - l.after[i]; }}};
   return all;
 }
@@ -306,9 +306,9 @@ Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_
   after.colour = off_after.colour = Plot::Colour::blue;
   measured.label = "measured";
   before.label = "nominal model";
-  after.label = "with what was found";
+  after.label = "improved model";
   off_before.label = "measured minus nominal model";
-  off_after.label = "measured minus model with what was found";
+  off_after.label = "measured minus improved model";
   std::vector<size_t> rows;
   for (size_t i = 0; i < light.measured.size(); ++i) {
     if (light.sweep.empty() || light.sweep[i] == sweep) rows.push_back(i);

@@ -11,16 +11,16 @@ namespace photorque {
 // "magnetic_dipole" as "magnetic dipole".
 std::string spoken(std::string name);
 
-// Blue is what was found, vermilion the nominal model, grey what was measured: in every chart and
-// in the legend of the page. Colours that colour-blind readers tell apart: M. Okabe and K. Ito,
-// "Color Universal Design" (2008).
+// Blue is the improved model, vermilion the nominal model, grey the measurement: in every chart and
+// in the legend of the page. Colours that are distinct for colour-blind readers: M. Okabe and K.
+// Ito, "Color Universal Design" (2008).
 
 // Torque without a law about the three axes, with bands of one standard error.
 Plot empirical_plot(const EmpiricalTorque& torque);
 
 // chi² per reading of every channel under the nominal model.
 BarChart misfit_chart(const Where& where);
-// What the difference is a function of.
+// The variable of which the difference is a function.
 BarChart dependence_chart(const Where& where);
 
 // Log evidence of the best alternatives; those that the recordings rule out are left out.
@@ -58,14 +58,14 @@ struct ScanGrid {
 };
 ScanGrid grid_of(const ScanGroup& group);
 
-// What a scan shows: readings, models, differences.
+// The maps of a scan: readings, models, differences.
 struct ScanView {
   const char* name;
   const char* title;
   bool is_difference;
   double (*value)(const LightSeries&, size_t);
 };
-// Without the last, what is left after what was found, where nothing was.
+// The last, residuals of the improved model, only where an effect was found.
 std::vector<ScanView> views_of_scans(bool something_was_found);
 
 Map scan_map(const ScanGroup& group, const ScanView& shown, size_t number);

@@ -120,7 +120,7 @@ void show_runs(const std::vector<RecordingSeries>& runs, const OpticalRun& optic
   for (const ChannelSeries& channel : first.channels) {
     stage.figures.push_back({channel.label + ", measured", channel.unit});
     stage.figures.push_back({"nominal model", channel.unit});
-    if (found) stage.figures.push_back({"with what was found", channel.unit});
+    if (found) stage.figures.push_back({"improved model", channel.unit});
   }
   const size_t count = std::min(most_states, time_s.size());
   for (size_t k = 0; k < count; ++k) {

@@ -232,7 +232,7 @@ class MotionStage {
     }
     add_sentence(stage_.remark,
                  "Arrows: the turn from a model to what was measured, a mean over 1/200 of the "
-                 "recording about the instant; found: the model with what was found.");
+                 "recording about the instant; found: the improved model.");
     if (factor_ > 1.0) {
       add_sentence(stage_.remark,
                    "The models are drawn with their difference from what was "
@@ -265,7 +265,7 @@ class MotionStage {
   }
 
   void add_difference_arrows(const std::string& unit, double largest) {
-    // Both to one scale, so that what is left can be seen to be less.
+    // Both to one scale, so that the decrease of the residuals is visible.
     const double m_per_unit = largest > 0.0 ? 0.95 * stage_.radius_m / largest : 0.0;
     stage_.arrows.push_back({"measured − nominal", unit, StageArrow::Kind::turn, m_per_unit});
     if (found_) {
@@ -329,11 +329,11 @@ class MotionStage {
 
 void add_curves(const RecordingSeries& recording, const std::string& suffix,
                 const std::optional<PlotCursor>& cursor, RunPage& page) {
-  static constexpr const char* models[] = {"nominal model", "with what was found"};
+  static constexpr const char* models[] = {"nominal model", "improved model"};
   const auto name_residuals = [](std::vector<Plot::Curve>& curves) {
     for (size_t i = 0; i < curves.size(); ++i) {
       curves[i].label =
-          std::string("measured minus ") + (i == 0 ? "nominal model" : "model with what was found");
+          std::string("measured minus ") + (i == 0 ? "nominal model" : "improved model");
     }
   };
   for (const ChannelSeries& channel : recording.channels) {

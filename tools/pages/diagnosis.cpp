@@ -129,7 +129,7 @@ std::string interactive_report_html(const Diagnosis& d, const Provenance& proven
   if (const size_t files = shown_recordings(d, SIZE_MAX).size(); files > most_recordings) {
     page.notes.push_back("Shown are the first " + std::to_string(most_recordings) + " of " +
                          std::to_string(files) +
-                         " recordings or stretches; a report without --page has all.");
+                         " recordings or segments; a report without --page has all.");
   }
   const bool found = !d.effects.empty() || !d.empirical.empty() || !d.unnamed.empty();
   const std::unique_ptr<OpticalRun> optics = is_of_module(options) ? nullptr : optics_of(options);

@@ -16,7 +16,7 @@ PageFigure figure_of(const Quantity& quantity) {
   return {quantity.name, label.name, label.unit, quantity.estimate};
 }
 
-// Rows "stage", "lost_to", "power_W", "lost_W": what is left after each loss.
+// Rows "stage", "lost_to", "power_W", "lost_W": the remaining power after each loss.
 std::vector<PowerStage> stages_of_array(const Table& losses) {
   std::vector<PowerStage> stages;
   const auto& left_W = losses.column("power_W").values;
@@ -59,7 +59,7 @@ std::vector<PowerStage> stages_of_light(const OpticalRun& run, const OpticalResu
     to.push_back({"absorbed by " + names[i], absorbed_W});
   }
   std::ranges::stable_sort(losses, std::greater{}, [](const auto& s) { return s.power_W.value; });
-  constexpr size_t single = 8;  // parts with a line of their own
+  constexpr size_t single = 8;  // parts with a separate line
   if (losses.size() > single + 1) {
     double rest_W = 0.0, variance = 0.0;
     for (size_t i = single; i < losses.size(); ++i) {
@@ -80,7 +80,7 @@ std::vector<PowerStage> stages_of_light(const OpticalRun& run, const OpticalResu
   if (kept.size() == 1) {
     stages.push_back(kept.front());
   } else {
-    // Several measured parts are no single end: they too hang from what is left.
+    // Several measured parts are no single end: they too hang from the remaining power.
     for (PowerStage& stage : kept) stage.is_total = false;
     stages.insert(stages.end(), kept.begin(), kept.end());
   }
@@ -98,7 +98,7 @@ RunPage lit_page(const OpticalRun& run, const OpticalResult& light, const RunRes
                   (experiment.beams.size() == 1 ? " lamp, " : " lamps, ") +
                   std::to_string(experiment.scene.instances.size()) + " parts.";
   page.power = power_stages(run, light, result.product);
-  // The same as bars.
+  // The waterfall as bars.
   std::erase_if(page.product.plots, [](const Plot& plot) { return plot.name == "loss_waterfall"; });
   page.notes = experiment.notices;
   page.stage = stage_of(run, StageMaps::of_product);

@@ -214,7 +214,7 @@ RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageH
     if (plot.x_label == "Time [s]") page.cursors.push_back({plot.name, 0, 1.0});
     if (plot.x_label == "Time [h]") page.cursors.push_back({plot.name, 0, 1.0 / 3600.0});
   }
-  // What has everything over one axis of time comes first.
+  // The plot with all curves over one axis of time comes first.
   std::ranges::stable_partition(page.product.plots,
                                 [](const Plot& plot) { return plot.name == "power_and_attitude"; });
   page.headline = show(states.back().time_s - states.front().time_s) + " s, " +

@@ -15,7 +15,7 @@ struct MotionRun;
 struct SceneStage;
 struct WrenchTable;
 
-// What a page says of the run beside its results.
+// Properties of the run on a page beside its results.
 struct PageHead {
   std::string title;  // the experiment's name
   std::string verb;
@@ -47,16 +47,16 @@ RunFile torque_map_page(const OpticalRun& run, const WrenchTable& table, const R
 // of inertia.
 RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageHead& head);
 
-// report.html of a diagnosis: the finding in one sentence, what acts with its numbers and where on
-// the array, where recording and nominal model part, the ranking of the alternatives, readings
-// beside predictions with the part that was never fitted shaded, and the quality of the data. It
-// needs no script.
+// report.html of a diagnosis: the finding in one sentence, the effects with their numbers and
+// places on the array, where recording and nominal model part, the ranking of the alternatives,
+// readings beside predictions with the part that was never fitted shaded, and the quality of the
+// data. It needs no script.
 std::string report_html(const Diagnosis& diagnosis, const Provenance& provenance,
                         const std::string& title);
-// The same page with the scene, and curves and maps to point at, in place of the drawn readings.
-// Where the experiment has a scene with lamps, that scene; for motion without one an ellipsoid with
-// the platform's moments of inertia; for curves of a module no scene at all.
-// `of_light`: the recordings are scans, sweeps and runs of light instead of motion.
+// The page with the scene, and curves and maps to point at, in place of the drawn readings. Where
+// the experiment has a scene with lamps, that scene; for motion without one an ellipsoid with the
+// platform's moments of inertia; for curves of a module no scene at all. `of_light`: the recordings
+// are scans, sweeps and runs of light instead of motion.
 std::string interactive_report_html(const Diagnosis& d, const Provenance& provenance, bool of_light,
                                     const RunOptions& options, const PageHead& head);
 

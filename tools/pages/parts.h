@@ -1,4 +1,4 @@
-// What the pages of the commands are made of: figures, the scene as a stage, recordings.
+// The parts of the commands' pages: figures, the scene as a stage, recordings.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace photorque {
 
-// The page of a run without its stage: figures with names and units for people, of which those
+// The page of a run without its stage: figures with names and units as printed, of which those
 // whose names begin with one of `headlines` stand at the top (at most six, in this order).
 RunPage page_of(const RunResult& result, const PageHead& head,
                 const std::vector<std::string>& headlines);
@@ -38,8 +38,8 @@ SceneStage stage_of(const OpticalRun& run, StageMaps maps);
 StageState lit_state(const OpticalRun& run, const RigidTransform& lab_from_body,
                      const OpticalResult& result);
 
-// One of `lights` that the stage will have: rays and, for surfaces with maps of their own, the
-// irradiance; the more lights, the fewer rays and bins.
+// One of `lights` that the stage will have: rays and, for surfaces with maps, the irradiance; the
+// more lights, the fewer rays and bins.
 void add_light(SceneStage& stage, const OpticalRun& run, const RigidTransform& lab_from_body,
                const OpticalResult& result, size_t lights);
 
@@ -74,8 +74,8 @@ void show_light(const std::vector<RecordingSeries>& recordings, bool something_w
 void add_curves(const RecordingSeries& recording, const std::string& suffix,
                 const std::optional<PlotCursor>& cursor, RunPage& page);
 
-// The text of report.html before and after the readings, as HTML: the finding, what acts; where it
-// is seen, the ranking of the alternatives, the quality of the data.
+// The text of report.html before and after the readings, as HTML: the finding, the effects; where
+// it is seen, the ranking of the alternatives, the quality of the data.
 std::string report_findings(const Diagnosis& diagnosis, const std::string& title);
 std::string report_evidence(const Diagnosis& diagnosis);
 

@@ -157,7 +157,7 @@ std::string effect_card(const FoundEffect& effect, const std::string& where) {
     card += tag("p", "<b>Only the combination is identifiable:</b> " + xml_text(text));
   }
   if (!effect.indistinguishable_from.empty()) {
-    card += tag("p", "<b>These recordings cannot tell it from:</b> " +
+    card += tag("p", "<b>Indistinguishable in these recordings:</b> " +
                          joined(effect.indistinguishable_from) + ".");
   }
   return tag("article", card, "finding");
@@ -175,12 +175,12 @@ std::string manoeuvres(const Diagnosis& d) {
     }
     list += tag("li", item);
   }
-  return tag("h3", "What would tell them apart") + tag("ul", list);
+  return tag("h3", "Recordings that would separate them") + tag("ul", list);
 }
 
 std::string effects(const Diagnosis& d) {
   if (d.effects.empty() && d.manoeuvres.empty()) return "";
-  std::string section = tag("h2", d.effects.empty() ? "What would tell more" : "What acts"), found;
+  std::string section = tag("h2", d.effects.empty() ? "Further recordings" : "Effects"), found;
   for (size_t i = 0; i < d.effects.size(); ++i) {
     found += effect_card(d.effects[i], "effects[" + std::to_string(i) + "].parameters");
   }
@@ -294,7 +294,7 @@ std::string priors(const Diagnosis& d) {
                             parameter_table(d.priors_refined, "priors_refined", "from zero"));
 }
 
-// What the gate asks: the same data against the prediction with its uncertainty.
+// The predictive check: held-out data against the prediction with its uncertainty.
 std::string of_the_prediction(const Holdout& holdout) {
   if (!holdout.predictive) return "";
   return tag("p", "With the uncertainty of its parameters the model predicts these data to χ² = " +
@@ -347,7 +347,7 @@ std::string readings(const Diagnosis& d) {
   section += tag("p",
                  "<span class=\"key dots\"></span> measured &emsp;"
                  "<span class=\"key before\"></span> nominal model &emsp;"
-                 "<span class=\"key after\"></span> with what was found &emsp;"
+                 "<span class=\"key after\"></span> improved model &emsp;"
                  "<span class=\"key shade\"></span> held out, never fitted &emsp;"
                  "<span class=\"key level\"></span> ± 2 σ of one reading");
   const bool found = d.verdict != Verdict::consistent;

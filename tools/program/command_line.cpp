@@ -30,7 +30,7 @@ std::string name_of(const CLI::Option& option) {
                                      : "--" + option.get_lnames().front();
 }
 
-// What stands for an option's value: that of --target-error is TARGET_ERROR.
+// The placeholder of an option's value: that of --target-error is TARGET_ERROR.
 std::string value_name(const CLI::Option& option) {
   std::string text;
   for (const char c : name_of(option).substr(2)) {
@@ -170,8 +170,9 @@ std::string man_page(const CLI::App& app, const std::string& version) {
             troff_options(*command);
   }
   return text +
-         ".SH EXIT STATUS\n.TP\n0\nDone.\n.TP\n2\nWrong input: one line with file, line, key, what "
-         "was found and what was expected.\n.TP\n3\nThe computation failed.\n";
+         ".SH EXIT STATUS\n.TP\n0\nDone.\n.TP\n2\nWrong input: one line with file, line, key, "
+         "value "
+         "found and value expected.\n.TP\n3\nThe computation failed.\n";
 }
 
 // A script that completes commands, options and files.
@@ -180,7 +181,7 @@ std::string completion_script(const CLI::App& app, const std::string& shell) {
   return shell == "zsh" ? zsh_script(app) : fish_script(app);
 }
 
-// What packages ask for.
+// Output for packages.
 struct Manual {
   bool page = false;
   std::string shell;
@@ -223,7 +224,7 @@ void add_option(CLI::App& app, const Option& option) {
 // A list behind --recording would swallow an experiment that follows it: each has its own option.
 std::string hint_at(const CLI::ParseError& error, int argc, char** argv) {
   if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) return "";
-  // An option that nobody knows is no item of a list.
+  // An unknown option is not an item of a list.
   if (std::string_view(error.what()).find(" -") != std::string_view::npos) return "";
   for (const char* option : {"--recording", "--holdout", "--set"}) {
     if (std::find(argv + 1, argv + argc, std::string_view(option)) == argv + argc) continue;

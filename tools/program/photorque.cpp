@@ -39,12 +39,12 @@ void run_in_folder(const Command& command, const Program& program) {
   if (std::filesystem::equivalent(options.experiment, out / input, none) &&
       is_result_of(out, options.verb, input)) {
     throw InputError({}, "--out", out.string() + ", whose " + input + " the run would replace",
-                     "another folder than that of its own input");
+                     "another folder than that of the input");
   }
   command.run(program);
 }
 
-// What is wrong without a file of its own is wrong in the experiment.
+// An error without a file is an error of the experiment.
 int run_command(const Command& command, const Program& program) {
   const std::filesystem::path& experiment = command.options->experiment;
   try {
@@ -104,8 +104,8 @@ int run(int argc, char** argv, Interruption& interruption) {
   end_after_fault(SIGABRT);
 }
 
-// Where nothing has its own handler yet, as sanitizers do. On a stack of its own, since the
-// ordinary one may be at its end.
+// Where nothing has its own handler yet, as sanitizers do. On a separate stack, since the ordinary
+// one may be at its end.
 void catch_faults() {
   alignas(16) static std::array<std::byte, 1 << 16> room;
   const stack_t stack{room.data(), 0, room.size()};

@@ -35,16 +35,15 @@ std::vector<std::string> unlike_sources(const QuantumEfficiency& efficiency, con
       most = std::max(most, a);
     }
     if (!(most > (1.0 + alike) * least)) continue;
-    notices.push_back(
-        "in band " + std::to_string(b + 1) + " the cells turn " + show(least) + " to " +
-        show(most) +
-        " A/W of the sources' light into current; the mean over what they emit is "
-        "taken for all, so give unlike sources bands of their own ([scene] bands_nm)");
+    notices.push_back("in band " + std::to_string(b + 1) + " the cells turn " + show(least) +
+                      " to " + show(most) +
+                      " A/W of the sources' light into current; the mean over what they emit is "
+                      "taken for all, so give unlike sources separate bands ([scene] bands_nm)");
   }
   return notices;
 }
 
-// What each watt of the lamps' light gives in each band.
+// Current per watt of the lamps' light in each band.
 void read_responsivity(OpticalRun& run, ArrayPower& array) {
   const Experiment& experiment = run.experiment();
   std::vector<WeighedSpectrum> spectra;
@@ -125,7 +124,7 @@ void print_array(const Console& console, const ArrayResult& array, const TraceRe
                show(100 * array.efficiency.value) + " % of the light on the cells)");
   console.line("  voltage, current        " + show(array.voltage_V, "V") + ", " +
                show(array.current_A, "A"));
-  console.line("  every cell by itself    " + show(array.sum_of_cells_W, "W") + "  (" +
+  console.line("  sum of cell maxima      " + show(array.sum_of_cells_W, "W") + "  (" +
                show(100 * array.mismatch_loss.value) + " % lost to uneven light and diodes)");
   if (array.mismatch_loss.value > 0.2) {
     console.line(

@@ -36,8 +36,7 @@ void print_requirements(const Console& console, const ArrayTarget& target,
                            : ""));
 }
 
-// Tilted, an array shows the cosine of its area; a published power below that tells what else was
-// lost.
+// Tilted, an array shows the cosine of its area; a published power below that shows further losses.
 Table tilted_table(const Console& console, const ArrayTarget& target,
                    const std::vector<PublishedFigure>& published, const ArrayResult& result,
                    double tilt_rad) {

@@ -1,4 +1,4 @@
-// What `power` says beyond the maximum power point: losses, trackers, a day, a target, a wiring.
+// Results of `power` beyond the maximum power point: losses, trackers, a day, a target, a wiring.
 #pragma once
 
 #include <optional>
@@ -38,7 +38,7 @@ struct ArrayReport {
   std::optional<DaySettings> day;  // [array.day], see read_day()
   // [array.layout]: max_tried = 2000. Over the attitudes of the motion, or the one that is traced.
   std::optional<int64_t> layout_most_tried;
-  std::vector<PublishedFigure> published;  // [[published]], what the target is held against
+  std::vector<PublishedFigure> published;  // [[published]], compared with the target
 };
 
 ArrayReport read_array_report(const Settings& array, std::vector<PublishedFigure> published);

@@ -12,7 +12,7 @@
 namespace photorque {
 namespace {
 
-// What optical commands read of the same file.
+// Tables that optical commands read from the file.
 constexpr const char* optical_tables[] = {"scene", "material",   "source", "receiver", "attitude",
                                           "trace", "torque_map", "camera", "effect"};
 

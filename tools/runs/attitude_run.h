@@ -1,4 +1,4 @@
-// What the attitude commands have in common: the experiment, checked, and where it came from.
+// Shared by the attitude commands: the experiment, checked, and where it came from.
 #pragma once
 
 #include <string>
@@ -35,7 +35,7 @@ class AttitudeExperiment {
 std::vector<std::pair<std::string, std::string>> look_through_scene(const ExperimentFile& file,
                                                                     Sensors& sensors);
 
-// Columns of a table for people. Numbers have three digits.
+// Columns of a printed table. Numbers have three digits.
 struct PrintedColumn {
   std::string title;
   std::string name;  // of the table's column; left out where there is none

@@ -68,7 +68,7 @@ std::string show(double value) {
 std::string show(const Estimate& estimate, const std::string& unit) {
   const double error = estimate.standard_error;
   if (std::isinf(error)) return show(estimate.value) + " " + unit + " (undetermined)";
-  // What rounding leaves of equal samples is no error.
+  // The scatter of equal samples by rounding is no error.
   const double rounding = 1e-12 * std::abs(estimate.value);
   if (!(error > rounding)) return show(estimate.value) + " " + unit;
   // Two digits of the error decide how many of the value mean something.

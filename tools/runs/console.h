@@ -1,4 +1,4 @@
-// What a person sees while a run works.
+// Terminal output of a run.
 #pragma once
 
 #include <functional>
@@ -26,7 +26,7 @@ class Console {
   void line(const std::string& text = "") const;
   void heading(const std::string& text) const;
 
-  // For TraceOptions::progress and the like; empty where nobody listens.
+  // For TraceOptions::progress and the like; empty without a listener.
   std::function<void(double)> progress(const std::string& what) const;
   void note_progress(const std::string& text) const;
   void done() const;

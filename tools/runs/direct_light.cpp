@@ -40,7 +40,7 @@ constexpr double ray_rounding = 1e-7;
 // `ray_W`: of one ray, on the mean.
 DirectLight compare(const FluxMapReceiver& map, const Gathered& gathered, const BinSums& rays,
                     double ray_W, double emitted_W) {
-  constexpr double few = 100.0;     // rays: their scatter does not tell what chance does
+  constexpr double few = 100.0;     // rays: their scatter is no estimate of their error
   constexpr double well_lit = 0.3;  // relative error of the rays' bin at most
   DirectLight light;
   light.name = map.name();
@@ -140,7 +140,7 @@ std::string cost_notice(const std::string& what, size_t pairs, uint64_t rays) {
   return what + text;
 }
 
-// What all maps and bodies of one run have in common.
+// Data shared by all maps and bodies of one run.
 struct Wanted {
   const Experiment& experiment;
   const TraceableScene& scene;

@@ -49,9 +49,9 @@ struct DirectRoute {
 
 // Replaces the direct light of every flat flux map in `result`, its torque on every flat torque
 // map, and its wrench on bodies, by what gather_direct(), gather_torque() and `bodies` find, where
-// the experiment wants it and sources and surfaces allow it, and says how it agrees with the rays'
-// own. An experiment with a target error always gathers, unless it says "rays". `bodies` is of the
-// experiment's beams, or null.
+// the experiment requires it and sources and surfaces allow it, and says how it agrees with the
+// rays' own. An experiment with a target error always gathers, unless it says "rays". `bodies` is
+// of the experiment's beams, or null.
 DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scene,
                         const WrenchGather* bodies, const RigidTransform& lab_from_body,
                         const TraceOptions& options, TraceResult& result);

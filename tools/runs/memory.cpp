@@ -30,7 +30,7 @@ std::optional<uint64_t> available_bytes() {
   return std::nullopt;
 }
 
-// What a container or a job of a cluster may still take.
+// Memory that a container or a job of a cluster may still use.
 std::optional<uint64_t> left_of_group_bytes() {
   const auto most = number_of_file("/sys/fs/cgroup/memory.max");
   const auto taken = number_of_file("/sys/fs/cgroup/memory.current");

@@ -1,4 +1,4 @@
-// Memory: what a run will take, told before it starts.
+// Memory: the memory that a run needs, reported before it starts.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace photorque {
 
-// What a run may take [bytes]: what the user allows (--max-memory), else nine tenths of what the
-// machine, or the control group that the process lives in, has free; no limit where neither is
+// Memory that a run may use [bytes]: what the user allows (--max-memory), else nine tenths of what
+// the machine, or the control group that the process lives in, has free; no limit where neither is
 // known.
 uint64_t memory_limit_bytes(std::optional<double> allowed_GB);
 

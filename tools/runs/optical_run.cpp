@@ -28,7 +28,7 @@ void add_notices_of_layers(Experiment& experiment) {
         receiver.name + ": " + readable_number(grid.overlapping_m2, 3) + " of " +
         readable_number(grid.total_area_m2(), 3) +
         " m² lie above each other, seen along its normal; such bins hold the light of all layers "
-        "over the area of all: give a layer of interest a node (a part) of its own");
+        "over the area of all: give a layer of interest a separate node (part)");
   }
 }
 
@@ -58,7 +58,7 @@ size_t whole_wrench(Experiment& experiment) {
     const auto& wrench = experiment.receivers[i].wrench;
     if (wrench && wrench->part_names().size() == all.size()) return i;
   }
-  // Its files would overwrite each other's; told before the trace.
+  // Its files would overwrite each other's; reported before the trace.
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {
     const NamedReceiver& other = experiment.receivers[i];
     if (other.wrench && other.name == "body") {

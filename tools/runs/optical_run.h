@@ -1,4 +1,4 @@
-// What the optical commands have in common: experiment → trace → products → files.
+// Shared by the optical commands: experiment → trace → products → files.
 #pragma once
 
 #include <functional>
@@ -21,7 +21,7 @@
 
 namespace photorque {
 
-// What a run found: the trace, the direct light of its flux maps gathered where possible.
+// The result of a run: the trace, the direct light of its flux maps gathered where possible.
 struct OpticalResult : TraceResult {
   DirectRoute direct;
   double worst_bin_error = 0.0;  // see worst_bin_error()
@@ -37,7 +37,7 @@ class OpticalRun {
   const Experiment& experiment() const { return experiment_; }
   const TraceableScene& scene() const { return scene_; }
   const Provenance& provenance() const { return provenance_; }
-  // The same with a warning for each self-check of this result that fails.
+  // Provenance with a warning for each self-check of this result that fails.
   Provenance provenance(const OpticalResult& result) const;
   // One line for each self-check that is off by more than four of its standard errors: the two
   // routes to direct light and to force and torque; or power that was lost.
@@ -67,7 +67,7 @@ class OpticalRun {
 
   const WrenchReceiver& wrench() const;
   const FluxMapReceiver& flux_map(size_t index) const;
-  // Light on the inside of closed parts, as a line for people; empty if there is none.
+  // Light on the inside of closed parts, as a line of text; empty if there is none.
   std::string inside_light(const TraceResult& result) const;
 
   // Power balance, shapes of the sources, and the product of every receiver.
@@ -83,8 +83,7 @@ class OpticalRun {
   std::shared_ptr<const InsideLightReceiver> inside_light_;  // null where no part is closed
   size_t inside_index_ = 0;                                  // its place among the receivers
   int threads_ = 0;
-  // What gathers the wrench of direct light, once it has been asked for; null inside where rays
-  // must do.
+  // Gathers the wrench of direct light, created on first use; null inside where rays must do.
   mutable std::optional<std::shared_ptr<const WrenchGather>> bodies_;
   std::unique_ptr<std::mutex> bodies_mutex_ = std::make_unique<std::mutex>();
 };
@@ -105,7 +104,7 @@ class Warnings {
  public:
   // `where` says of which run: "tilt 5 deg, heading 0".
   void add(const std::vector<std::string>& warnings, const std::string& where);
-  // All in lines for people, loud; and into what is written.
+  // Prints the results; and into what is written.
   void print(const Console& console) const;
   Provenance into(Provenance provenance) const;
 

@@ -1,4 +1,4 @@
-// What a run is asked for, whoever asks: the program's command line or a caller from Python.
+// Options of a run: the program's command line or a caller from Python.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ struct FurtherLamp {
 };
 
 struct RunOptions {
-  // The experiment's file. With a text of its own it need not exist: it is what messages call the
-  // text, and files that the text names are relative to its folder.
+  // The experiment's file. With a given text it need not exist: it is what messages call the text,
+  // and files that the text names are relative to its folder.
   std::filesystem::path experiment;
   std::optional<std::string> text;      // TOML instead of what the file says
   std::vector<std::string> overrides;   // KEY=VALUE, in order

@@ -22,8 +22,8 @@ InputError refused(const fs::path& path, const std::string& found, const std::st
   return {{path.string()}, "--out", found, expected};
 }
 
-// What cleans up after a run that was stopped (Interruption) holds its lock for some milliseconds
-// more.
+// The process that cleans up after a stopped run (Interruption) holds its lock for some
+// milliseconds more.
 bool take_lock(int descriptor, int how, bool patiently) {
   constexpr int tries = 50, apart_us = 20'000;
   if (patiently) return ::flock(descriptor, how) == 0;
@@ -40,7 +40,7 @@ constexpr int stop_waiting = SIGUSR2;  // from the destructor
 
 OutputFolder::OutputFolder(const fs::path& path, Others others) : path_(fs::absolute(path)) {
   try {
-    // Whoever had the lock may have removed the folder meanwhile: then it is made again.
+    // The previous holder of the lock may have removed the folder meanwhile: then it is recreated.
     do make();
     while (!lock(others));
     remove_leftovers_of_the_dead(path_);

@@ -14,12 +14,12 @@ namespace photorque {
 // that it made and that are still empty go away.
 class OutputFolder {
  public:
-  // What to do about others that work in the folder: refuse to; let those in that share as well;
+  // Handling of other runs that work in the folder: refuse to; let those in that share as well;
   // wait until they are done.
   enum class Others { refuse, share, wait };
 
   // InputError when `path` is no folder or cannot be one, when a file in it cannot be written, or
-  // when another run works there. (File systems without locks: nobody is kept out.)
+  // when another run works there. (File systems without locks: no other is excluded.)
   OutputFolder(const std::filesystem::path& path, Others others);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
@@ -39,7 +39,7 @@ class OutputFolder {
 //
 // Made first thing in main(), before other threads are, which inherit that they are not to be
 // interrupted: one thread waits for the signals, removes the temporary files of the folders in use,
-// and lets the signal end the program, as whoever started it expects. Signals that are ignored
+// and lets the signal end the program, as its parent process expects. Signals that are ignored
 // (nohup) stay so.
 class Interruption {
  public:

@@ -13,14 +13,13 @@ constexpr NumberKey value("value", {}, "in its unit");
 constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi}, "at which it holds");
 constexpr NumberKey rounded_to(
     "rounded_to", Range::positive(),
-    "one unit of its last printed digit (38 %: 0.01): ours is held against it, and "
+    "one unit of its last printed digit (38 %: 0.01): the computed one is compared with it, and "
     "`published_misfit` of the summary is the sum of ((ours − `value`)/(½ "
     "`rounded_to`))²: for `optimise`, at most 1 for each figure that agrees",
     {.optional = true});
 constexpr TextKey source("source", "who printed it");
 constexpr TextKey why("why", "", "ours differs");
-constexpr TablesKey published("published",
-                              "a figure that somebody printed, compared at the same tilt");
+constexpr TablesKey published("published", "a published figure, compared at the same tilt");
 }  // namespace published_key
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Figures that somebody published, beside ours.
+// Published figures beside computed ones.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// What a run gives, ready to be written or handed on.
+// The results of a run.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace photorque {
 struct RunFile {
   std::string name;
   std::function<void(const std::filesystem::path&)> write;  // to this path, whole or not at all
-  std::string remark = {};                                  // what it is, for people
+  std::string remark = {};                                  // a remark, as printed
 };
 
 struct RunResult {

@@ -145,7 +145,7 @@ SpiralCoil read_coil(const Settings& table, const TableKey& key) {
   return coil;
 }
 
-// What tilting changes of the pair of coils.
+// The pose of the pair of coils under tilt.
 struct CoilPose {
   double mutual_H = 0.0;
   double torque_N_m_A2 = 0.0;  // on the platform, about the axis that tilts

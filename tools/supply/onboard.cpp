@@ -1,4 +1,5 @@
-// What needs nothing in the air: the battery, and the cable that the others are to replace.
+// Supplies without transmission through air: the battery, and the cable that the others are to
+// replace.
 #include <cmath>
 
 #include "attitude/disturbances/mass/battery.h"

@@ -52,7 +52,7 @@ Key induction_table();
 Key beam_table();
 Key supply_table();
 
-// What [supply_trade] says of the task.
+// The task in [supply_trade].
 SupplyTask read_supply_task(const Settings& root, const Settings& supply_trade);
 
 }  // namespace photorque

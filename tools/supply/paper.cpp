@@ -121,7 +121,8 @@ Table paper_supply_table(const SupplyTrade& trade) {
       "%");
   row("array_0_deg_W", 30.0, figure(light, "array_W"), "follows from the two above");
   row("array_30_deg_W", 23.0, figure(light, "sum_of_cells_tilted_W"),
-      "the theoretical maximum, every cell by itself, at the largest tilt of the trade");
+      "the theoretical maximum, sum of the cells' maximum powers, at the largest tilt of the "
+      "trade");
   row("array_30_deg_one_tracker_W", none, figure(light, "array_tilted_W"),
       "one operating point for all cells: less, as the paper says");
   return table;

@@ -86,7 +86,7 @@ Table charge_table(const SupplyTrade& trade) {
 
 // Below it is no torque worth a decade of the picture.
 constexpr double least_torque_N_m = 1e-13;
-// Level, light does not turn: what is left is the noise of the trace.
+// Level, light does not turn: the remainder is the noise of the trace.
 constexpr double level_torque_N_m = 1e-10;
 
 Plot tilt_plot(const SupplyTrade& trade) {

@@ -109,7 +109,7 @@ double disturbance_torque_N_m(const SupplyTask& task, const std::string& kind,
 
 namespace {
 
-// What averages out is as large as its error.
+// A torque that averages out is as large as its error.
 double size_of(const Estimate& x) {
   return std::max(std::abs(x.value), x.standard_error);
 }

@@ -12,7 +12,7 @@
 
 namespace photorque {
 
-// What every way is asked for.
+// The task of every supply.
 struct SupplyTask {
   double load_W = 0.0;
   double duration_s = 0.0;
@@ -38,7 +38,7 @@ struct SupplyOption {
   Estimate source_W;               // electric power that the laboratory gives at zero tilt
   std::vector<SupplyPoint> curve;  // at SupplyTask::tilt_rad
   std::vector<std::string> remarks;
-  // Figures of its own, name with unit and value.
+  // Further figures, name with unit and value.
   std::vector<std::pair<std::string, Estimate>> figures;
 };
 
@@ -55,7 +55,7 @@ class UncertainInputs {
   std::vector<Uncertain> inputs_;
 };
 
-// What the formulas of an option give from plain numbers.
+// Results of an option's formulas from plain numbers.
 struct PlainOption {
   double mass_kg = 0.0, source_W = 0.0;
   std::vector<double> delivered_W, torque_N_m, alternating_N_m;  // by tilt

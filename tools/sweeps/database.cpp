@@ -101,13 +101,13 @@ void RunDatabase::fail(const std::string& what) const {
   const int code = sqlite3_errcode(handle_) & 0xff;
   const bool damaged = !what.empty() || code == SQLITE_NOTADB || code == SQLITE_CORRUPT;
   throw InputError({path_.string()}, "", what.empty() ? sqlite3_errmsg(handle_) : what,
-                   damaged ? "a database of designs: move it away, and they are run again"
+                   damaged ? "a database of designs: move it away, and they are recomputed"
                            : "a database that can be read and written");
 }
 
 void RunDatabase::execute(const std::string& sql) const {
   if (sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) {
-    // What the message says would be lost by a roll-back.
+    // A roll-back would lose the message.
     try {
       fail();
     } catch (...) {
@@ -172,7 +172,7 @@ void RunDatabase::prepare_tables() {
     fail("a database of a newer version");
   }
   if (found == application) require_plain_tables();
-  // Two processes that open a new file at once: SQLite does not wait here by itself.
+  // Two processes that open a new file at once: SQLite does not wait here.
   const auto begin = std::chrono::steady_clock::now();
   while (sqlite3_exec(handle_, "PRAGMA journal_mode = WAL", nullptr, nullptr, nullptr) !=
          SQLITE_OK) {
@@ -305,7 +305,7 @@ void RunDatabase::write_designs(const Table& table) {
 
 void RunDatabase::copy_to(const std::filesystem::path& path) const {
   write_file_whole(path, [this](const std::filesystem::path& temporary) {
-    std::filesystem::remove(temporary);  // VACUUM wants none there
+    std::filesystem::remove(temporary);  // VACUUM requires that it does not exist
     Statement(*this, "VACUUM INTO ?").bind(1, temporary.string()).step();
   });
 }

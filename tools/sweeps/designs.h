@@ -23,7 +23,7 @@ struct BuiltFigure {
   std::vector<double> values;  // of each copy; NaN where it failed
 };
 
-// What a sweep or a search found.
+// The result of a sweep or a search.
 struct SweepResult {
   std::vector<Design> designs;
   std::optional<Design> nominal = {};  // the experiment as it stands, where there is an objective
@@ -32,12 +32,12 @@ struct SweepResult {
   std::vector<BuiltFigure> built_best = {}, built_nominal = {};
 };
 
-// What the runs of one design (SweepPlan::runs_of) gave together.
+// The combined result of the runs of one design (SweepPlan::runs_of).
 //
 // Means: Σ w v, with the standard error Σ w σ, a bound whatever the runs have in common (they share
 // a seed). Over worst_over an objective or a constrained figure takes its worst value (of a figure
-// that must be between two limits, the one nearer to breaking its own); any other figure that
-// where the first objective, or else the first constrained figure, is worst.
+// that must be between two limits, the one nearer to breaking its own); any other figure that where
+// the first objective, or else the first constrained figure, is worst.
 Design combine(const SweepPlan& plan, std::span<const RunOutcome> runs);
 
 // Nothing where a design does not have the figure.

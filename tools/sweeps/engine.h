@@ -17,7 +17,7 @@
 
 namespace photorque {
 
-// Where a sweep keeps what it found, below its output folder. A shard has a database of its own,
+// Where a sweep keeps what it found, below its output folder. A shard has a separate database,
 // because shards may run on several machines, and SQLite shares a file among the processes of one
 // only; what a shard has finished stands beside it as a copy that no one writes to any more.
 struct SweepFiles {
@@ -45,11 +45,11 @@ class RunEngine {
   RunEngine(const RunEngine&) = delete;
   RunEngine& operator=(const RunEngine&) = delete;
 
-  // What these runs gave, in order; makes those that are not kept, those that failed before once
-  // more, and waits for those that another process is at. `made` may be empty.
+  // The outcomes of these runs, in order; makes those that are not kept, those that failed before
+  // again, and waits for those that another process is at. `made` may be empty.
   std::vector<RunOutcome> outcomes(std::span<const Changes> runs,
                                    const std::function<void(double)>& progress = {});
-  // The same without making any: nothing where there is none.
+  // Existing outcomes only: nothing where there is none.
   std::vector<std::optional<RunOutcome>> kept_outcomes(std::span<const Changes> runs);
 
   size_t made() const { return made_; }
@@ -73,7 +73,7 @@ class RunEngine {
   std::filesystem::path claims_path_;
   std::unique_ptr<Claims> claims_;
   std::unique_ptr<RunDatabase> database_;          // null until there is something to keep
-  std::set<std::string> failed_before_;            // to be made again
+  std::set<std::string> failed_before_;            // to be recomputed
   std::map<std::string, RunRecord> not_kept_yet_;  // failures before the first success
   size_t made_ = 0, kept_ = 0;
 };

@@ -23,7 +23,7 @@ class DesignEvaluator {
   // The designs of such runs, which stand in the same order.
   std::vector<Design> designs_of(std::span<const RunOutcome> outcomes) const;
 
-  // Both, with what is missing run now.
+  // Both, with missing runs computed now.
   std::vector<Design> evaluate(std::span<const Changes> designs,
                                const std::function<void(double)>& progress = {});
   // The copies of one design, objective by objective.

@@ -1,4 +1,4 @@
-// What a run follows from, as one hash.
+// The inputs of a run as one hash.
 #pragma once
 
 #include <filesystem>

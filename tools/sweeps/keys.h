@@ -81,7 +81,7 @@ inline constexpr TablesKey worst_over(
     "constrained figure) is");
 inline constexpr TablesKey constraint("constraint", "held at every value of `worst_over`");
 inline constexpr TablesKey tolerance(
-    "tolerance", "what is not built as drawn: every number of the key is off by a draw of its own");
+    "tolerance", "a manufacturing tolerance: every number of the key has a separate random error");
 inline constexpr IntegerKey built_copies("built_copies", 100, 2, 100000,
                                          "copies of a design, each with its own draws; the n-th "
                                          "copy has the same draws in every design");

@@ -11,7 +11,7 @@
 namespace photorque {
 namespace {
 
-// Units whose parts are divided, or that have letters of their own.
+// Units whose parts are divided, or that have special letters.
 constexpr std::array<std::pair<const char*, const char*>, 15> unit_texts = {
     {{"W_m2", "W/m²"},
      {"mW_cm2", "mW/cm²"},

@@ -97,7 +97,7 @@ void run(nlopt::opt& optimiser, Problem& problem, size_t evaluations) {
   try {
     optimiser.optimize(x, value);
   } catch (const nlopt::roundoff_limited&) {
-    // As near as the figures allow; what was found is remembered.
+    // As near as the figures allow; the best point is stored.
   } catch (const nlopt::forced_stop&) {
     // As many as were allowed.
   }

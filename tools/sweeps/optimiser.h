@@ -7,7 +7,7 @@
 
 namespace photorque {
 
-// What a search asks: how good a point is (the larger, the better) and how far inside of each
+// The values of a search: how good a point is (the larger, the better) and how far inside of each
 // constraint it lies (negative: outside).
 struct PointValue {
   bool failed = false;

@@ -1,4 +1,4 @@
-// What one run of a command gave, as a sweep keeps it.
+// The outcome of one run of a command, as a sweep stores it.
 #pragma once
 
 #include <map>

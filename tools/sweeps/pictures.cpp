@@ -218,7 +218,7 @@ Plot pareto_plot(const SweepPlan& plan, const SweepResult& result, size_t second
   return plot;
 }
 
-// What share of the copies is at least so good.
+// The fraction of the copies that is at least so good.
 Plot::Curve reached_curve(const std::string& label, const BuiltFigure& figure, bool maximise,
                           Plot::Colour colour) {
   std::vector<double> values;

@@ -16,7 +16,7 @@ namespace photorque {
 struct SweepAxis {
   std::string key;
   std::vector<std::string> values = {};  // of each design of a random plan, of each step of a grid
-  std::string name = {};                 // for people; empty: from the key
+  std::string name = {};                 // as printed; empty: from the key
   // Where an optimisation may look; nothing where the plan gives single values or a distribution.
   std::optional<double> low = {}, high = {};
 };
@@ -27,7 +27,7 @@ struct MeanOver {
   std::vector<std::string> values;
   std::vector<double> weights;  // sum to one
 };
-// The same for the worst of several values.
+// A worst case over several values.
 struct WorstOver {
   std::string key;
   std::vector<std::string> values;
@@ -46,14 +46,14 @@ struct Objective {
   bool maximise = true;
 };
 
-// What a design must keep to, in the figure's unit.
+// A constraint on a design, in the figure's unit.
 struct Constraint {
   SweepFigure figure;
   double at_least = -std::numeric_limits<double>::infinity();
   double at_most = std::numeric_limits<double>::infinity();
 };
 
-// What is not built as it is drawn: a key, and how far it is off.
+// A manufacturing tolerance: a key, and how far it is off.
 struct Tolerance {
   enum class Law { normal, uniform, seed };
   std::string key;

@@ -23,11 +23,11 @@ Table sweep_table(const SweepPlan& plan, const SweepResult& result);
 // The table, pictures, and the best as headline figures.
 Product sweep_product(const SweepPlan& plan, const SweepResult& result);
 
-// The best design against the nominal one, for people.
+// The best design against the nominal one, printed.
 void print_best(const Console& console, const SweepPlan& plan, const SweepResult& result,
                 const Changes& changes);
 
-// What was not as it should be: failed designs, none that keeps to the constraints.
+// Problems of a sweep: failed designs, none that keeps to the constraints.
 std::vector<std::string> sweep_warnings(const SweepPlan& plan, const SweepResult& result);
 
 }  // namespace photorque

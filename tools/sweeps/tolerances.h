@@ -15,8 +15,8 @@ class Tolerances {
   // InputError for a key without a number, or numbers, to start from.
   Tolerances(const BuiltCopies& plan, const RunIdentity& identity);
 
-  // The changes that make copy `copy` (from 0) of a design. Every number of an array is off by a
-  // draw of its own.
+  // The changes that make copy `copy` (from 0) of a design. Every number of an array has a separate
+  // random error.
   Changes built(const Changes& design, size_t copy) const;
 
  private:
@@ -28,10 +28,10 @@ class Tolerances {
   const RunIdentity& identity_;
 };
 
-// What the fraction of copies reaches: `fraction` of the values are at least so good. The standard
-// error is half the distance of the values √(n f (1 − f)) places up and down the order, that of
-// independent draws (Sobol points do better). Nothing where so many copies failed (NaN, which is
-// worse than any value).
+// The value that a fraction of the copies reaches: `fraction` of the values are at least so good.
+// The standard error is half the distance of the values √(n f (1 − f)) places up and down the
+// order, that of independent draws (Sobol points do better). Nothing where so many copies failed
+// (NaN, which is worse than any value).
 std::optional<Estimate> reached_by(double fraction, bool maximise, std::vector<double> values);
 
 }  // namespace photorque

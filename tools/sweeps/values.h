@@ -20,7 +20,7 @@ std::string toml_text(const SettingsNode& node);
 std::vector<std::string> grid_values(const Settings& axis);
 
 // Of every design of a random plan: `from` and `to`, or `mean` and `sigma`. Owen-scrambled Sobol
-// points; every `axis` has a dimension of its own.
+// points; every `axis` has a separate dimension.
 std::vector<std::string> random_values(const Settings& axis, uint64_t seed, size_t number,
                                        size_t designs);
 

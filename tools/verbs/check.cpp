@@ -44,7 +44,7 @@ std::string table_of(const InputError& mistake) {
   return line.substr(0, line.find('.'));
 }
 
-// What is found, table by table, with the first mistake of each.
+// The mistakes, table by table, the first of each.
 class Checker {
  public:
   Checker(const RunOptions& options, KeyCheck keys)
@@ -110,7 +110,7 @@ class Checker {
     const std::string line = mistake.what();
     const bool known = std::ranges::any_of(
         report_.mistakes, [&](const InputError& other) { return other.what() == line; });
-    // What a misspelt key leads to is no second mistake.
+    // A consequence of a misspelt key is no second mistake.
     const bool follows = std::ranges::find(misread_, table_of(mistake)) != misread_.end();
     if (!known && !follows) report_.mistakes.push_back(mistake);
   }
@@ -130,7 +130,7 @@ class Checker {
     check_recordings_of_light(*run);
   }
 
-  // An experiment that says how light is read, or what is missing from it, is meant for them.
+  // An experiment that states instruments of light, or missing effects, is meant for them.
   void check_recordings_of_light(const OpticalRun& run) {
     const auto are_of_light = [](const Settings& sensors) {
       return sensors.has("irradiance") || sensors.has("array");
@@ -280,7 +280,7 @@ class Checker {
   const RunOptions& options_;
   bool by_declaration_;
   std::vector<Key> tables_ = experiment_keys();
-  std::vector<std::string> misread_;  // tables with keys that are wrong by themselves
+  std::vector<std::string> misread_;  // tables with keys that are wrong
   std::optional<ExperimentFile> file_;
   CheckReport report_;
 };
@@ -313,7 +313,7 @@ void print_commands(const Console& console, const CheckReport& report,
   }
 }
 
-// What each command starts from, where the file has none of it.
+// The tables that each command needs, where the file has none of them.
 void print_lacking(const Console& console, const CheckReport& report,
                    const std::vector<Verb>& verbs) {
   std::vector<std::string> said;

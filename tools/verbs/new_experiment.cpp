@@ -132,7 +132,7 @@ std::string listed(const std::string& what, const std::set<std::string>& names) 
   return text;
 }
 
-// What is to be known of a model before it can be read: of STL and OBJ its unit, by --set.
+// Settings of a model that are needed to read it: of STL and OBJ its unit, by --set.
 struct SceneWords {
   std::optional<CadConventions> cad;
   std::string unit, up;

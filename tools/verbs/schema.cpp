@@ -1,12 +1,12 @@
-// photorque schema: the keys of experiments for editors, documents and whoever asks for one.
+// photorque schema: the keys of experiments for editors, documents and users.
 #include <cstdio>
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "tools/keys/descriptions.h"
 #include "tools/keys/document.h"
 #include "tools/keys/registry.h"
 #include "tools/keys/schema.h"
-#include "tools/keys/words.h"
 #include "tools/verbs/verb.h"
 
 namespace photorque::verbs::schema {

@@ -52,7 +52,7 @@ std::string motion_toml(const std::string& law) {
 // Headline figures by name.
 using Figures = std::map<std::string, Estimate>;
 
-// Runs small experiments in a folder of its own, and writes their results there.
+// Runs small experiments in a separate folder, and writes their results there.
 class Bench {
  public:
   Bench(const RunOptions& options, const fs::path& folder) : options_(options), folder_(folder) {

@@ -1,4 +1,4 @@
-// What `sweep` and `optimise` share: a command as what their runs do, and their results.
+// Shared by `sweep` and `optimise`: a command as what their runs do, and their results.
 #pragma once
 
 #include <functional>

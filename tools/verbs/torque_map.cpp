@@ -124,7 +124,7 @@ TorqueMapRun over_attitudes(const Console& console, const std::shared_ptr<Optica
   for (size_t h = 0; h < grid.heading_rad.size(); ++h) {
     for (size_t t = 0; t < grid.tilt_rad.size(); ++t) {
       const size_t node = wrenches.node(h, t);
-      // The same seed everywhere: neighbouring attitudes share their sampling errors, so that
+      // One seed for all attitudes: neighbouring attitudes share their sampling errors, so that
       // differences between them are better known than each.
       const RigidTransform lab_from_body = lab_from_body_at(grid.tilt_rad[t], grid.heading_rad[h]);
       const OpticalResult result =

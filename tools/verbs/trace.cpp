@@ -86,7 +86,7 @@ std::vector<const FluxMapReceiver*> flux_maps(const Experiment& experiment) {
   return maps;
 }
 
-// Told before the trace, not after it.
+// Reported before the trace, not after it.
 void check_ray_files(const Experiment& experiment) {
   if (!experiment.file.effort.arriving_rays) return;
   const Settings trace = experiment.file.settings.table("trace");
@@ -109,7 +109,7 @@ std::vector<RunFile> ray_files(const OpticalRun& run, int threads) {
   const std::vector<const FluxMapReceiver*> maps = flux_maps(experiment);
   TraceOptions options = experiment.file.trace;
   options.rays = *rays;
-  options.replicates = 8;  // whose spread nobody looks at
+  options.replicates = 8;  // whose spread is not used
   options.threads = threads;
   std::vector<RaySet> sets =
       arriving_rays(run.scene(), experiment.lab_from_body, experiment.beams, maps, options);

@@ -126,7 +126,7 @@ void Command::add_checkpoint(std::optional<double>& minutes) {
       .mistake = minutes_above_zero;
 }
 
-// Names come from strangers' files: of control characters only ends of lines and tabs reach a
+// Names may come from hostile files: of control characters only ends of lines and tabs reach a
 // terminal.
 static std::string clean_lines(const std::string& text) {
   std::string clean;

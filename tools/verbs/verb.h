@@ -21,7 +21,7 @@ class Interruption;  // tools/runs/output_folder.h
 struct PageHead;     // tools/pages/pages.h
 struct Verb;
 
-// What every command line may say: photorque VERB EXPERIMENT [--set KEY=VALUE …] [--out DIR] …
+// Options of every command line: photorque VERB EXPERIMENT [--set KEY=VALUE …] [--out DIR] …
 struct CommandOptions : RunOptions {
   std::string verb;                          // the program sets it
   std::string name;                          // of the results; empty: that of the experiment
@@ -54,7 +54,7 @@ struct Option {
   template <class Number>
   using Between = std::pair<Number, Number>;
   std::variant<std::monostate, Between<int>, Between<int64_t>, Between<double>> range = {};
-  // What is wrong with a text; empty: nothing.
+  // The mistake in a text; empty: nothing.
   std::function<std::string(const std::string&)> mistake = {};
 };
 
@@ -65,7 +65,7 @@ struct Command {
   std::shared_ptr<CommandOptions> options;
   std::vector<Option> list;
   Folder folder = Folder::none;
-  // What is wrong with the options together, as a sentence; empty: nothing.
+  // The mistake in a combination of options, as a sentence; empty: nothing.
   std::function<std::string()> mistake = {};
   std::function<void(const Program&)> run = {};
 
@@ -95,7 +95,7 @@ struct Verb {
   std::function<RunResult(const RunOptions&)> study = {};
 };
 
-// A command with options of its own, which extend CommandOptions.
+// A command with its own options, which extend CommandOptions.
 template <class Options>
 std::function<Command()> command_with(void (*add_options)(Command&, Options&),
                                       void (*run)(const Options&, const Program&)) {
@@ -120,8 +120,8 @@ Console terminal(const CommandOptions& options);
 // --json prints the summary.
 void write_results(const CommandOptions& options, const Console& console, const RunResult& result);
 
-// What --page writes on a page about the command itself: without what changes no result, such as
-// the folder and the number of threads.
+// The description of the command on a page: without what changes no result, such as the folder and
+// the number of threads.
 PageHead page_head(const CommandOptions& options,
                    const std::vector<std::filesystem::path>& recordings = {},
                    const std::vector<std::filesystem::path>& holdouts = {});

@@ -91,7 +91,7 @@ def _scene(world):
 
 
 def experiment_text(case):
-    """What is believed about the light, the array and the instruments."""
+    """The nominal model of the light, the array and the instruments."""
     circuit, noise = case.believed.circuit, case.noise
     cell, size = circuit.cell, circuit.cell_area_m2 / REFERENCE_AREA_M2
     efficiency = {"wavelength_nm": [600, 860], "efficiency": [circuit.efficiency] * 2}

@@ -1,4 +1,4 @@
-"""What recordings can show of an effect: growth of chi², and which other effects explain it as well."""
+"""Visibility of an effect in recordings: growth of chi², and which other effects explain it as well."""
 
 import functools
 
@@ -24,7 +24,7 @@ class Judge:
             self.parts.append((some, np.sqrt(len(rows) / count) / errors))
         self.nominal = self.whitened(world)
         self.kinds = {rows.kind for rows, _ in self.parts}
-        self.known_slopes = {}  # of rivals, at the world as it is believed
+        self.known_slopes = {}  # of rivals, at the nominal world
 
     def whitened(self, world):
         """All readings in units of their errors; those left out count with the ones beside them."""
@@ -37,7 +37,7 @@ class Judge:
         return world
 
     def gain(self, some):
-        """chi² of the world as it is believed where these effects act."""
+        """chi² of the nominal world where these effects act."""
         return float(np.sum((self.whitened(self.with_effects(some)) - self.nominal) ** 2))
 
     def rivals(self):
@@ -56,7 +56,7 @@ class Judge:
         return self.known_slopes[key]
 
     def left(self, kept, rivals, target, near):
-        """The chi² that remains of `target` when the numbers of `rivals` are fitted beside `kept`. A share of
+        """The chi² that remains of `target` when the numbers of `rivals` are fitted beside `kept`. A fraction of
         light starts from less too: a cell shows little until it limits its string."""
         best = self._fit(kept, rivals, target, None)
         if rivals[-1].kind in ("cell_shaded", "cell_degraded", "led_derated"):

@@ -92,7 +92,7 @@ class Wall:
         return low, high
 
     def black(self):
-        """The same wall without reflection: what its geometry alone decides is looked up by it."""
+        """A wall without reflection: the key of quantities that depend on its geometry alone."""
         return dataclasses.replace(self, diffuse=0.0, specular=0.0)
 
 
@@ -125,7 +125,7 @@ def _gauss(count):
 
 @functools.lru_cache
 def _disc_rule(rings=3, around=7):
-    """Places on the unit disc (n, 2) and their shares of the area."""
+    """Places on the unit disc (n, 2) and their fractions of the area."""
     squares, weights = _gauss(rings)
     angles = [2.0 * math.pi * (np.arange(around) + k / rings) / around for k in range(rings)]
     places = [math.sqrt(s) * np.column_stack([np.cos(a), np.sin(a)]) for s, a in zip(squares, angles)]

@@ -1,4 +1,4 @@
-"""What instruments read of a world: scans of a photodiode, current-voltage sweeps, runs of a tracker."""
+"""Readings of instruments in a world: scans of a photodiode, current-voltage sweeps, runs of a tracker."""
 
 import dataclasses
 

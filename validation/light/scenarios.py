@@ -60,7 +60,7 @@ class Case:
     chi2_gain: float = 0.0
 
     def truth(self):
-        """The world with what acts."""
+        """The world with the effects."""
         world = self.believed.copy()
         for effect in self.effects:
             effects.act(effect, world)
@@ -73,7 +73,7 @@ def case_count(plan):
 
 
 def _go_together(a, b):
-    """Whether two kinds show in the same recordings and can be told apart."""
+    """Whether two kinds show in the same recordings and are distinguishable."""
     for one, other in ((a, b), (b, a)):
         if one in ("led_droop", "tracker_trapped") and other in setting.NO_RUN_KINDS:
             return False
@@ -122,7 +122,7 @@ def _effect_of_gain(gain, recipe, wanted):
 
 
 def _shorten_sweeps(case):
-    """Ends curves at the open circuit that the array now has, where that is far below the believed one: no
+    """Ends curves at the open circuit that the array now has, where that is far below the nominal one: no
     instrument drives such currents backwards. Returns whether any was changed."""
     truth, changed = case.truth(), False
     for rows in case.recordings.values():

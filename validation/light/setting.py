@@ -273,7 +273,7 @@ def _draw_recordings(draw, world, kinds):
 
 
 def draw_setting(draw, kinds):
-    """A world as it is believed, its tables [[source]], its noise and its recordings, in which effects of
+    """A nominal world, its tables [[source]], its noise and its recordings, in which effects of
     these kinds can act."""
     kinds = set(kinds)
     circuit, edge_m = _draw_circuit(draw, kinds)

@@ -4,7 +4,7 @@
 // other, as the paper does (section II.B.2). Laminar friction grows as ω^1.5, form drag as ω²; the
 // coefficients of both powers are what the disturbances air_friction and air_pressure_drag take.
 // The paper's own CFD shows the limits of this: about ten times the lumped torque, from air that
-// stagnates on stiffeners; such faces can be added as parts of their own (blunt_face).
+// stagnates on stiffeners; such faces can be added as separate parts (blunt_face).
 #pragma once
 
 #include <string>

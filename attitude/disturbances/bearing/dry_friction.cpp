@@ -3,8 +3,8 @@
 // torque_N_m: τ ≥ 0. About one axis the propagator holds the direction of slip within a step, ends
 // steps where the rate changes its sign, and lets the platform stick until the other torques exceed
 // τ (attitude/propagation/dry_contact.h). About three axes, creep_rate_rad_s (default 1e-6): below
-// this rate the torque fades linearly to zero, so that the law has a derivative at rest:
-// T = −τ ω/√(ω² + creep²). Sticking is thus a slow creep, too slow for an instrument to tell.
+// this rate the torque fades linearly to zero, so that the law has a derivative at rest: T = −τ
+// ω/√(ω² + creep²). Sticking is thus a slow creep, too slow for an instrument to resolve.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::dry_friction {

@@ -21,7 +21,7 @@ constexpr ScalarKey stiffness("stiffness_N_m_per_rad", Range::not_negative(),
 namespace key {
 constexpr FlagKey winds_up("winds_up", false, "true: whole turns about body z count, φ + 2π n z");
 }  // namespace key
-// The angle about body z since the start; tells whole turns, so its accuracy hardly matters.
+// The angle about body z since the start; counts whole turns, so its accuracy hardly matters.
 constexpr StateKey twist{"tether_twist_rad"};
 
 // Of the angle t about body z in attitude = swing · twist, tan(t/2) = q_z/q_w.

@@ -30,7 +30,7 @@ DisturbanceKind kind() {
                                               "vertical with a constant torque",
                                               {EffectKey::number(torque_up.name, 5e-6)}}},
                         .needs = Requirement::air_bearing,
-                        .alike = {{"room_draft"}}},
+                        .confusable_kinds = {{"room_draft"}}},
           .keys = {torque_up}};
 }
 

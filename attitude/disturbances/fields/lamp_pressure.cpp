@@ -7,7 +7,7 @@
 // table with attitude is radiation_pressure.
 //
 // A draught is the same torque where the light never changes. Where lamps are dimmed or switched,
-// their current tells which of the two acts.
+// their current separates the two.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::lamp_pressure {

@@ -25,7 +25,7 @@ struct LampGroup {
 // Both are disturbances of the kind radiation_pressure.
 Disturbance light_from_table(const std::shared_ptr<const RotationTable>& table,
                              std::vector<LampGroup> groups);
-// What ZeroOrderHold::light_body says; the switches are those of `groups`.
+// The light of ZeroOrderHold::light_body; the switches are those of `groups`.
 Disturbance light_from_tracer(std::vector<LampGroup> groups);
 
 }  // namespace photorque

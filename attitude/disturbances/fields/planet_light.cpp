@@ -8,7 +8,7 @@
 // with the Earth's belts, and with date_year its seasons. irradiance_W_m2: of the Sun at the
 // planet. scale: default 1.
 //
-// The planet's night side reflects nothing, so that an eclipse shows by itself; infrared stays.
+// The planet's night side reflects nothing, so that an eclipse needs no extra term; infrared stays.
 
 #include "attitude/environment/planet_light.h"
 #include "attitude/disturbances/fields/coil_cage.h"

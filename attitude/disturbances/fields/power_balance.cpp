@@ -1,5 +1,5 @@
-// What the battery must give: the load less what the solar array delivers, at the battery's
-// voltage.
+// The current that the battery must give: the load less what the solar array delivers, at the
+// battery's voltage.
 //
 // load_W; and the array's power
 //   array_power_W (default 0) at zero tilt in full light, falling with the cosine of the tilt; or

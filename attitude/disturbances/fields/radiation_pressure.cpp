@@ -35,10 +35,10 @@ class RadiationPressure final : public TorqueLaw<RadiationPressure> {
       return own[factor] * now.illumination *
              look_up_towards<T>(surface_, now.to_body(sun_direction_lab_.template cast<T>()));
     }
-    // A hair off the pole, where the second angle has no derivative.
-    constexpr double hair = 1e-9;
+    // Off the pole, where the second angle has no derivative.
+    constexpr double pole_offset = 1e-9;
     const Vec3Of<T> up = now.lab_from_body.row(2).transpose();
-    const T x = up.x() + hair, y = up.y(), across = sqrt(x * x + y * y);
+    const T x = up.x() + pole_offset, y = up.y(), across = sqrt(x * x + y * y);
     return own[factor] * now.illumination *
            look_up<T>(surface_, atan2(across, up.z()), atan2(-y, -x));
   }
@@ -108,7 +108,7 @@ Disturbance read_of_sun(const Settings& settings, const DisturbanceContext& cont
                                        *context.environment.sun);
 }
 
-// Where the experiment says where the Sun is, its pressure may be what is missing.
+// Where the experiment says where the Sun is, its pressure may be a missing effect.
 std::vector<Parametrisation> of_experiment(const DisturbanceContext& context) {
   if (!context.environment.sun) return {};
   return {

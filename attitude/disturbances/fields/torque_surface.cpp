@@ -45,7 +45,7 @@ size_t interval(const std::vector<double>& nodes, double& x, const char* name) {
   return static_cast<size_t>(std::max<std::ptrdiff_t>(above - nodes.begin() - 1, 0));
 }
 
-// A last node a whole turn after the first is the same once more.
+// A last node a whole turn after the first repeats the first.
 size_t different_around(const std::vector<double>& nodes_rad) {
   const bool repeats =
       nodes_rad.size() > 1 && nodes_rad.back() - nodes_rad.front() > 2.0 * pi - 1e-9;

@@ -84,11 +84,11 @@ Vec3Of<T> look_up(const TorqueSurface& surface, const T& polar_rad, const T& aro
   return torque;
 }
 
-// The same for light from a direction in body axes, of a surface over azimuth and elevation.
+// Evaluates for light from a direction in body axes, of a surface over azimuth and elevation.
 template <class T>
 Vec3Of<T> look_up_towards(const TorqueSurface& surface, const Vec3Of<T>& light_body) {
-  constexpr double hair = 1e-9;  // off the pole, where the azimuth has no derivative
-  const T x = light_body.x() + hair, y = light_body.y(), across = sqrt(x * x + y * y);
+  constexpr double pole_offset = 1e-9;  // off the pole, where the azimuth has no derivative
+  const T x = light_body.x() + pole_offset, y = light_body.y(), across = sqrt(x * x + y * y);
   return look_up<T>(surface, atan2(light_body.z(), across), atan2(y, x));
 }
 

@@ -15,11 +15,10 @@ constexpr IntegerKey marker(marker_key, 1, 1'000'000,
                             "which of `markers_m`, the first is 1; without it all, with "
                             "three numbers of `error_m` for each",
                             {.optional = true, .varies = true});
-constexpr NumbersKey error(
-    error_key, {-0.1, 0.1},
-    "where it is in truth, less where `markers_m` says, body axes; [sensors.camera] "
-    "`marker_error_m` says the same of a recording that is made",
-    {.has_error = true});
+constexpr NumbersKey error(error_key, {-0.1, 0.1},
+                           "true position minus that of `markers_m`, body axes; [sensors.camera] "
+                           "`marker_error_m` says the same of a recording that is made",
+                           {.has_error = true});
 }  // namespace key
 
 // One marker as the law needs it.
@@ -61,8 +60,8 @@ struct MarkerPositions final : LawOf<MarkerPositions> {
   }
 
  private:
-  // What Fisher's information says of the first spot in sight at zero tilt, and of one less bright,
-  // in the middle of a pixel and on the edge between two: N²/information = a N + b.
+  // Weights from the Fisher information of the first spot in sight at zero tilt, and of one less
+  // bright, in the middle of a pixel and on the edge between two: N²/information = a N + b.
   void weigh(const TrackingCamera& camera) {
     for (size_t i = 0; i < markers_.size() && !camera.weighs_alike; ++i) {
       const auto view = view_of(camera, index_[i], {});
@@ -99,7 +98,7 @@ struct MarkerPositions final : LawOf<MarkerPositions> {
     return brightness * brightness / (slope * brightness + constant);
   }
 
-  // What falls into the lens, but for a constant: cosᵐ ε cos α/d², α at the lens. A marker that
+  // The light that enters the lens, up to a constant: cosᵐ ε cos α/d², α at the lens. A marker that
   // is turned away counts as one that grazes.
   template <class T>
   T brightness_at(const Vec3Of<T>& to_camera_m, const Vec3& normal, const T& depth_m) const {
@@ -121,7 +120,7 @@ struct MarkerPositions final : LawOf<MarkerPositions> {
     return {own.parameters[1], own.parameters[2], own.parameters[3]};
   }
 
-  // What the pose has found so far: a turn in body axes, and a shift where it is free.
+  // The present estimate of the pose: a turn in body axes, and a shift where it is free.
   template <class T>
   struct Found {
     Mat3Of<T> turned = Mat3Of<T>::Identity();

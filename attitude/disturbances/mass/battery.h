@@ -1,5 +1,5 @@
-// What a discharging lithium-ion battery does to a platform: lithium migrates from anode to cathode
-// and takes the centre of mass along. Source: eq. 30–34.
+// The effect of a discharging lithium-ion battery on a platform: lithium migrates from anode to
+// cathode and takes the centre of mass along. Source: eq. 30–34.
 #pragma once
 
 #include <span>
@@ -33,7 +33,7 @@ struct BatteryCell {
 Vec3 com_shift_m_C(std::span<const BatteryCell> cells, double platform_mass_kg,
                    double lithium_per_charge_kg_C = lithium_kg_C);
 
-// What the platform consumes over an experiment.
+// Consumption of the platform in a part of an experiment.
 struct LoadPhase {
   double duration_s = 0.0;
   double power_W = 0.0;

@@ -70,8 +70,8 @@ DisturbanceKind kind() {
                    {{"the centre of mass moves in proportion to the charge drawn from the battery",
                      {EffectKey::vector(shift.name, 3e-6)}}},
                .needs = Requirement::charge,
-               .alike = {{"mass_shift", Requirement::charge},
-                         {"static_unbalance", Requirement::charge}}},
+               .confusable_kinds = {{"mass_shift", Requirement::charge},
+                                    {"static_unbalance", Requirement::charge}}},
           .budget = {.paper_figure = "battery_torque_N_m"},
           .keys = {shift, key::cell.of({key::electrodes, key::charge_share}), key::lithium}};
 }

@@ -43,7 +43,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   const std::string key = delta.name;
   const PlacedParameters six = array_parameter(settings, key, 6);
   const Mat3 delta_kg_m2 = as_matrix(six.parameters);
-  // [platform] was checked by itself.
+  // [platform] was checked alone.
   if (!delta_kg_m2.isZero()) {
     check_inertia(context.platform.inertia_kg_m2 + delta_kg_m2, settings.raw(key).where,
                   settings.name() + "." + key + " with the platform's inertia");

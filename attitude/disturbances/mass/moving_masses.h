@@ -19,7 +19,7 @@ struct MovingMass {
 
   // Travel between two commanded positions [m].
   double pitch_m() const;
-  // What one such step does to the centre of mass of a platform [m].
+  // Shift of a platform's centre of mass by one such step [m].
   Vec3 com_step_m(double platform_mass_kg) const;
 };
 

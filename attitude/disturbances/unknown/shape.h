@@ -22,8 +22,8 @@ class SmoothTable {
   // At least four rising knots; NumericalError otherwise.
   explicit SmoothTable(std::vector<double> knots);
 
-  // What each of four neighbouring values counts at x, and the slopes of that; x must not lie
-  // outside of the knots by much (the last cubic goes on).
+  // Weights of four neighbouring values at x, and their slopes; x must not lie outside of the knots
+  // by much (the last cubic goes on).
   struct Weights {
     int first = 0;  // knot of the first
     std::array<double, 4> value = {}, slope = {};
@@ -104,11 +104,11 @@ std::string name_of(MotionVariable variable);
 // Of the variable in files and reports: "deg", "rad_s", "s", "Ah", "N_m".
 std::string unit_of(MotionVariable variable);
 
-// From the keys of an experiment file (empirical_torque.cpp lists them). InputError for what is
-// missing, double or does not fit together.
+// From the keys of an experiment file (empirical_torque.cpp lists them). InputError for keys that
+// are missing, double or inconsistent.
 EmpiricalShape read_shape(const Settings& settings);
-// What read_shape() would read as keys and values of TOML, but for the functions' own parameters
-// and the coefficients, which may have sigmas.
+// The shape as keys and values of TOML that read_shape() reads, but for the functions' own
+// parameters and the coefficients, which may have sigmas.
 std::vector<std::pair<std::string, std::string>> shape_as_written(const EmpiricalShape& shape);
 
 // The disturbance, every coefficient 0, the functions' own parameters at their values. Coefficients

@@ -31,7 +31,7 @@ MotionFunction harmonic(int order) {
   return {.of = MotionVariable::heading, .form = harmonics, .orders = {order}};
 }
 
-// A formula is believed up to twice what was seen, a table only as far as that.
+// A formula holds up to twice the recorded range, a table only within it.
 constexpr double formula_reach = 2.0;
 
 // Of tilt or rate, 1 at a tenth of a radian (a second); `seen` is the largest in the recordings.

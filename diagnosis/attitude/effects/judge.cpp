@@ -41,7 +41,7 @@ double inertia_change(const Trial& trial) {
   const Mat3& nominal_kg_m2 = trial.fit.best.model.platform.inertia_kg_m2;
   const Vec3 nominal = nominal_kg_m2.selfadjointView<Eigen::Lower>().eigenvalues();
   double largest = 0.0;
-  // What is believed of it moves within the same limits.
+  // Its nominal value moves within the same limits.
   for (const Disturbance& d : trial.fit.best.model.disturbances) {
     const DisturbanceKind* kind = find_kind(d.kind);
     if (kind == nullptr || kind->screening.inertia_change_kg_m2 == nullptr) continue;

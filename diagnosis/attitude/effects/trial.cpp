@@ -58,7 +58,7 @@ void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observati
   h.runs = seen_starts(h, runs);
 }
 
-// Whether an inertia that is only believed has left its belief by more than its sigma.
+// Whether an uncertain inertia differs from its nominal value by more than its sigma.
 bool inertia_is_bent(const Hypothesis& h, size_t nominal_disturbances) {
   return std::any_of(h.free.begin(), h.free.end(), [&](const Free& f) {
     if (f.per_run || f.disturbance >= nominal_disturbances) return false;

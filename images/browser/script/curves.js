@@ -143,7 +143,7 @@ export class Chart {
   hint() {
     const thinned = this.panels.flatMap((panel) => panel.curves).find((curve) => curve.thinned_from > 0);
     return 'Point at the curves, or use the arrow keys, to read them.' +
-      (thinned ? ` Drawn are the extremes of stretches of ${readable(thinned.thinned_from, 6).replace(/\.0+$/, '')} points; the files have all.` : '');
+      (thinned ? ` Drawn are the extremes of intervals of ${readable(thinned.thinned_from, 6).replace(/\.0+$/, '')} points; the files have all.` : '');
   }
 
   draw() {

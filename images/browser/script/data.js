@@ -1,4 +1,4 @@
-// What the program wrote into the page: see packed.h and content.cpp beside this folder.
+// The data that the program wrote into the page: see packed.h and content.cpp beside this folder.
 
 const types = { f32: Float32Array, f64: Float64Array, u32: Uint32Array, u16: Uint16Array };
 

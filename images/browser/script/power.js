@@ -1,4 +1,4 @@
-// Where the power went: a waterfall. What is lost hangs from what is left before it.
+// Where the power went: a waterfall. Each loss hangs from the remaining power before it.
 
 import { palette } from './colours.js';
 import { element } from './elements.js';

@@ -13,7 +13,7 @@ import { Rays, makeLamps } from './light.js';
 // three.js takes y as upwards; this turn of spherical coordinates makes it z.
 const upright = new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), new Vector3(0, 1, 0));
 
-// Of the bodies in their order; the first is solid. The colours of the diagnosis: what was nominal, what was found.
+// Of the bodies in their order; the first is solid. The colours of the diagnosis: nominal, improved.
 export const bodyColours = [palette.grey, palette.vermilion, palette.blue];
 
 const widest = 4 / 3;  // width over height for which the field of view is meant; wider ones show more
@@ -200,7 +200,7 @@ export class StageView {
     this.draw();
   }
 
-  // What is painted at a place of the page: surface, bin and its place in the body.
+  // The map bin at a place of the page: surface, bin and its place in the body.
   pick(clientX, clientY) {
     if (!this.painting) return null;
     const box = this.canvas.getBoundingClientRect();

@@ -60,7 +60,7 @@ Facets::Facets(const Scene& scene) {
 // largest facets.
 void Facets::find_free(double scene_radius_m) {
   constexpr size_t most_pairs = 200'000'000;
-  constexpr double rounding = 1e-6;  // of the scene: in the plane, as far as rays can tell
+  constexpr double rounding = 1e-6;  // of the scene: in the plane, to the precision of rays
   std::vector<size_t> order(facets_.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::ranges::stable_sort(

@@ -31,7 +31,7 @@ class FacetQuadrature {
  private:
   static constexpr double tolerance = 2e-7;  // of all momentum of the beam, for each piece
   static constexpr double tiny = 0.1;        // of the length over which the light changes
-  static constexpr double smooth = 1.0;      // likewise: pieces that may be believed
+  static constexpr double smooth = 1.0;      // likewise: pieces that are accurate enough
   static constexpr int depth = 8;
 
   struct Piece {
@@ -67,8 +67,8 @@ class FacetQuadrature {
         [&](double s, double t) { return density(origin + s * edge1 + t * edge2); });
   }
 
-  // The rule of degree 5 against that of degree 1 tells by how much the light bends; what is left
-  // is smaller by higher powers of the size.
+  // The difference of the rules of degree 5 and 1 is the curvature of the light; the remaining
+  // error is smaller by higher powers of the size.
   BodyLamp::Open in_one(const Piece& piece, const Ball& ball) {
     const WrenchSum mean = mean_of(piece), middle = density(ball.centre_m);
     const double shrink = std::pow(ball.radius_m / lamp_.scale_m(ball), 2) * piece.area_m2;

@@ -16,11 +16,11 @@ struct OnwardRay {
   uint32_t owner;
 };
 
-// What is done where it lands. A side is a facet's back (2 · facet) or front (2 · facet + 1).
+// The actions where it lands. A side is a facet's back (2 · facet) or front (2 · facet + 1).
 struct OnwardSink {
   // Of a ray of this owner: the momentum that stays with the surface, on the whole.
   std::function<void(uint32_t owner, const WrenchSum& wrench)> push;
-  // What Lambert's law takes on from there.
+  // Receives the light that Lambert's law scatters there.
   std::function<void(uint32_t owner, size_t side, const Vec2& uv, const BandValues& power_W)>
       scatter;
 };

@@ -154,10 +154,10 @@ void LineGrid::add(uint32_t index) {
       one = height_at(low_m_ + c / per_m_);
       other = height_at(low_m_ + (c + 1) / per_m_);
     }
-    // A hair further, for rounding.
-    const double hair = 1e-9 / per_m_;
-    const int bottom = column(std::min(one, other) - hair);
-    const int top = column(std::max(one, other) + hair);
+    // A margin for rounding.
+    const double margin = 1e-9 / per_m_;
+    const int bottom = column(std::min(one, other) - margin);
+    const int top = column(std::max(one, other) + margin);
     for (int r = bottom; r <= top; ++r) cells_[cell(c, r)].push_back(index);
   }
 }
@@ -167,9 +167,9 @@ void LineGrid::over(const TriangleCorners& corners_m, std::vector<Line>& found) 
   ++question_;
   Eigen::AlignedBox2d box;
   for (const Vec3& corner : corners_m) box.extend(Vec2(across_.dot(corner), aside_.dot(corner)));
-  const double hair = 1e-9 / per_m_;
-  for (int c = column(box.min().x() - hair); c <= column(box.max().x() + hair); ++c) {
-    for (int r = column(box.min().y() - hair); r <= column(box.max().y() + hair); ++r) {
+  const double margin = 1e-9 / per_m_;
+  for (int c = column(box.min().x() - margin); c <= column(box.max().x() + margin); ++c) {
+    for (int r = column(box.min().y() - margin); r <= column(box.max().y() + margin); ++r) {
       for (const uint32_t index : cells_[cell(c, r)]) {
         if (seen_[index] == question_) continue;
         seen_[index] = question_;

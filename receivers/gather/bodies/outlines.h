@@ -15,7 +15,7 @@ class Outlines {
   // Where the surface ends, or turns from the light to its dark side: no other edge of a mesh
   // bounds a shadow.
   void in_light(const Vec3& travel, std::vector<Line>& lines) const;
-  // What is seen from afar against `travel` changes there: outlines and creases in sight.
+  // Lines where the view against `travel` changes: outlines and creases in sight.
   void in_sight(const Vec3& travel, std::vector<Line>& lines) const;
 
  private:

@@ -35,7 +35,7 @@ class Polygon {
     all.count_ = 3;
     return all;
   }
-  // What lies on either side of the line through `from` and `to`.
+  // The parts on either side of the line through `from` and `to`.
   std::array<Polygon, 2> split(const Vec2& from, const Vec2& to) const {
     const Vec2 along = to - from;
     const auto side_of = [&](const Vec2& p) {

@@ -1,8 +1,8 @@
 // A facet cut along shadows and mirror images: triangles cut into quarters again and again. For the
 // files of this folder only.
 //
-// Points are told by the weights of the corners 1 and 2, (u, v); of a cell, by the weights of its
-// own three corners.
+// Points are given by the weights of the corners 1 and 2, (u, v); of a cell, by the weights of its
+// three corners.
 #pragma once
 
 #include <algorithm>
@@ -77,7 +77,7 @@ inline bool meets(const Trace& trace, double margin) {
   return std::max({at_0, at_1, at_2}) > -far && std::min({at_0, at_1, at_2}) < far;
 }
 
-// The same in the weights of a quarter.
+// The trace in the weights of a quarter.
 inline Trace in_quarter(const Trace& trace, uint32_t which) {
   return {in_quarter(trace.from, which), in_quarter(trace.to, which), trace.height_m};
 }

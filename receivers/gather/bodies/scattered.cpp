@@ -210,7 +210,7 @@ void ScatteredLight::add_starts(const Task& task, const Work& one, uint64_t numb
   for (OnwardRay& ray : rays) ray.power_W[task.band] = 1.0 / static_cast<double>(rays.size());
 }
 
-// What one patch throws onto the same other one is one part.
+// Merges the light that one patch throws onto one other into one part.
 void ScatteredLight::merge_places(std::vector<Reached::Part>& parts, size_t from) {
   const auto begin = parts.begin() + static_cast<std::ptrdiff_t>(from);
   std::stable_sort(begin, parts.end(),

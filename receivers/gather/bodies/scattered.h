@@ -1,4 +1,4 @@
-// What light does that a surface scatters by Lambert's law.
+// Force and torque of light that a surface scatters by Lambert's law.
 //
 // Where light came from does not matter once it is scattered so. The force and torque that a watt
 // of it brings about by all that follows, w(x), is a field on the surfaces, the same for light from
@@ -56,7 +56,7 @@ class ScatteredLight {
   double patch_m2() const { return patch_m2_; }
   // How close that is.
   double close_m() const { return close_m_; }
-  // Where light lands that nobody sees arrive: by how much of the patch is covered.
+  // For places where the arriving light is not traced: by how much of the patch is covered.
   TwofoldSum per_watt_at(size_t side, const Vec2& uv, size_t band) const {
     const size_t node = node_at(side, uv);
     return mixed(per_watt_[band][node], nodes_[node].covered);
@@ -100,8 +100,8 @@ class ScatteredLight {
     Patch patch;
     size_t kind;
   };
-  // What the rays of some patches met: the momentum left there, and the fractions that other
-  // patches scatter on.
+  // The places that the rays of some patches met: the momentum left there, and the fractions that
+  // other patches scatter on.
   struct Reached {
     struct Part {
       uint32_t patch;  // of the chunk

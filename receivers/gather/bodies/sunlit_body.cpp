@@ -295,8 +295,9 @@ class SunlitBody::Direction {
       }
       std::swap(now, next);
     }
-    // What single pieces do not tell of their error is taken for as much as families tell.
-    if (told_m2_ > 0.0) found_.mirror_error = (thrown_m2_ / told_m2_ * square_error_).sqrt();
+    // The error of single pieces is taken to be that of the sampled families.
+    if (sampled_area_m2_ > 0.0)
+      found_.mirror_error = (mirrored_area_m2_ / sampled_area_m2_ * square_error_).sqrt();
   }
 
   // The quarters of one cell, if all are there as a whole; else one piece.
@@ -330,12 +331,12 @@ class SunlitBody::Direction {
       for (const LitPiece& one : family) {
         area_m2 += one.piece.share * sides_[one.side].side.facet->area_m2;
       }
-      thrown_m2_ += area_m2;
+      mirrored_area_m2_ += area_m2;
       if (family.size() < 4) return;
       // As if the four were drawn at random: the error of their sum is 2 of their deviations, of
       // which `bent` is 1.15.
       square_error_ += 3.0 * bent.square();
-      told_m2_ += area_m2;
+      sampled_area_m2_ += area_m2;
       return;
     }
     for (const LitPiece& one : family) {
@@ -357,8 +358,8 @@ class SunlitBody::Direction {
   std::vector<Line> seen_;
   Vec3 seen_direction_ = Vec3::Zero();
   std::vector<Piece> parts_;
-  WrenchSum square_error_ = WrenchSum::Zero();  // of families of quarters
-  double thrown_m2_ = 0.0, told_m2_ = 0.0;      // of all that is thrown on; of families
+  WrenchSum square_error_ = WrenchSum::Zero();             // of families of quarters
+  double mirrored_area_m2_ = 0.0, sampled_area_m2_ = 0.0;  // of all that is thrown on; of families
   SunlitWrench found_;
 };
 

@@ -56,7 +56,7 @@ struct GroupRay {
   bool lit;
 };
 
-// What decides how the light of a side is summed.
+// The properties that decide how the light of a side is summed.
 struct SideLight {
   double lit_W = 0.0, dark_W = 0.0;
   bool as_open = false;  // less what is dark
@@ -189,7 +189,7 @@ class FacetSampler {
 // replicate r come from the stream (seed, hash of `which` and r). Returns the number of rays.
 uint64_t add_sampled(const SampledLight& light, std::vector<SampledSide> sides, uint64_t seed,
                      uint64_t which, const WrenchEntries& entries) {
-  // So that the points of each are a whole stretch of their sequence.
+  // So that the points of each are a whole interval of their sequence.
   std::ranges::stable_sort(sides, std::greater<>(), &SampledSide::points);
   std::vector<SobolStream> streams;
   for (size_t r = 0; r < entries.replicates.size(); ++r) {
@@ -210,7 +210,7 @@ uint64_t add_sampled(const SampledLight& light, std::vector<SampledSide> sides, 
   return rays;
 }
 
-// What one lamp lights of one instance: the item of parallel work.
+// The light of one lamp on one instance: the item of parallel work.
 struct Item {
   uint32_t lamp, instance;
   size_t part;  // of the receiver

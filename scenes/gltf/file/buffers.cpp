@@ -129,7 +129,7 @@ class Loader {
   }
 
   // The path of an external file, relative to the model's folder. Whether it may lead out of it is
-  // for whoever opens files to say.
+  // decided where files are opened.
   std::string checked_path(const std::string& uri) const {
     const std::string expected = "a relative path inside the model's folder";
     const std::optional<std::string> decoded = percent_decoded(uri);

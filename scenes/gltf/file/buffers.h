@@ -16,7 +16,7 @@
 namespace photorque::gltf {
 
 // `bytes` holds at least byte_length; nothing when the document leaves the source open, which is
-// legal as long as nobody reads it (placeholders, fallbacks of compressed data).
+// legal as long as it is not read (placeholders, fallbacks of compressed data).
 struct Buffer {
   uint64_t byte_length = 0;
   std::optional<std::string> bytes;

@@ -11,7 +11,7 @@ namespace photorque::gltf {
 
 // Decodes EXT_meshopt_compression (buffer views) and KHR_draco_mesh_compression (primitives), so
 // that no other part of the reader need know of them: the bytes become further buffers of the
-// document, with views and accessors of their own. To be called before the typed model is made.
+// document, with their own views and accessors. To be called before the typed model is made.
 //
 // A primitive with Draco data keeps its plain accessors where they have bytes; else it gets
 // POSITION, TEXCOORD_0 and indices from the data, and no other attribute. Throws InputError for

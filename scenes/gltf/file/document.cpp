@@ -169,7 +169,7 @@ void check_extent(std::string_view text, const std::string& file, MemoryBudget* 
 }
 
 // "[json.exception.parse_error.101] parse error at line 1, column 2: unexpected end" → "unexpected
-// end": the place is told by the caller.
+// end": the caller adds the place.
 std::string reason(const json::exception& error) {
   const std::string text = error.what();
   const size_t place = text.find("column ");
@@ -230,9 +230,9 @@ void strip_extras(json* value) {
   for (json& item : *value) strip_extras(&item);
 }
 
-// What tinygltf is given: without the sections that no tracer needs, so that nothing in them can
-// fail; without buffers, whose bytes are already here; and without indices, of which it wants to
-// touch the bufferView.
+// The document for tinygltf: without the sections that no tracer needs, so that nothing in them can
+// fail; without buffers, whose bytes are already here; and without indices, whose bufferView it
+// would access.
 json geometry_of(const json& document) {
   json geometry = json::object();
   for (const char* key :

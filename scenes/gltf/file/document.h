@@ -25,7 +25,7 @@ namespace photorque::gltf {
 
 struct Document {
   std::string file;       // what messages call it
-  nlohmann::json json;    // as written, without the sections that nobody needs
+  nlohmann::json json;    // as written, without the sections that are not needed
   tinygltf::Model model;  // the same in types; without buffers, images, textures, animations
   std::vector<Buffer> buffers;
   std::vector<std::pair<std::string, std::string>> inputs;  // external files: name, content hash

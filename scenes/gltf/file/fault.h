@@ -39,7 +39,8 @@ class MemoryBudget {
   MemoryBudget(std::string file, uint64_t bytes)
       : file_(std::move(file)), left_(bytes), all_(bytes) {}
 
-  // Throws InputError at `where` when `count` items of `item_bytes` are more than what is left.
+  // Throws InputError at `where` when `count` items of `item_bytes` are more than the budget that
+  // remains.
   void charge(uint64_t count, uint64_t item_bytes, const std::string& where) {
     if (count > left_ / item_bytes) {
       throw InputError({file_}, where,

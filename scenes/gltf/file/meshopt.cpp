@@ -18,7 +18,7 @@ struct Packed {
   std::span<const unsigned char> data;
 };
 
-// What the decoders assume and do not check themselves.
+// Checks conditions that the decoders assume.
 void require_possible(const Document& document, const Packed& packed, const std::string& where) {
   const auto fail = [&](const char* key, const std::string& found, const char* expected) {
     throw document.wrong(where + pointer(key), found, expected);

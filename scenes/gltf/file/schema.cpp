@@ -19,7 +19,7 @@ namespace {
 // They follow the specification (glTF 2.0, section 5 "Properties Reference") and the READMEs of the
 // extensions that they name, member by member.
 
-// What a value has to be.
+// The type of a value.
 enum class Shape {
   integer,
   number,

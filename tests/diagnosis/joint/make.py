@@ -200,7 +200,7 @@ def recording(path, what, spin, tilt, seconds, pattern, rng):
         if what == "cell":
             light[9] *= 0.8
         v, i = maximum(light)
-        # What the camera takes for level is not: its lab is the true one turned back by the bias.
+        # The camera's level is wrong: its lab is the true one turned back by the bias.
         seen = quaternion_product(turned_by([-b for b in bias]), state[:4])
         seen = quaternion_product(turned_by([rng.gauss(0, noise["camera"]) for _ in range(3)]), seen)
         gyro = [w + rng.gauss(0, noise["gyro"]) for w in state[4:]]
@@ -232,7 +232,7 @@ def scene(path):
 
 
 def experiment(path):
-    path.write_text(f"""# What is believed of a tabletop under nine lamps, its array and its instruments.
+    path.write_text(f"""# The nominal model of a tabletop under nine lamps, its array and its instruments.
 [scene]
 file = "scene.gltf"
 

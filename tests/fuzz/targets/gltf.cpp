@@ -34,7 +34,7 @@ photorque::Settings settings_of(const char* key, const std::string& text) {
   return photorque::Settings(std::make_shared<const photorque::SettingsNode>(node));
 }
 
-// What an experiment's lamps take from a model's.
+// Keys that an experiment's lamps take from a model's.
 void place_sources(const std::vector<photorque::GltfLight>& lights) {
   for (const photorque::GltfLight& light : lights) {
     photorque::fuzz::may_refuse([&] {
@@ -67,7 +67,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     options.materials = {settings_of("name", "overridden")};
     fuzz::may_refuse([&] { check(read_gltf_bytes(bytes, "fuzz", zeros, options).scene); });
   }
-  // What a sweep takes for parts of a model.
+  // Files that a sweep counts as parts of a model.
   files_named_in("/nowhere/model.gltf", bytes);
   files_named_in("/nowhere/model.glb", bytes);
   return 0;

@@ -29,7 +29,7 @@ RunRecord a_run() {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  // In memory as well, but with a name of its own: SQLite keeps a journal beside it.
+  // In memory as well, but with a name: SQLite keeps a journal beside it.
   const fs::path& folder = fuzz::folder_in_memory();
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder)) fs::remove(entry.path(), ignored);

@@ -1,5 +1,5 @@
-// What each protection has to do with: a buffer, a copy into it, a large frame, a function that is
-// called by its address.
+// Code for each protection: a buffer, a copy into it, a large frame, a function that is called by
+// its address.
 #include <cstdio>
 #include <cstring>
 

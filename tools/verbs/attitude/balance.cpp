@@ -51,7 +51,7 @@ void print_balance(const Console& console, const BalanceRun& run, const BalanceR
   console.line("  chi² per sample of the fit " + show(result.chi2_per_sample));
   if (result.stretches > 1) {
     console.line("  the recording is in " + std::to_string(result.stretches) +
-                 " stretches between gaps, each with a start of its own");
+                 " segments between gaps, each with its own initial state");
   }
   if (result.leaves_more_than_noise()) console.line("  WARNING: " + result.warning());
   console.heading("Moves of the masses");

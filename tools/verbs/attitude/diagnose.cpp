@@ -40,7 +40,7 @@ std::vector<NamedRecording> read_all(const std::vector<fs::path>& paths,
   return all;
 }
 
-// Whether the text ends in a key whose words are names of its own, not of files.
+// Whether the text ends in a key whose words are names, not files.
 bool is_name(const std::string& before) {
   static const std::regex own_names(
       R"((^|[\s{,.])(name|node|receiver|kind|source|body|topology)\s*=\s*$)");
@@ -368,11 +368,11 @@ void print_diagnosis(const Console& console, const Diagnosis& d) {
       console.line(text);
     }
     for (const std::string& text : effect.known_together) {
-      console.line("    known together, none by itself: " + text);
+      console.line("    only this combination is identifiable: " + text);
     }
     for (const auto& [key, words] : effect.texts) console.line("    " + key + " = " + words);
     for (const std::string& rival : effect.indistinguishable_from) {
-      console.line("    these data do not tell it from " + rival);
+      console.line("    indistinguishable in these data: " + rival);
     }
   }
   console.line("  chi² per sample " + show(d.chi2_per_sample_before) + " before, " +
@@ -389,7 +389,7 @@ void write_guess(const Options& options) {
   const Console console = terminal(options);
   const std::filesystem::path file = options.out_folder() / (options.name + ".toml");
   const std::string text = first_experiment(options.guess, file);
-  // Somebody may have confirmed what stands there.
+  // The user may have edited the file.
   if (std::filesystem::exists(file) && read_file(file) != text) {
     throw InputError({file.string()}, "", "another file of this name",
                      "a folder without one (--out DIR)");

@@ -1,4 +1,4 @@
-// What physics is missing between an experiment and its recordings.
+// The missing effects between an experiment and its recordings.
 #pragma once
 
 #include <filesystem>
@@ -22,11 +22,11 @@ struct DiagnosisRun {
   std::string json() const;
   // The page of the findings, which needs no script.
   std::string report() const;
-  // The experiment with what was found, as it would stand in a folder.
+  // The improved experiment, as it would stand in a folder.
   std::string improved(const std::filesystem::path& folder) const;
 };
 
-// Recordings of motion, or of light and power: told apart by their headers. At least one.
+// Recordings of motion, or of light and power: recognised by their headers. At least one.
 DiagnosisRun run_diagnose(const RunOptions& options,
                           const std::vector<std::filesystem::path>& recordings,
                           const std::vector<std::filesystem::path>& holdouts,

@@ -41,7 +41,7 @@ RunFile file_of(const std::string& name, const std::vector<AttitudeEstimate>& es
           remark};
 }
 
-// What the reader met, a line each; the first says how many rows there are, which is said anyway.
+// Notes of the reader, a line each; the first says how many rows there are, which is said anyway.
 std::vector<std::string> notes_of(const RecordingReport& report) {
   std::vector<std::string> lines;
   std::istringstream text(report.text());

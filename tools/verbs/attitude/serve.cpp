@@ -35,7 +35,8 @@ void print_serving(const Console& console, const ServeSettings& serve, const std
   console.line("serving at " + where + ", " + show(serve.rate_Hz) + " Hz" +
                (lockstep ? ", in lockstep" : ""));
   if (!serve.address.starts_with("127.")) {
-    console.line("  whoever reaches this address commands the platform: packets carry no secret");
+    console.line(
+        "  anyone who reaches this address can command the platform: packets carry no secret");
   }
 }
 
@@ -47,7 +48,7 @@ void print_session(const Console& console, const Product& product) {
   }
 }
 
-// What acted, for propagate.commands.
+// The commands that acted, for propagate.commands.
 Recording commands_recording(Schedule commands, double last_tick_s) {
   // The last holds on; a recording has two rows at least.
   if (commands.time_s.size() == 1 && last_tick_s > commands.time_s.back()) {
@@ -66,8 +67,8 @@ Recording commands_recording(Schedule commands, double last_tick_s) {
   return recording;
 }
 
-// Propagates the experiment tick by tick with whoever connects ([serve]); prints the address before
-// it waits. The result holds what `propagate` gives, `commands.csv` and, of a paced run, the
+// Propagates the experiment tick by tick with a client ([serve]); prints the address before it
+// waits. The result holds what `propagate` gives, `commands.csv` and, of a paced run, the
 // statistics of its deadlines.
 RunResult serve_experiment(const RunOptions& options, const Console& console) {
   ServeSettings serve;

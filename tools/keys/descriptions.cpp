@@ -1,4 +1,4 @@
-#include "tools/keys/words.h"
+#include "tools/keys/descriptions.h"
 
 #include <cmath>
 #include <sstream>

@@ -1,4 +1,4 @@
-// What is told of a key: its description, default and range in words.
+// Texts about a key: its description, default and range in words.
 #pragma once
 
 #include <string>
