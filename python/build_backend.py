@@ -69,8 +69,8 @@ def get_requires_for_build_wheel(config_settings=None):
     return [] if _has_pybind11_of_debian() else ["pybind11>=2.10"]
 
 
-def _wheel_text():
-    return f"Wheel-Version: 1.0\nGenerator: photorque\nRoot-Is-Purelib: false\nTag: {_tag()}\n"
+def _wheel_text(tag):
+    return f"Wheel-Version: 1.0\nGenerator: photorque\nRoot-Is-Purelib: false\nTag: {tag}\n"
 
 
 def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
@@ -78,29 +78,48 @@ def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
     info = pathlib.Path(metadata_directory) / f"photorque-{_version()}.dist-info"
     info.mkdir()
     (info / "METADATA").write_text(_metadata(), encoding="utf-8")
-    (info / "WHEEL").write_text(_wheel_text(), encoding="utf-8")
+    (info / "WHEEL").write_text(_wheel_text(_tag()), encoding="utf-8")
     return info.name
 
 
-def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    package = _compile()
+def module_files(package):
+    """The module in the built `package` folder and what belongs to it: {name in the wheel: path}."""
     suffix = sysconfig.get_config_var("EXT_SUFFIX")
-    files = {f"photorque/{file.name}": file.read_bytes() for file in sorted(package.iterdir())
-             if file.name.endswith(suffix) or file.suffix in (".py", ".pyi", ".typed")}
+    return {f"photorque/{file.name}": file for file in sorted(package.iterdir())
+            if file.name.endswith(suffix) or file.suffix in (".py", ".pyi", ".typed")}
+
+
+def write_wheel(folder, files, tag, commands=()):
+    """Packs {name: path} as a wheel with this tag into `folder`, and returns its name.
+
+    `commands` are entry points, as "photorque = photorque.program:main"."""
     info = f"photorque-{_version()}.dist-info"
-    files[f"{info}/METADATA"] = _metadata().encode()
-    files[f"{info}/WHEEL"] = _wheel_text().encode()
-    files[f"{info}/LICENSE"] = (root / "LICENSE").read_bytes()
+    texts = {f"{info}/METADATA": _metadata(), f"{info}/WHEEL": _wheel_text(tag),
+             f"{info}/LICENSE": (root / "LICENSE").read_text(encoding="utf-8")}
+    if commands:
+        texts[f"{info}/entry_points.txt"] = "[console_scripts]\n" + "".join(f"{one}\n" for one in commands)
     record = ""
-    for name, content in files.items():
-        digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
-        record += f"{name},sha256={digest},{len(content)}\n"
-    files[f"{info}/RECORD"] = (record + f"{info}/RECORD,,\n").encode()
-    wheel = f"photorque-{_version()}-{_tag()}.whl"
-    with zipfile.ZipFile(pathlib.Path(wheel_directory) / wheel, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, content in files.items():
-            archive.writestr(name, content)
-    return wheel
+    name = f"photorque-{_version()}-{tag}.whl"
+    with zipfile.ZipFile(pathlib.Path(folder) / name, "w", zipfile.ZIP_DEFLATED) as archive:
+
+        def add(inside, content, mode=0o644):
+            nonlocal record
+            digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+            record += f"{inside},sha256={digest},{len(content)}\n"
+            entry = zipfile.ZipInfo(inside, (2026, 1, 1, 0, 0, 0))
+            entry.external_attr = (0o100000 | mode) << 16
+            archive.writestr(entry, content, zipfile.ZIP_DEFLATED)
+
+        for inside, path in files.items():
+            add(inside, path.read_bytes(), 0o755 if os.access(path, os.X_OK) else 0o644)
+        for inside, text in texts.items():
+            add(inside, text.encode())
+        archive.writestr(f"{info}/RECORD", record + f"{info}/RECORD,,\n")
+    return name
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    return write_wheel(wheel_directory, module_files(_compile()), _tag())
 
 
 def build_sdist(sdist_directory, config_settings=None):

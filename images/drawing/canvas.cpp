@@ -4,10 +4,12 @@
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
+#include <fontconfig/fontconfig.h>
 
 #include <map>
 
 #include "core/errors.h"
+#include "core/own_file.h"
 #include "core/text/format.h"
 
 namespace photorque {
@@ -33,9 +35,28 @@ void set_colour(cairo_t* context, const Rgb& colour, double opacity) {
   cairo_set_source_rgba(context, colour.red, colour.green, colour.blue, opacity);
 }
 
+// An archive or wheel carries its fonts with a configuration that names no others, so that pictures
+// have letters on a machine without fonts. Elsewhere the machine's configuration holds.
+void use_bundled_fonts() {
+  const std::filesystem::path folder = own_file().parent_path();
+  for (const std::filesystem::path& prefix : {folder, folder / ".."}) {
+    const std::filesystem::path file = prefix / "share/photorque/fonts/fonts.conf";
+    std::error_code unreadable;
+    if (!std::filesystem::is_regular_file(file, unreadable)) continue;
+    FcConfig* const config = FcConfigCreate();
+    const auto* const name = reinterpret_cast<const FcChar8*>(file.c_str());
+    if (FcConfigParseAndLoad(config, name, FcTrue) && FcConfigBuildFonts(config)) {
+      FcConfigSetCurrent(config);
+    }
+    FcConfigDestroy(config);
+    return;
+  }
+}
+
 // Fixed, so that the defaults of a user's font configuration change no bits. (Rules that force a
 // rendering on programs still can.)
 void set_font(cairo_t* context, const TextStyle& style) {
+  [[maybe_unused]] static const bool has_fonts = (use_bundled_fonts(), true);
   const CairoOwner<cairo_font_options_t> options(cairo_font_options_create());
   cairo_font_options_set_antialias(options.get(), CAIRO_ANTIALIAS_GRAY);
   cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);

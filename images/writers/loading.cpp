@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "core/errors.h"
+#include "core/own_file.h"
 
 namespace photorque {
 namespace {
@@ -21,7 +22,7 @@ constexpr const char* file_name = "photorque_pictures.so";
 
 // Beside the program, or where it was installed to; nowhere else, whatever the environment says.
 fs::path module_path() {
-  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
+  const fs::path program = own_file().parent_path();
   for (const fs::path& place : {program, program / PHOTORQUE_MODULE_FOLDER}) {
     std::error_code unreadable;
     if (fs::is_regular_file(place / file_name, unreadable)) return place / file_name;

@@ -1,10 +1,9 @@
 #include "tools/coupling/table_cache.h"
 
-#include <dlfcn.h>
-
 #include <cstdio>
 
 #include "core/files.h"
+#include "core/own_file.h"
 #include "core/provenance.h"
 
 namespace photorque {
@@ -15,16 +14,6 @@ constexpr size_t hash_digits = 32;
 
 std::filesystem::path file_of(const std::filesystem::path& folder, const std::string& key) {
   return folder / ("light_" + key + ".table");
-}
-
-// The file that holds this code: the program, or a library that another program has loaded.
-std::filesystem::path own_file() {
-  Dl_info info = {};
-  if (dladdr(reinterpret_cast<const void*>(&table_cache_version), &info) != 0 &&
-      std::filesystem::path(info.dli_fname).extension() == ".so") {
-    return info.dli_fname;
-  }
-  return "/proc/self/exe";
 }
 
 }  // namespace

@@ -1,0 +1,13 @@
+// Where this code lies: what belongs to it (fonts, modules) is found from there.
+#pragma once
+
+#include <filesystem>
+
+namespace photorque {
+
+// The file that holds this code: the program ("/proc/self/exe" resolved), or the shared library
+// that another program, such as Python, has loaded. Absolute where the loader was given an absolute
+// path.
+std::filesystem::path own_file();
+
+}  // namespace photorque
