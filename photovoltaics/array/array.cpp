@@ -262,6 +262,12 @@ class FollowingTemperature {
                slope.value[Headline::power];
   }
 
+  // Per relative change of all light, as power follows it in proportion.
+  double kelvin_per_light() const {
+    if (!(W_per_K_ > 0.0)) return 0.0;
+    return (absorptance_ * here_.value[Headline::light] - here_.value[Headline::power]) / W_per_K_;
+  }
+
   void follow(Headline& other) const {
     if (!(W_per_K_ > 0.0)) return;
     const auto change = [&](Headline::Item item) { return other.value[item] - here_.value[item]; };
@@ -312,7 +318,13 @@ Estimates estimate(const PreparedArray& array, const ArrayLight& light, const Li
       squares += (h.value[k] - average) * (h.value[k] - average);
     }
     estimates[k].standard_error = std::sqrt((count - 1.0) / count * squares);
-    estimates[k] = with_common_error(estimates[k], light.power_W.common_error());
+    const double common = light.power_W.common_error();
+    if (k == Headline::temperature) {
+      estimates[k].standard_error =
+          std::hypot(estimates[k].standard_error, common * temperature.kelvin_per_light());
+    } else {
+      estimates[k] = with_common_error(estimates[k], common);
+    }
   }
   return estimates;
 }
