@@ -4,6 +4,7 @@
 
 #include "attitude/environment/epoch.h"
 #include "attitude/environment/igrf.h"
+#include "core/dry_air.h"
 
 namespace photorque {
 namespace {
@@ -35,16 +36,6 @@ constexpr NumberKey air_viscosity("air_viscosity_Pa_s", Range::positive(), "from
                                   {.usually = "Sutherland's law"});
 constexpr TableKey environment("environment", "what surrounds the platform");
 }  // namespace environment_key
-
-// Specific gas constant of dry air, and Sutherland's law: see environment.h.
-double dry_air_density_kg_m3(double pressure_Pa, double temperature_K) {
-  return pressure_Pa / (287.05 * temperature_K);
-}
-double dry_air_viscosity_Pa_s(double temperature_K) {
-  constexpr double reference_K = 273.15, sutherland_K = 110.4;
-  return 1.716e-5 * std::pow(temperature_K / reference_K, 1.5) * (reference_K + sutherland_K) /
-         (temperature_K + sutherland_K);
-}
 
 // date = 2025-06-30, or a decimal year.
 double read_year(const Settings& igrf) {

@@ -39,6 +39,7 @@ constexpr Unit units[] = {
     {"A_W", "responsivity", 1.0},
     {"A_m2K3", "saturation", 1.0},
     {"V_K", "voltage per temperature", 1.0},
+    {"W_K", "power per temperature", 1.0},
     {"deg", "angle", degree_rad},
     {"rad", "angle", 1.0},
     {"mrad", "angle", 1e-3},

@@ -33,12 +33,17 @@ struct LightBins {
 // Everything that does not depend on the light.
 struct PreparedArray {
   const ArrayDesign& design;
+  std::vector<double> responsivity_A_W;  // per band
   CellCover cover;
-  std::vector<double> area_m2;
-  std::vector<double> factor_A_W;   // per band, temperature included
-  std::vector<double> cell_factor;  // per cell, over that of a cell like the others
-  CellTables tables;
+  std::vector<double> area_m2 = {};
+  double total_area_m2 = 0.0;
+  double temperature_K = 0.0;            // that the rest is for
+  std::vector<double> factor_A_W = {};   // per band
+  std::vector<double> cell_factor = {};  // per cell, over that of a cell like the others
+  CellTables tables = {};
 
+  // Without tables.
+  void warm_to(double kelvin);
   ArrayCurve curve(const std::vector<double>& photocurrents_A) const {
     return {design.wiring, tables, photocurrents_A};
   }
@@ -96,37 +101,80 @@ PreparedArray prepare_light(const ArrayDesign& design, const ArrayLight& light,
     throw InputError({}, "array", std::to_string(responsivity_A_W.size()) + " responsivities",
                      "one per band");
   }
-  PreparedArray array{design, cover_of(design, light), {}, {}, {}, {}};
+  const auto used = responsivity_A_W.first(static_cast<size_t>(light.bands));
+  PreparedArray array{design, {used.begin(), used.end()}, cover_of(design, light)};
   for (size_t i = 0; i < array.cover.cells(); ++i) {
     array.area_m2.push_back(array.cover.area_m2(i));
+    array.total_area_m2 += array.area_m2.back();
     if (!(array.area_m2.back() > 0)) {
       throw InputError({}, "array", "cell " + std::to_string(i) + " beside the surface",
                        "cells on the receiver");
     }
   }
-  const double warmth = photocurrent_factor(design.cell, design.temperature_K);
-  for (const double r : responsivity_A_W.first(static_cast<size_t>(light.bands))) {
-    array.factor_A_W.push_back(r * warmth);
-  }
-  array.cell_factor.assign(array.cover.cells(), 1.0);
-  for (const CellOverride& one : design.overrides) {
-    array.cell_factor[static_cast<size_t>(one.index)] =
-        one.photocurrent_factor * photocurrent_factor(one.model, design.temperature_K) / warmth;
-  }
+  array.warm_to(design.temperature_K);
   return array;
 }
 
-PreparedArray prepare(const ArrayDesign& design, const ArrayLight& light,
-                      std::span<const double> responsivity_A_W, const LightBins& bins) {
-  PreparedArray array = prepare_light(design, light, responsivity_A_W);
-  const std::vector<double> current_A = array.light(bins).current_A;
+void PreparedArray::warm_to(double kelvin) {
+  temperature_K = kelvin;
+  const double warmth = photocurrent_factor(design.cell, kelvin);
+  factor_A_W = responsivity_A_W;
+  for (double& factor : factor_A_W) factor *= warmth;
+  cell_factor.assign(cover.cells(), 1.0);
+  for (const CellOverride& one : design.overrides) {
+    cell_factor[static_cast<size_t>(one.index)] =
+        one.photocurrent_factor * photocurrent_factor(one.model, kelvin) / warmth;
+  }
+  tables.clear();
+}
+
+// Cells of equal area share a law: a table, or for one maximum of the power what is made fastest.
+CellTables laws_at(const ArrayDesign& design, std::span<const double> cell_area_m2,
+                   double largest_photocurrent_A, double temperature_K, bool once = false) {
+  // As long as a table takes, so long takes one maximum of so many cells without it.
+  constexpr size_t few_cells = 400;
+  const bool tabulated = !once || cell_area_m2.size() > few_cells;
+  std::vector<std::pair<double, std::shared_ptr<const DiodeVoltageLaw>>> known;
+  const auto law_of = [&](const CellModel& model,
+                          double area_m2) -> std::shared_ptr<const DiodeVoltageLaw> {
+    const CellParameters parameters = parameters_at(model, area_m2, temperature_K);
+    if (!tabulated) return diode_voltage_law(parameters);
+    return std::make_shared<const DiodeVoltageTable>(CellCurve(parameters),
+                                                     std::max(2.0 * largest_photocurrent_A, 1e-9));
+  };
+  CellTables tables;
+  for (size_t i = 0; i < cell_area_m2.size(); ++i) {
+    const double area_m2 = cell_area_m2[i];
+    if (const CellOverride* one = design.override_of(i)) {
+      tables.push_back(law_of(one->model, area_m2));
+      continue;
+    }
+    // Areas that differ by the rounding of a model's single numbers alone are one.
+    constexpr double rounding = 1e-6;
+    auto same = std::ranges::find_if(known, [&](const auto& pair) {
+      return std::abs(pair.first - area_m2) <= rounding * area_m2;
+    });
+    if (same == known.end()) {
+      known.emplace_back(area_m2, law_of(design.cell, area_m2));
+      same = known.end() - 1;
+    }
+    tables.push_back(same->second);
+  }
+  return tables;
+}
+
+void require_finite(const std::vector<double>& current_A) {
   for (size_t i = 0; i < current_A.size(); ++i) {
     if (!std::isfinite(current_A[i])) {
       throw NumericalError("the light on cell " + std::to_string(i) + " is no finite number");
     }
   }
-  array.tables = cell_tables(design, array.area_m2, std::ranges::max(current_A));
-  return array;
+}
+
+void prepare_tables(PreparedArray& array, const LightBins& bins, bool once = false) {
+  const std::vector<double> current_A = array.light(bins).current_A;
+  array.tables =
+      laws_at(array.design, array.area_m2, std::ranges::max(current_A), array.temperature_K, once);
 }
 
 double sum_of(const std::vector<double>& values) {
@@ -135,7 +183,19 @@ double sum_of(const std::vector<double>& values) {
 
 // What gets a standard error.
 struct Headline {
-  enum Item { power, voltage, current, light, entering, alone, efficiency, cells, mismatch, count };
+  enum Item {
+    power,
+    voltage,
+    current,
+    light,
+    entering,
+    alone,
+    efficiency,
+    cells,
+    mismatch,
+    temperature,
+    count
+  };
   std::array<double, count> value{};
 };
 using Estimates = std::array<Estimate, Headline::count>;
@@ -151,8 +211,76 @@ Headline headline(const PreparedArray& array, const LightBins& bins) {
   const double power_W = best.power_W();
   return {{power_W, best.voltage_V, best.current_A, light_W, sum_of(light.entering_W), alone_W,
            light_W > 0 ? power_W / light_W : 0.0, light_W > 0 ? alone_W / light_W : 0.0,
-           alone_W > 0 ? 1.0 - power_W / alone_W : 0.0}};
+           alone_W > 0 ? 1.0 - power_W / alone_W : 0.0, array.temperature_K}};
 }
+
+// The light on the cells at the array's temperature → that of their steady state.
+double steady_temperature_K(const PreparedArray& array, const LightBins& bins) {
+  const ArrayDesign& design = array.design;
+  const CellLight light = array.light(bins);
+  const auto electric_W_m2 = [&](double kelvin) {
+    const std::vector<double> current_A =
+        warmed(design, light.current_A, array.temperature_K, kelvin);
+    const CellTables tables =
+        laws_at(design, array.area_m2, std::ranges::max(current_A), kelvin, true);
+    return ArrayCurve(design.wiring, tables, current_A).maximum_power().power_W() /
+           array.total_area_m2;
+  };
+  return CellPlate(*design.heat, array.total_area_m2)
+      .steady_K(sum_of(light.incident_W) / array.total_area_m2, electric_W_m2);
+}
+
+// Per kelvin of the cells in the same light; leaves the array as it was.
+Headline slope_of_headline(PreparedArray& array, const LightBins& bins) {
+  constexpr double step_K = 0.5;
+  const double kelvin = array.temperature_K;
+  const auto at = [&](double other_K) {
+    array.warm_to(other_K);
+    prepare_tables(array, bins, true);
+    return headline(array, bins);
+  };
+  Headline slope = at(kelvin + step_K);
+  const Headline colder = at(kelvin - step_K);
+  for (size_t k = 0; k < Headline::count; ++k) {
+    slope.value[k] = (slope.value[k] - colder.value[k]) / (2.0 * step_K);
+  }
+  array.warm_to(kelvin);
+  prepare_tables(array, bins);
+  return slope;
+}
+
+// How the temperature follows other light, to first order: from the headline of that light at the
+// temperature of this one.
+class FollowingTemperature {
+ public:
+  FollowingTemperature(const PreparedArray& array, const Headline& here, const Headline& slope)
+      : here_(here), slope_(slope) {
+    if (!array.design.heat) return;
+    const CellPlate plate(*array.design.heat, array.total_area_m2);
+    absorptance_ = array.design.heat->absorptance;
+    W_per_K_ = array.total_area_m2 * plate.loss_slope_W_m2_K(array.temperature_K) +
+               slope.value[Headline::power];
+  }
+
+  // Per relative change of all light, as power follows it in proportion.
+  double kelvin_per_light() const {
+    if (!(W_per_K_ > 0.0)) return 0.0;
+    return (absorptance_ * here_.value[Headline::light] - here_.value[Headline::power]) / W_per_K_;
+  }
+
+  void follow(Headline& other) const {
+    if (!(W_per_K_ > 0.0)) return;
+    const auto change = [&](Headline::Item item) { return other.value[item] - here_.value[item]; };
+    const double warmer_K =
+        (absorptance_ * change(Headline::light) - change(Headline::power)) / W_per_K_;
+    for (size_t k = 0; k < Headline::count; ++k) other.value[k] += warmer_K * slope_.value[k];
+  }
+
+ private:
+  const Headline& here_;
+  const Headline& slope_;
+  double absorptance_ = 0.0, W_per_K_ = 0.0;
+};
 
 // The mean of all replicates but one; noise may have made it negative.
 std::vector<double> mean_without(int replicate, const BinSums& sums, std::span<const double> mean) {
@@ -167,8 +295,10 @@ std::vector<double> mean_without(int replicate, const BinSums& sums, std::span<c
 
 // The values at the mean of all replicates, with Tukey's errors. The bias is left in, so that the
 // headline is the maximum of the curve that is printed; it is of second order in the error.
-Estimates estimate(const PreparedArray& array, const ArrayLight& light, const LightBins& mean) {
+Estimates estimate(const PreparedArray& array, const ArrayLight& light, const LightBins& mean,
+                   const Headline& slope) {
   const Headline value = headline(array, mean);
+  const FollowingTemperature temperature(array, value, slope);
   Estimates estimates{};
   for (size_t k = 0; k < Headline::count; ++k) estimates[k].value = value.value[k];
   const int replicates = light.power_W.replicates;
@@ -179,6 +309,7 @@ Estimates estimate(const PreparedArray& array, const ArrayLight& light, const Li
     LightBins others{mean_without(r, light.power_W, mean.power_W), {}};
     if (light.entry.bins > 0) others.entry_W = mean_without(r, light.entry, mean.entry_W);
     without.push_back(headline(array, others));
+    temperature.follow(without.back());
   }
   for (size_t k = 0; k < Headline::count; ++k) {
     double average = 0.0, squares = 0.0;
@@ -187,7 +318,13 @@ Estimates estimate(const PreparedArray& array, const ArrayLight& light, const Li
       squares += (h.value[k] - average) * (h.value[k] - average);
     }
     estimates[k].standard_error = std::sqrt((count - 1.0) / count * squares);
-    estimates[k] = with_common_error(estimates[k], light.power_W.common_error());
+    const double common = light.power_W.common_error();
+    if (k == Headline::temperature) {
+      estimates[k].standard_error =
+          std::hypot(estimates[k].standard_error, common * temperature.kelvin_per_light());
+    } else {
+      estimates[k] = with_common_error(estimates[k], common);
+    }
   }
   return estimates;
 }
@@ -221,31 +358,7 @@ std::vector<double> warmed(const ArrayDesign& design, std::vector<double> photoc
 
 CellTables cell_tables(const ArrayDesign& design, std::span<const double> cell_area_m2,
                        double largest_photocurrent_A) {
-  std::vector<std::pair<double, std::shared_ptr<const DiodeVoltageTable>>> known;
-  const auto table_of = [&](const CellModel& model, double area_m2) {
-    const CellCurve curve(parameters_at(model, area_m2, design.temperature_K));
-    return std::make_shared<const DiodeVoltageTable>(curve,
-                                                     std::max(2.0 * largest_photocurrent_A, 1e-9));
-  };
-  CellTables tables;
-  for (size_t i = 0; i < cell_area_m2.size(); ++i) {
-    const double area_m2 = cell_area_m2[i];
-    if (const CellOverride* one = design.override_of(i)) {
-      tables.push_back(table_of(one->model, area_m2));
-      continue;
-    }
-    // Areas that differ by the rounding of a model's single numbers alone are one.
-    constexpr double rounding = 1e-6;
-    auto same = std::ranges::find_if(known, [&](const auto& pair) {
-      return std::abs(pair.first - area_m2) <= rounding * area_m2;
-    });
-    if (same == known.end()) {
-      known.emplace_back(area_m2, table_of(design.cell, area_m2));
-      same = known.end() - 1;
-    }
-    tables.push_back(same->second);
-  }
-  return tables;
+  return laws_at(design, cell_area_m2, largest_photocurrent_A, design.temperature_K);
 }
 
 CellCurrents cell_currents(const ArrayDesign& design, const ArrayLight& light,
@@ -286,8 +399,11 @@ CellCurrents cell_currents(const ArrayDesign& design, const ArrayLight& light,
 ArrayResult evaluate_array(const ArrayDesign& design, const ArrayLight& light,
                            std::span<const double> responsivity_A_W) {
   const LightBins mean = mean_light(light);
-  const PreparedArray array = prepare(design, light, responsivity_A_W, mean);
-  const Estimates estimates = estimate(array, light, mean);
+  PreparedArray array = prepare_light(design, light, responsivity_A_W);
+  require_finite(array.light(mean).current_A);
+  if (design.heat) array.warm_to(steady_temperature_K(array, mean));
+  const Headline slope = slope_of_headline(array, mean);
+  const Estimates estimates = estimate(array, light, mean, slope);
   ArrayResult result;
   result.power_W = estimates[Headline::power];
   result.voltage_V = estimates[Headline::voltage];
@@ -301,7 +417,9 @@ ArrayResult evaluate_array(const ArrayDesign& design, const ArrayLight& light,
   result.mismatch_loss = estimates[Headline::mismatch];
   result.cell_area_m2 = array.area_m2;
   if (design.places) result.cell_centre_m = design.places->centres;
-  for (const double area_m2 : array.area_m2) result.area_of_cells_m2 += area_m2;
+  result.area_of_cells_m2 = array.total_area_m2;
+  result.temperature_K = estimates[Headline::temperature];
+  result.power_per_K_W = slope.value[Headline::power];
   CellLight cells = array.light(mean);
   result.cell_light_W = std::move(cells.incident_W);
   result.cell_photocurrent_A = std::move(cells.current_A);

@@ -29,6 +29,8 @@ struct ArrayResult {
   Estimate efficiency_of_cells;  // sum_of_cells_W / power_on_cells_W
   Estimate mismatch_loss;        // 1 − power_W / sum_of_cells_W: uneven light, and diodes
   double area_of_cells_m2 = 0.0;
+  Estimate temperature_K;      // of the cells: steady state, or as stated
+  double power_per_K_W = 0.0;  // d power_W/dT of the cells, in the same light
 
   std::vector<double> cell_light_W;  // per cell, cell = row · columns + column
   std::vector<double> cell_area_m2;
@@ -40,7 +42,9 @@ struct ArrayResult {
   int columns = 0, rows = 0;
 };
 
-// `responsivity_A_W` of each band of the light: see band_responsivity_A_W().
+// `responsivity_A_W` of each band of the light: see band_responsivity_A_W(). Where `design.heat`
+// is stated, the cells are in the steady state of this light at their maximum power point; standard
+// errors include how the temperature follows the light.
 // Throws InputError when the cells do not fit on the grid or cover none of the surface.
 ArrayResult evaluate_array(const ArrayDesign& design, const ArrayLight& light,
                            std::span<const double> responsivity_A_W);

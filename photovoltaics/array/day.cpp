@@ -12,7 +12,6 @@ namespace {
 namespace day_key {
 constexpr double year_s = 366.0 * 86400.0;
 constexpr DaySettings usual;
-constexpr CellHeat usual_heat;
 constexpr Range efficiency{0.0, 1.0, true, false};
 constexpr NumberKey load("load_W", usual.load_W, Range::not_negative(),
                          "what is drawn all the time");
@@ -40,16 +39,6 @@ constexpr NumberKey lamp_rise("lamp_rise_K", usual.droop.rise_K, {0.0, 300.0},
                               "how much warmer the junctions become");
 constexpr NumberKey lamp_rise_time("lamp_rise_time_s", usual.droop.rise_time_constant_s,
                                    Range::positive(), "within this time constant");
-constexpr FlagKey heat("heat", true,
-                       "cell temperature from the light, beginning at `air_K`; false: "
-                       "`array.temperature_K`, and the four keys below are unknown");
-constexpr NumberKey air("air_K", usual_heat.air_K, Range::positive(), "of the room");
-constexpr NumberKey convection("convection_W_m2_K", usual_heat.convection_W_m2_K, Range::positive(),
-                               "both faces and radiation, per area of the cells");
-constexpr NumberKey absorptance("absorptance", usual_heat.absorptance, Range::fraction(),
-                                "of the light on the cells; at least what they deliver");
-constexpr NumberKey capacity("capacity_J_m2_K", usual_heat.capacity_J_m2_K, Range::positive(),
-                             "about 1 mm of glass");
 }  // namespace day_key
 
 // Power over temperature and light, on a small grid.
@@ -117,11 +106,24 @@ double LampDroop::light_at(double time_s) const {
 DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const DaySettings& s) {
   const double light_W_m2 =
       s.lamps_on ? array.power_on_cells_W.value / array.area_of_cells_m2 : 0.0;
-  double temperature_K = s.heat ? s.heat->air_K : design.temperature_K;
-  const double hottest_K =
-      s.heat ? temperature_K + s.heat->absorptance * light_W_m2 / s.heat->convection_W_m2_K
-             : temperature_K;
-  const PowerSurface surface(design, array, temperature_K, hottest_K, s.droop.min_light());
+  const auto computed_K = [](double kelvin) {
+    return std::clamp(kelvin, coldest_cell_K, hottest_cell_K);
+  };
+  std::optional<CellPlate> plate;
+  double temperature_K = design.temperature_K, low_K = temperature_K, high_K = temperature_K;
+  if (design.heat) {
+    plate.emplace(*design.heat, array.area_of_cells_m2);
+    temperature_K = design.heat->start_K;
+    // Between the start and what the least and the most light could lead to.
+    const double absorptance = design.heat->absorptance;
+    const double least =
+        s.droop.min_light() * std::max(0.0, absorptance - 1.5 * array.efficiency.value);
+    const double coldest_K = plate->temperature_at_loss_K(least * light_W_m2);
+    const double hottest_K = plate->temperature_at_loss_K(absorptance * light_W_m2);
+    low_K = computed_K(std::min(temperature_K, coldest_K));
+    high_K = computed_K(std::max(temperature_K, hottest_K));
+  }
+  const PowerSurface surface(design, array, low_K, high_K, s.droop.min_light());
   DayResult day;
   double charge_J = s.battery.capacity_J * s.battery.charge;
   const auto steps = static_cast<int64_t>(std::ceil(s.duration_s / s.step_s));
@@ -141,14 +143,10 @@ DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const Day
     if (served < 1.0 && !day.empty_after_s) day.empty_after_s = time_s;
     day.array_energy_J += array_W * step_s;
     day.load_energy_J += s.load_W * step_s;
-    if (s.heat) {
-      // Exact for constant power over the step, so that any step is stable.
-      const double heat_W_m2 =
-          s.heat->absorptance * light * light_W_m2 - array_W / array.area_of_cells_m2;
-      const double end_K = s.heat->air_K + heat_W_m2 / s.heat->convection_W_m2_K;
-      temperature_K =
-          end_K + (temperature_K - end_K) *
-                      std::exp(-step_s * s.heat->convection_W_m2_K / s.heat->capacity_J_m2_K);
+    if (plate) {
+      const double heating_W_m2 =
+          design.heat->absorptance * light * light_W_m2 - array_W / array.area_of_cells_m2;
+      temperature_K = plate->step(temperature_K, heating_W_m2, step_s).end_K;
     }
   }
   day.final_temperature_K = temperature_K;
@@ -175,20 +173,12 @@ DaySettings read_day(const Settings& s) {
     throw s.error(day_key::roll_off, "a roll-off that leaves no light at lamp_rise_K",
                   "roll_off_per_K * lamp_rise_K < 1");
   }
-  if (s.get(day_key::heat)) {
-    CellHeat heat;
-    heat.air_K = s.get(day_key::air);
-    heat.convection_W_m2_K = s.get(day_key::convection);
-    heat.absorptance = s.get(day_key::absorptance);
-    heat.capacity_J_m2_K = s.get(day_key::capacity);
-    day.heat = heat;
-  }
   return day;
 }
 
 Product day_product(const DayResult& day) {
   Product product;
-  product.quantities = {{"cell_temperature_K", {day.final_temperature_K, 0.0}},
+  product.quantities = {{"day_end_cell_temperature_K", {day.final_temperature_K, 0.0}},
                         {"mean_array_power_W", {day.mean_array_W, 0.0}},
                         {"battery_left_J", {day.charge_J.back(), 0.0}}};
   std::vector<double> hours, charge_Wh;
@@ -224,12 +214,7 @@ std::vector<Key> day_keys() {
           droop_time,
           roll_off,
           lamp_rise,
-          lamp_rise_time,
-          heat,
-          air,
-          convection,
-          absorptance,
-          capacity};
+          lamp_rise_time};
 }
 
 }  // namespace photorque

@@ -9,14 +9,6 @@
 
 namespace photorque {
 
-// One temperature for all cells: C dT/dt = α E − P/A − h (T − T_air), per area of the cells.
-struct CellHeat {
-  double air_K = 295.0;
-  double convection_W_m2_K = 10.0;  // h, both faces and radiation together
-  double absorptance = 0.93;        // α of the light that falls on the cells
-  double capacity_J_m2_K = 2000.0;  // C: a cell with 1 mm of glass has about 2 kJ/m²K
-};
-
 // Light of the lamps over that when switched on: (1 − depth (1 − e^{−t/τ})) (1 − k ΔT(t)), the
 // first factor as measured on a lamp, the second from its junctions' rise of temperature
 // ΔT(t) = rise (1 − e^{−t/τ_h}) and the roll-off k of its data sheet. Both are 1 by default.
@@ -40,7 +32,6 @@ struct Battery {
 
 // Every efficiency is in (0, 1].
 struct DaySettings {
-  std::optional<CellHeat> heat;
   LampDroop droop;
   Battery battery;
   double converter_efficiency = 0.95;
@@ -60,13 +51,14 @@ struct DayResult {
   double mean_array_W = 0.0;
 };
 
-// The power between a few temperatures and light levels is interpolated bilinearly: good to 1e-3.
+// The temperature of the cells follows design.heat from its start_K; `array` is of cells at
+// design.temperature_K, where they stay without heat. The power between a few temperatures and
+// light levels is interpolated bilinearly: good to 1e-3.
 DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const DaySettings& settings);
 
 // The table `[array.day]`, all keys optional: load_W, duration_s, converter_efficiency,
 // battery_Wh, battery_charge, charge_efficiency, discharge_efficiency; droop_depth, droop_time_s,
-// roll_off_per_K, lamp_rise_K, lamp_rise_time_s; and, for the cells' temperature, `heat = true`
-// with air_K, convection_W_m2_K, absorptance, capacity_J_m2_K.
+// roll_off_per_K, lamp_rise_K, lamp_rise_time_s.
 DaySettings read_day(const Settings& day);
 
 Product day_product(const DayResult& day);

@@ -276,7 +276,8 @@ ArrayDesign read_array_design(const Settings& array, std::optional<CellPlaces> p
   } else {
     read_size(array, design);
   }
-  design.temperature_K = array.get(array_key::temperature);
+  design.temperature_K = array.get_or(array_key::temperature, design.temperature_K);
+  design.rated_temperature_K = array.get(array_key::rated_temperature);
   design.wiring = read_wiring(array, design);
   design.cell = read_cell(array);
   design.overrides = read_overrides(array, design);

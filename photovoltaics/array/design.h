@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/settings/settings.h"
+#include "photovoltaics/array/heat.h"
 #include "photovoltaics/array/places.h"
 #include "photovoltaics/cell/front.h"
 #include "photovoltaics/cell/model.h"
@@ -33,7 +34,11 @@ struct ArrayDesign {
   ArrayWiring wiring;
   CellModel cell;
   std::vector<CellOverride> overrides;  // in the order of their cells, each once at most
+  // At which the cells and their photocurrents are computed; where `heat` is stated a reference
+  // that evaluate_array() replaces with the steady state.
   double temperature_K = 298.15;
+  std::optional<CellHeat> heat = {};    // none: the cells stay at temperature_K
+  double rated_temperature_K = 358.15;  // above it a warning
   QuantumEfficiency efficiency;
   std::optional<CellFront> front;  // over the surface's own optics
 
@@ -73,7 +78,8 @@ ArrayWiring regular_wiring(int columns, int rows, const RegularWiring& options);
 //   [array.bypass_diode]     drop_V = 0.5, saturation_A = 1e-6, ideality = 1.05,
 //                            series_ohm = 5e-3 (a small Schottky diode)
 //   [array.blocking_diode]   the same, drop_V = 0
-//   temperature_K = 298.15   of the cells and diodes
+//   temperature_K            of the cells; not stated: 298.15, and see read_cell_heat()
+//   rated_temperature_K      358.15
 //   cell = "silicon_interdigitated"   one of known_cells()
 //   [array.cell_parameters]  replaces single numbers of it: saturation_1_A, ideality_1,
 //                            saturation_2_A, ideality_2, series_ohm, shunt_ohm, breakdown_fraction,

@@ -65,7 +65,8 @@ std::vector<Key> array_design_keys() {
   for (const NamedCell& cell : known_cells()) kinds.push_back({cell.name, cell.summary});
   return joined({place_keys(),
                  wiring_keys(),
-                 {temperature, Key::choice_or("cell", std::move(kinds), 1, "what the cells are"),
+                 {temperature, rated_temperature, thermal.of(thermal_keys()),
+                  Key::choice_or("cell", std::move(kinds), 1, "what the cells are"),
                   cell_parameters.of(all_cells_keys()), cell_override.of(one_cell_keys()),
                   quantum_efficiency_peak, quantum_efficiency.of({wavelength, efficiency}),
                   cover.of(cell_front_keys())}});

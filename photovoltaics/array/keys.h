@@ -95,15 +95,21 @@ inline constexpr NumberKey gap("gap_m", 0.0, Range::not_negative(),
                                "between cells; on a map over `\"uv\"` a fraction of it");
 inline constexpr NumberKey margin("margin_m", 0.0, Range::not_negative(), "around them, likewise");
 inline constexpr NumberKey temperature(
-    "temperature_K", ArrayDesign{}.temperature_K, {1.0, 1000.0},
-    "of cells and diodes; the diodes' `saturation_A` is the one at this temperature, and warmer "
-    "cells (`[array.day]`, \"temperature +10 K\") leave the diodes as they are");
+    "temperature_K", {1.0, 1000.0},
+    "of cells and diodes, in every run; the diodes' `saturation_A` is the one at this temperature, "
+    "or at 298.15 K, and does not change with that of the cells",
+    {.usually = "the steady state of `[array.thermal]`, over time its balance; `diagnose` 298.15"});
+inline constexpr NumberKey rated_temperature(
+    "rated_temperature_K", ArrayDesign{}.rated_temperature_K, {1.0, 1000.0},
+    "of the cells, above which there is a warning: 85 °C, the hot end of the thermal cycles that "
+    "modules pass (IEC 61215)");
+inline constexpr TableKey thermal(
+    "thermal", "what the cells' temperature follows from, where `temperature_K` is not stated");
 inline constexpr TableKey cell_parameters("cell_parameters",
                                           "single numbers of it replaced, for one area");
 inline constexpr TablesKey cell_override(
     "cell_override",
-    "a cell that differs from the others; where cells are warmed (`[array.day]`, `supply`, "
-    "\"temperature +10 K\") its photocurrent grows as theirs");
+    "a cell that differs from the others; its photocurrent grows with the temperature as theirs");
 inline constexpr NumberKey quantum_efficiency_peak(
     "quantum_efficiency_peak", 0.95, Range::fraction(),
     "of the default shape, at 800 nm; or `[array.quantum_efficiency]`");
@@ -119,6 +125,8 @@ inline constexpr TableKey cover("cover", "the glass over the cells, where their 
 std::vector<Key> array_design_keys();
 // read_trackers().
 std::vector<Key> tracker_keys();
+// read_cell_heat().
+std::vector<Key> thermal_keys();
 // read_day().
 std::vector<Key> day_keys();
 

@@ -94,6 +94,8 @@ Product array_product(const ArrayResult& result) {
       {"array_current_A", result.current_A},
       {"power_on_cells_W", result.power_on_cells_W},
       {"area_of_cells_m2", {result.area_of_cells_m2, 0.0}},
+      {"cell_temperature_K", result.temperature_K},
+      {"array_power_slope_W_K", {result.power_per_K_W, 0.0}},
       {"array_efficiency", result.efficiency},
       {"power_of_cells_alone_W", result.sum_of_cells_W},
       {"efficiency_of_cells_alone", result.efficiency_of_cells},

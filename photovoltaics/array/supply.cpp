@@ -90,9 +90,10 @@ PowerSupply::PowerSupply(SupplyDesign design, double stored_J)
     : design_(std::move(design)),
       start_J_(stored_J),
       stored_J_(stored_J),
-      start_K_(design_.heat ? design_.heat->air_K : design_.array.temperature_K),
+      start_K_(design_.array.heat ? design_.array.heat->start_K : design_.array.temperature_K),
       temperature_K_(start_K_) {
   for (const double area_m2 : design_.cell_area_m2) area_m2_ += area_m2;
+  if (design_.array.heat) plate_.emplace(*design_.array.heat, area_m2_);
   full_ = design_.battery && stored_J_ >= design_.battery->capacity_J;
   empty_ = design_.battery && stored_J_ <= 0.0;
   if (design_.tracker && design_.max_photocurrent_A > 0.0) {
@@ -133,9 +134,11 @@ void PowerSupply::step(double time_s, double step_s, const Light& light, bool ju
       curves.curve.emplace_back(design_.array.wiring, tables_at(index), current_A);
       curves.weight.push_back(weight);
     };
-    if (design_.heat) {
-      const int below = static_cast<int>(std::floor(temperature_K_ / temperature_step_K));
-      const double fraction = temperature_K_ / temperature_step_K - below;
+    if (plate_) {
+      const double steps =
+          std::clamp(temperature_K_, coldest_cell_K, hottest_cell_K) / temperature_step_K;
+      const int below = static_cast<int>(std::floor(steps));
+      const double fraction = steps - below;
       add(below, 1.0 - fraction);
       add(below + 1, fraction);
     } else {
@@ -223,18 +226,14 @@ void PowerSupply::take(double time_s, double step_s, double potential_W) {
   state_.battery_W = (stored_J_ - before_J) / step_s;
 }
 
-// C dT/dt = α E − P/A − h (T − T_air), exactly for constant powers over the step.
 void PowerSupply::warm(double step_s) {
-  if (!design_.heat) return;
-  const CellHeat& heat = *design_.heat;
-  energies_.reflected.add((1.0 - heat.absorptance) * state_.light_W * step_s);
-  const double heating_W = heat.absorptance * state_.light_W - state_.array_W;
-  const double end_K = heat.air_K + heating_W / (heat.convection_W_m2_K * area_m2_);
-  const double decays = step_s * heat.convection_W_m2_K / heat.capacity_J_m2_K;
-  const double excess_K = temperature_K_ - end_K;
-  const double mean_K = end_K - excess_K * std::expm1(-decays) / decays;
-  energies_.convected.add(heat.convection_W_m2_K * area_m2_ * (mean_K - heat.air_K) * step_s);
-  temperature_K_ = end_K + excess_K * std::exp(-decays);
+  if (!plate_) return;
+  const double absorptance = design_.array.heat->absorptance;
+  energies_.reflected.add((1.0 - absorptance) * state_.light_W * step_s);
+  const double heating_W = absorptance * state_.light_W - state_.array_W;
+  const CellPlate::Step step = plate_->step(temperature_K_, heating_W / area_m2_, step_s);
+  energies_.given_off.add(step.given_off_J_m2 * area_m2_);
+  temperature_K_ = step.end_K;
 }
 
 SupplyClosure PowerSupply::closure() const {
@@ -243,10 +242,11 @@ SupplyClosure PowerSupply::closure() const {
   const auto relative = [](double rest, double whole) {
     return whole > 0.0 ? std::abs(rest) / whole : 0.0;
   };
-  if (design_.heat) {
-    const double stored_J = design_.heat->capacity_J_m2_K * area_m2_ * (temperature_K_ - start_K_);
+  if (plate_) {
+    const double stored_J =
+        design_.array.heat->capacity_J_m2_K * area_m2_ * (temperature_K_ - start_K_);
     closure.cells = relative(
-        e.on_cells.value() - e.reflected.value() - e.array.value() - e.convected.value() - stored_J,
+        e.on_cells.value() - e.reflected.value() - e.array.value() - e.given_off.value() - stored_J,
         e.on_cells.value());
   }
   closure.bus = relative(e.array.value() + e.out_of_battery.value() - e.converter.value() -

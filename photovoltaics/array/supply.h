@@ -1,7 +1,7 @@
 // The power system of a platform in light that changes: array, tracker, converter, battery, load
 // and the temperature of the cells, step by step, with every joule accounted for.
 //
-//   light on the cells = reflected + electric + carried off by the air + stored in the cells
+//   light on the cells = reflected + electric + heat given off + stored in the cells
 //   electric           = lost in the converter + load + into the battery − out of the battery
 //   into · η − out / η' = change of what the battery holds
 #pragma once
@@ -47,12 +47,11 @@ class LampOutput {
   std::vector<Stage> stages_;
 };
 
-// What the power system is made of.
+// What the power system is made of. The temperature of the cells follows array.heat.
 struct SupplyDesign {
   ArrayDesign array;
-  std::vector<double> cell_area_m2;   // per cell of the wiring
-  double max_photocurrent_A = 0.0;    // of any cell that will be asked for, at array.temperature_K
-  std::optional<CellHeat> heat = {};  // none: the cells stay at array.temperature_K
+  std::vector<double> cell_area_m2;  // per cell of the wiring
+  double max_photocurrent_A = 0.0;   // of any cell that will be asked for, at array.temperature_K
   std::optional<Battery> battery = {};  // none: whatever the array can give is taken
   double converter_efficiency = 1.0;    // between the array and battery and load, in (0, 1]
   double load_W = 0.0;                  // at the battery's terminals
@@ -77,8 +76,8 @@ class EnergySum {
 // Energies since the start [J], each added up by itself.
 struct SupplyEnergies {
   EnergySum on_cells;   // light
-  EnergySum reflected;  // of it, by CellHeat::absorptance; 0 where the cells' heat is not followed
-  EnergySum convected;  // heat given to the air
+  EnergySum reflected;  // of it, by CellHeat::absorptance; 0 where the cells' temperature is stated
+  EnergySum given_off;  // heat, by convection and radiation
   EnergySum array;      // electric, from the array
   EnergySum best;       // what the array could have given at its best point
   EnergySum converter;  // lost there
@@ -90,7 +89,7 @@ struct SupplyEnergies {
 
 // The relative closure of each balance: what does not add up over what went through.
 struct SupplyClosure {
-  double cells = 0.0;  // 0 where the cells' heat is not followed
+  double cells = 0.0;  // 0 where the cells' temperature is stated
   double bus = 0.0;
   double battery = 0.0;
   double largest() const { return std::max({cells, bus, battery}); }
@@ -103,7 +102,7 @@ struct SupplyEvent {
 
 class PowerSupply {
  public:
-  // With `stored_J` in the battery (if there is one), the cells at the air's temperature.
+  // With `stored_J` in the battery (if there is one), the cells at CellHeat::start_K.
   PowerSupply(SupplyDesign design, double stored_J);
 
   // The light that holds during a step: photocurrents of the cells at array.temperature_K, and all
@@ -143,6 +142,7 @@ class PowerSupply {
 
   SupplyDesign design_;
   double area_m2_ = 0.0;
+  std::optional<CellPlate> plate_;
   double start_J_, stored_J_;
   double start_K_, temperature_K_;
   std::map<int, CellTables> tables_;  // by temperature, see tables_at()

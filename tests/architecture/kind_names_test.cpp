@@ -36,6 +36,8 @@ const std::map<std::string, std::set<std::string>> allowed = {
     // the direction of the Sun.
     {"attitude/disturbances/fields/light_pressure.cpp", {"radiation_pressure"}},
     {"tools/coupling/couple.cpp", {"orbit", "planet_light", "power_balance", "radiation_pressure"}},
+    // Around a platform in orbit there is no air that cools its cells.
+    {"tools/runs/array_power.cpp", {"orbit"}},
     // The trade compares ways by the disturbances that they are.
     {"tools/supply/onboard.cpp", {"battery_discharge", "tether"}},
     // A key of [environment.sun]: the path about the Sun.

@@ -84,11 +84,16 @@ TEST(PowerSupply, TellsWhenItLeavesFullAndEmpty) {
                                              "battery_not_empty", "battery_full"}));
 }
 
-// In the dark the cells take the air's temperature; in light α E − P − h A (T − T_air) = 0 at the
-// end, and an even heating without power follows an exponential.
+// Of one face with constant convection alone: in light α E − P − h A (T − T_air) = 0 at the end,
+// and an even heating without power follows an exponential.
 TEST(PowerSupply, CellsWarmAsTheirEquationSays) {
   SupplyDesign design = four_cells();
-  design.heat = CellHeat{.air_K = 290.0, .convection_W_m2_K = 10.0, .absorptance = 0.9};
+  design.array.heat = CellHeat{.air_K = 290.0,
+                               .convection_W_m2_K = 10.0,
+                               .emissivity = 0.0,
+                               .absorptance = 0.9,
+                               .faces = 1,
+                               .start_K = 290.0};
   PowerSupply dark(design, 0.0);
   // Light that gives no current heats only.
   PowerSupply::Light light{std::vector<double>(4, 0.0), 20.0};
@@ -106,7 +111,7 @@ TEST(PowerSupply, CellsWarmAsTheirEquationSays) {
 // Curves between two known temperatures against the curve at that temperature.
 TEST(PowerSupply, InterpolatesTheTemperature) {
   SupplyDesign design = four_cells();
-  design.heat = CellHeat{.air_K = 312.3};
+  design.array.heat = CellHeat{.start_K = 312.3};
   PowerSupply supply(design, 0.0);
   supply.step(0.0, 1.0, even(cell_A));
   SupplyDesign warm = four_cells();

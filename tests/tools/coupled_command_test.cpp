@@ -281,7 +281,6 @@ direction = [0, 0, -1]
 )";
   const std::string day = R"([array.day]
 load_W = 6
-heat = false
 converter_efficiency = 0.9
 charge_efficiency = 0.8
 discharge_efficiency = 0.9
@@ -296,7 +295,7 @@ on = true
   const Outcome got =
       run("propagate " + experiment(even, day) +
           " --set propagate.initial_tilt_deg=0 --set propagate.initial_rate_rad_s=[0,0,0]"
-          " --set propagate.duration_s=400 --out " +
+          " --set propagate.duration_s=400 --set array.temperature_K=298.15 --out " +
           at("o"));
   ASSERT_EQ(got.status, 0) << got.err;
   auto power = table("o/power.csv");
@@ -315,6 +314,38 @@ on = true
   EXPECT_LE(found.at("energy_closure").at("value").get<double>(), 1e-9);
   EXPECT_NEAR(found.at("load_unserved_J").at("value").get<double>(),
               6.0 * (300.5 - 100.25 - capacity_J * 0.9 / 6.0), 1e-6);
+}
+
+// A level plate at rest under an even Sun: the run ends in the steady state of `power`, in still
+// air and in orbit's surroundings alike.
+TEST_F(CoupledCommand, CellsEndInTheSteadyStateOfPower) {
+  const std::string even = R"([[source]]
+kind = "sun"
+irradiance_W_m2 = 1000
+angular_radius_deg = 0.27
+direction = [0, 0, -1]
+)";
+  const std::string file = experiment(even, "[array.thermal]\ncapacity_J_m2_K = 200\n");
+  for (const std::string around :
+       {"", " --set array.thermal.convection_W_m2_K=0 --set array.thermal.surroundings_K=3"}) {
+    const Outcome still = run("power " + file + around + " --out " + at("p"));
+    ASSERT_EQ(still.status, 0) << still.err;
+    const Outcome moving =
+        run("propagate " + file + around +
+            " --set propagate.initial_tilt_deg=0 --set propagate.initial_rate_rad_s=[0,0,0]"
+            " --set propagate.duration_s=400 --out " +
+            at("o"));
+    ASSERT_EQ(moving.status, 0) << moving.err;
+    const auto figure = [](const json& all, const char* name) {
+      return all.at(name).at("value").get<double>();
+    };
+    const double steady_K = figure(summary("p"), "cell_temperature_K");
+    EXPECT_GT(steady_K, 300.0);
+    EXPECT_NEAR(figure(summary("o"), "cell_temperature_K"), steady_K, 0.02);
+    const double steady_W = figure(summary("p"), "array_power_W");
+    EXPECT_NEAR(table("o/power.csv").at("array_power_W").back(), steady_W, 1e-3 * steady_W);
+    EXPECT_THAT(moving.out, HasSubstr("cells at the end"));
+  }
 }
 
 TEST_F(CoupledCommand, ATableIsKeptByTheContentOfItsInputs) {

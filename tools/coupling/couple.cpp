@@ -153,7 +153,6 @@ std::optional<PowerSupply> supply_of(const ExperimentFile& file, const LightMode
   double stored_J = 0.0;
   if (light.day()) {
     const DaySettings& day = *light.day();
-    design.heat = day.heat;
     design.battery = battery_of(file, day, run.model.platform);
     design.converter_efficiency = day.converter_efficiency;
     design.load_W = day.load_W;

@@ -235,7 +235,7 @@ std::string LightModel::content_key(const ExperimentFile& file) const {
   if (file.settings.has("array")) {
     // Keys behind the cells do not change the light.
     text += "array" + written_out(file.settings.raw("array"),
-                                  {"day", "tracker", "target", "layout", "chain"});
+                                  {"day", "thermal", "tracker", "target", "layout", "chain"});
   }
   for (const auto& [name, hash] : inputs_) {
     if (name != file.path.filename().string() && !name.starts_with("--set ")) text += hash;

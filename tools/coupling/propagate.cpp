@@ -118,6 +118,9 @@ MotionRun run_propagate(const RunOptions& options, const Console& console,
       full, console, experiment.file(), *run, checkpoint,
       checkpoint == nullptr ? std::string() : identity(result.provenance, seen)));
   PropagationResult& motion = coupled->motion;
+  if (coupled->beside) {
+    if (auto hot = hot_cells(*coupled->beside)) coupled->warnings.push_back(std::move(*hot));
+  }
   if (coupled->light) add_inputs(result.provenance, coupled->light->inputs());
   add_inputs(result.provenance, seen);
   add_inputs(result.provenance, further.inputs);

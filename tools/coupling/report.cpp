@@ -20,9 +20,9 @@ std::vector<EnergyRow> energy_rows(const CoupledRun& run) {
   std::vector<EnergyRow> rows;
   if (run.emitted_J() > 0.0) rows.push_back({"light emitted by lamps", run.emitted_J()});
   rows.push_back({"light on the cells", e.on_cells.value()});
-  if (supply.design().heat) {
+  if (supply.design().array.heat) {
     rows.push_back({"reflected by the cells", e.reflected.value()});
-    rows.push_back({"heat given to the air", e.convected.value()});
+    rows.push_back({"heat given off by the cells", e.given_off.value()});
   }
   rows.push_back({"electric, from the array", e.array.value()});
   rows.push_back({"electric, at the array's best point", e.best.value()});
@@ -199,6 +199,12 @@ void print_light_table(const Console& console, const RotationTable& table) {
   }
 }
 
+std::optional<std::string> hot_cells(const CoupledRun& run) {
+  if (run.rows().empty()) return {};
+  const auto hottest = std::ranges::max_element(run.rows(), {}, &PowerRow::temperature_K);
+  return above_rated(run.supply()->design().array, hottest->temperature_K);
+}
+
 Product power_product(const CoupledRun& run, const Product& history, size_t max_rows) {
   Product product;
   if (run.rows().empty()) return product;
@@ -251,7 +257,11 @@ void print_power(const Console& console, const CoupledRun& run) {
                  show(std::sqrt(error.sum_squares / static_cast<double>(error.count))) + " N m");
   }
   if (!run.supply()) return;
+  const ArrayDesign& array = run.supply()->design().array;
   console.heading("Energy");
+  console.line("  " + padded("cells at the end", 38) +
+               show_temperature(run.supply()->temperature_K()) + ", " +
+               (array.heat ? array.heat->in_words() : origin_of_temperature(array)));
   for (const EnergyRow& row : energy_rows(run)) {
     console.line("  " + padded(row.name, 38) + show(row.energy_J / 3600.0) + " Wh");
   }

@@ -1,6 +1,9 @@
 // The results of a run in light, as figures, tables, plots and text.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "core/product.h"
 #include "tools/coupling/coupled_run.h"
 #include "tools/runs/console.h"
@@ -16,6 +19,8 @@ void print_light_table(const Console& console, const RotationTable& table);
 // is the product of the motion.
 Product power_product(const CoupledRun& run, const Product& history, size_t max_rows);
 void print_power(const Console& console, const CoupledRun& run);
+// A warning of cells that were warmer than they are rated; none where they were not.
+std::optional<std::string> hot_cells(const CoupledRun& run);
 
 // How still the body's z axis stands, from the true attitudes at even times.
 // Source of the measures: ECSS-E-ST-60-10C (absolute error, and relative error over a window).

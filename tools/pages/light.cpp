@@ -178,8 +178,13 @@ RunFile page_file(RunPage page) {
 RunFile light_page(const OpticalRun& run, const OpticalResult& light, const RunResult& result,
                    const PageHead& head) {
   const std::vector<std::string> of_trace = {"emitted_W", "power_on_", "absorbed_W", "escaped_W"};
-  const std::vector<std::string> of_power = {"array_power_W", "emitted_W", "power_on_cells_W",
-                                             "array_efficiency", "light_to_electric_efficiency"};
+  const std::vector<std::string> of_power = {"array_power_W",
+                                             "emitted_W",
+                                             "power_on_cells_W",
+                                             "array_efficiency",
+                                             "light_to_electric_efficiency",
+                                             "cell_temperature_K",
+                                             "array_power_slope_W_K"};
   return page_file(lit_page(run, light, result, head, head.verb == "power" ? of_power : of_trace));
 }
 

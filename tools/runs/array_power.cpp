@@ -2,9 +2,12 @@
 
 #include <algorithm>
 
+#include "attitude/environment/environment.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/text/format.h"
 #include "photovoltaics/array/incidence.h"
+#include "photovoltaics/array/keys.h"
 
 namespace photorque {
 
@@ -63,6 +66,19 @@ void read_responsivity(OpticalRun& run, ArrayPower& array) {
   array.ideal_responsivity_A_W = over_bands({{1e-8, 1e-4}, {1.0, 1.0}});
 }
 
+// Air as [environment] has it; none around a platform in orbit.
+Surroundings surroundings_of(const ExperimentFile& file) {
+  Surroundings around;
+  for (const Settings& environment : file.others("environment")) {
+    const Environment e = read_environment(environment);
+    around = {e.air_temperature_K, e.air_pressure_Pa, e.air_pressure_Pa == 0.0};
+  }
+  for (const Settings& disturbance : file.others("disturbance")) {
+    if (disturbance.text_or("kind", "") == "orbit") around.is_vacuum = true;
+  }
+  return around;
+}
+
 }  // namespace
 
 ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known) {
@@ -77,6 +93,8 @@ ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known) {
   const FluxMapReceiver& map = run.flux_map(array.flux_map);
   array.design =
       read_array_design(tables[0], read_cell_places(tables[0], experiment.scene, map.grid()));
+  const CellHeat heat = read_cell_heat(tables[0], surroundings_of(experiment.file));
+  if (!tables[0].has(array_key::temperature)) array.design.heat = heat;
   array.report = read_array_report(tables[0], read_published(experiment.file.others("published")));
   tables[0].finish();
 
@@ -101,11 +119,58 @@ ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known) {
 ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const TraceResult& result) {
   const ArrayLight light = array_light(run.flux_map(array.flux_map), result.sums[array.flux_map],
                                        array.incidence ? result.sums[*array.incidence] : BinSums{});
-  return evaluate_array(array.design, light, array.responsivity_A_W);
+  ArrayResult power = evaluate_array(array.design, light, array.responsivity_A_W);
+  const double delivered = power.efficiency.value;
+  const bool too_dark = array.design.heat && array.design.heat->absorptance < delivered;
+  // More than all of the light is the fault of the cells.
+  if (too_dark && delivered <= 1.0) {
+    throw InputError({run.experiment().file.path.string()}, "array.thermal.absorptance",
+                     show(array.design.heat->absorptance),
+                     "at least what the cells deliver of the light on them, " + show(delivered));
+  }
+  return power;
 }
 
-Product array_power_product(const ArrayResult& array, const TraceResult& result) {
+ArrayPower held_at(ArrayPower array, const ArrayResult& result) {
+  array.design.temperature_K = result.temperature_K.value;
+  array.design.heat.reset();
+  return array;
+}
+
+std::string origin_of_temperature(const ArrayDesign& design) {
+  return design.heat ? "steady state: " + design.heat->in_words() : "as stated";
+}
+
+std::string show_temperature(double kelvin) {
+  return show(kelvin) + " K (" + readable_number(kelvin - 273.15, 3) + " °C)";
+}
+
+std::optional<std::string> above_rated(const ArrayDesign& design, double kelvin) {
+  if (!(kelvin > design.rated_temperature_K)) return {};
+  return "cells of " + show_temperature(kelvin) + " are above array.rated_temperature_K, " +
+         show_temperature(design.rated_temperature_K) +
+         ": less light, more cooling ([array.thermal]), or cells that are rated for it" +
+         (kelvin >= hottest_cell_K
+              ? "; no cells are computed at more than " + show(hottest_cell_K) + " K"
+              : "");
+}
+
+Product array_power_product(const ArrayDesign& design, const ArrayResult& array,
+                            const TraceResult& result) {
   Product product = array_product(array);
+  product.quantities.push_back({"cell_temperature_is_stated", {design.heat ? 0.0 : 1.0, 0.0}});
+  product.quantities.push_back({"cell_temperature_above_rated_K",
+                                {array.temperature_K.value - design.rated_temperature_K,
+                                 array.temperature_K.standard_error}});
+  Table temperature =
+      Table::of("cell_temperature", "The temperature of the cells",
+                {"origin", "cell_temperature_K", "array_power_slope_W_K", "rated_temperature_K"});
+  temperature.row()
+      .set("origin", origin_of_temperature(design))
+      .set("cell_temperature_K", array.temperature_K.value)
+      .set("array_power_slope_W_K", array.power_per_K_W)
+      .set("rated_temperature_K", design.rated_temperature_K);
+  product.tables.push_back(std::move(temperature));
   const double emitted = result.power_balance.emitted_W;
   const auto over_emitted = [&](const Estimate& power) {
     return Estimate{power.value / emitted, power.standard_error / emitted};
@@ -115,7 +180,8 @@ Product array_power_product(const ArrayResult& array, const TraceResult& result)
   return product;
 }
 
-void print_array(const Console& console, const ArrayResult& array, const TraceResult& result) {
+void print_array(const Console& console, const ArrayDesign& design, const ArrayResult& array,
+                 const TraceResult& result) {
   const double emitted = result.power_balance.emitted_W;
   console.heading("Solar array (maximum power point)");
   console.line("  light on the cells      " + show(array.power_on_cells_W, "W") + "  (" +
@@ -124,6 +190,12 @@ void print_array(const Console& console, const ArrayResult& array, const TraceRe
                show(100 * array.efficiency.value) + " % of the light on the cells)");
   console.line("  voltage, current        " + show(array.voltage_V, "V") + ", " +
                show(array.current_A, "A"));
+  console.line("  cell temperature        " + show_temperature(array.temperature_K.value) + ", " +
+               origin_of_temperature(design));
+  if (array.power_W.value > 0.0) {
+    console.line("  power over temperature  " + show(array.power_per_K_W) + " W/K  (" +
+                 show(100.0 * array.power_per_K_W / array.power_W.value) + " %/K)");
+  }
   console.line("  sum of cell maxima      " + show(array.sum_of_cells_W, "W") + "  (" +
                show(100 * array.mismatch_loss.value) + " % lost to uneven light and diodes)");
   if (array.mismatch_loss.value > 0.2) {

@@ -28,12 +28,27 @@ struct ArrayPower {
 // `known`: the array of a run with the same lamps, whose spectra need not be looked at again.
 ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known = nullptr);
 
+// In the steady state where the temperature of the cells is not stated. InputError where they
+// deliver more than they absorb.
 ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const TraceResult& result);
+
+// The same array with its cells at the temperature of `result`, whatever the light.
+ArrayPower held_at(ArrayPower array, const ArrayResult& result);
+
+// "steady state: both faces in still air of 293.15 K, emissivity 0.84", or "as stated".
+std::string origin_of_temperature(const ArrayDesign& design);
+// "331 K (58 °C)"
+std::string show_temperature(double kelvin);
+// A warning of cells that are warmer than they are rated; none where they are not.
+std::optional<std::string> above_rated(const ArrayDesign& design, double kelvin);
 
 // array_product() and the fractions that need the emitted power: "illumination_efficiency" (power
 // on the cells over emitted) and "light_to_electric_efficiency".
-Product array_power_product(const ArrayResult& array, const TraceResult& result);
+// And the table "cell_temperature": whence it is, and what the power loses per kelvin.
+Product array_power_product(const ArrayDesign& design, const ArrayResult& array,
+                            const TraceResult& result);
 
-void print_array(const Console& console, const ArrayResult& array, const TraceResult& result);
+void print_array(const Console& console, const ArrayDesign& design, const ArrayResult& array,
+                 const TraceResult& result);
 
 }  // namespace photorque

@@ -224,20 +224,16 @@ void print_uniformity(const Console& console, const Table& table) {
   }
 }
 
-// The warmest cells may absorb no less than they deliver.
-void check_heat(const DaySettings& day, const ArrayResult& result,
-                const std::filesystem::path& experiment) {
-  const double fraction = result.power_W.value / result.power_on_cells_W.value;
-  if (!day.lamps_on || !day.heat || !(day.heat->absorptance < fraction)) return;
-  throw InputError({experiment.string()}, "array.day.absorptance", show(day.heat->absorptance),
-                   "at least what the cells deliver of the light on them, " + show(fraction));
+// The cells as `result` has them, free to cool and to warm up.
+ArrayDesign day_design(ArrayDesign design, const ArrayResult& result) {
+  design.temperature_K = result.temperature_K.value;
+  return design;
 }
 
-Product day_report(const Console& console, const ArrayPower& array, const ArrayResult& result,
-                   double tracker_efficiency) {
-  DaySettings settings = *array.report.day;
+Product day_report(const Console& console, const ArrayDesign& design, DaySettings settings,
+                   const ArrayResult& result, double tracker_efficiency) {
   settings.tracker_efficiency = tracker_efficiency;
-  const DayResult day = run_day(array.design, result, settings);
+  const DayResult day = run_day(design, result, settings);
   const double hours = settings.duration_s / 3600.0;
   const double capacity_Wh = settings.battery.capacity_J / 3600.0;
   console.heading("Array and battery over " + show(hours) + " h");
@@ -297,9 +293,10 @@ Product layout_report(const Console& console, const ArrayPower& array, const Cel
 
 }  // namespace
 
-Product report_array(const Console& console, const OpticalRun& run, const ArrayPower& array,
+Product report_array(const Console& console, const OpticalRun& run, const ArrayPower& read,
                      const TraceResult& traced, const ArrayResult& result) {
   Product product;
+  const ArrayPower array = held_at(read, result);
   const ArrayReport& report = array.report;
   std::vector<std::vector<double>> lights = {result.cell_photocurrent_A};
   LossInputs in = loss_inputs(array, run, traced);
@@ -329,8 +326,8 @@ Product report_array(const Console& console, const OpticalRun& run, const ArrayP
                                   in, attitude.tilt_rad));
   }
   if (report.day) {
-    check_heat(*report.day, result, run.experiment().file.path);
-    append(product, day_report(console, array, result, in.tracker_efficiency.value_or(1.0)));
+    append(product, day_report(console, day_design(read.design, result), *report.day, result,
+                               in.tracker_efficiency.value_or(1.0)));
   }
   if (report.layout_most_tried)
     append(product, layout_report(console, array, tables_for(array, result, lights), lights));

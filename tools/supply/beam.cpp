@@ -76,10 +76,17 @@ SupplyOption beam_option(const BeamSettings& beam, const SupplyTask& task, const
                             {}});
     const double emitted_W = light.power_balance.emitted_W;
     if (t == 0) {
+      option.remarks = {"as traced: " + beam.experiment + "; cells at " +
+                        show_temperature(power.temperature_K.value) + ", " +
+                        origin_of_temperature(array.design)};
+      if (auto warning = above_rated(array.design, power.temperature_K.value)) {
+        option.remarks.push_back(std::move(*warning));
+      }
       option.source_W = {emitted_W / beam.lamp_efficiency, 0.0};
       option.figures = {{"emitted_W", {emitted_W, 0.0}},
                         {"light_on_cells_fraction", ratio(power.power_on_cells_W, emitted_W)},
                         {"conversion_fraction", power.efficiency},
+                        {"cell_temperature_K", power.temperature_K},
                         {"array_W", power.power_W}};
     }
     if (t + 1 == task.tilt_rad.size()) {
@@ -89,7 +96,6 @@ SupplyOption beam_option(const BeamSettings& beam, const SupplyTask& task, const
     if (progress) progress(static_cast<double>(t + 1) / static_cast<double>(task.tilt_rad.size()));
   }
   console.done();
-  option.remarks = {"as traced: " + beam.experiment};
   return option;
 }
 

@@ -117,7 +117,7 @@ Table paper_supply_table(const SupplyTrade& trade) {
   row("light_on_cells", 0.90, figure(light, "light_on_cells_fraction"),
       "90.2 % on the array; gaps of 1 mm between cells take the rest");
   row("conversion_730_nm", 0.38, figure(light, "conversion_fraction"),
-      "0.95 electrons a photon, 0.73 V a cell, uneven light in series; inside the paper's 30 to 40 "
+      "0.95 electrons a photon, 0.72 V a cell, uneven light in series; inside the paper's 30 to 40 "
       "%");
   row("array_0_deg_W", 30.0, figure(light, "array_W"), "follows from the two above");
   row("array_30_deg_W", 23.0, figure(light, "sum_of_cells_tilted_W"),

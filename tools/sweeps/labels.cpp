@@ -12,8 +12,9 @@ namespace photorque {
 namespace {
 
 // Units whose parts are divided, or that have special letters.
-constexpr std::array<std::pair<const char*, const char*>, 15> unit_texts = {
+constexpr std::array<std::pair<const char*, const char*>, 16> unit_texts = {
     {{"W_m2", "W/m²"},
+     {"W_K", "W/K"},
      {"mW_cm2", "mW/cm²"},
      {"uN_m", "µN m"},
      {"m_s2", "m/s²"},

@@ -13,6 +13,9 @@ namespace photorque {
 namespace {
 
 constexpr const char* error_suffix = "_standard_error";
+// Of `power`: that of the cells that an array was computed with.
+constexpr const char* cell_temperature = "cell_temperature_K";
+constexpr const char* above_rated = "cell_temperature_above_rated_K";
 
 double not_a_number() {
   return std::numeric_limits<double>::quiet_NaN();
@@ -185,6 +188,7 @@ Product sweep_product(const SweepPlan& plan, const SweepResult& result) {
       if (result.nominal) add("nominal_" + column, *result.nominal, column);
     }
   }
+  add(std::string("best_") + cell_temperature, result.designs[*result.best], cell_temperature);
   append_built(product, plan, result);
   return product;
 }
@@ -226,6 +230,8 @@ void print_best(const Console& console, const SweepPlan& plan, const SweepResult
             " built copies reach",
         reached(result.built_best), reached(result.built_nominal));
   }
+  row(cell_temperature, figure_of(result.designs[*result.best], cell_temperature),
+      result.nominal ? figure_of(*result.nominal, cell_temperature) : std::nullopt);
   if (result.nominal && !result.nominal->error.empty()) {
     console.line("  the experiment as it stands fails: " + result.nominal->error);
   }
@@ -243,6 +249,13 @@ std::vector<std::string> sweep_warnings(const SweepPlan& plan, const SweepResult
   }
   if (!plan.objectives.empty() && !result.best) {
     lines.emplace_back("no design keeps to the constraints");
+  }
+  const auto hot_K = result.best ? figure_of(result.designs[*result.best], above_rated)
+                                 : std::optional<Estimate>{};
+  if (hot_K && hot_K->value > 0.0) {
+    lines.push_back("the cells of the best design are " + show(hot_K->value) +
+                    " K above array.rated_temperature_K; a [[sweep.constraint]] with figure = \"" +
+                    above_rated + "\" and at_most = 0 keeps designs below it");
   }
   return lines;
 }

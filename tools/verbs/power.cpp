@@ -21,10 +21,13 @@ PowerRun run_power(const RunOptions& options, const Console& console) {
         "the array delivers more than the light on its cells: the numbers of its diodes are "
         "those of no solar cell");
   }
+  if (auto warning = above_rated(array.design, power.temperature_K.value)) {
+    run->warn(std::move(*warning));
+  }
   print_trace(console, *run, light);
-  print_array(console, power, light);
+  print_array(console, array.design, power, light);
   Product product = run->product(light);
-  append(product, array_power_product(power, light));
+  append(product, array_power_product(array.design, power, light));
   append(product, report_array(console, *run, array, light, power));
   append(product, compare_published(array.report.published, experiment.file.attitude.tilt_rad,
                                     product, console));
@@ -62,7 +65,7 @@ Verb kind() {
           "Trace, then the solar array: current-voltage curve and maximum power point",
           command_with(add_options, run),
           {"scene", "material", "source", "receiver", "joint", "attitude", "trace", "array",
-           "published", "effect"},
+           "published", "effect", "environment", "disturbance"},
           "[array]",
           [](const RunOptions& options) { return run_power(options, Console()).result; }};
 }

@@ -1,0 +1,81 @@
+// How warm the cells of an array are: a plate that takes up light, delivers electric power, and
+// gives off heat by convection and radiation.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/settings/settings.h"
+
+namespace photorque {
+
+// Cells are computed at no other temperatures: colder or hotter ones as at these.
+inline constexpr double coldest_cell_K = 100.0, hottest_cell_K = 1000.0;
+
+// Around the array, where `[array.thermal]` does not state otherwise.
+struct Surroundings {
+  double air_K = 293.15;
+  double air_pressure_Pa = 101325.0;
+  bool is_vacuum = false;
+};
+
+// One temperature T for all cells. Per area of the cells, with n faces:
+//   C dT/dt = α E − P/A − n (h (T − T_air) + ε σ (T⁴ − T_s⁴))
+// α E is the absorbed light, P the electric power. Where h is not stated it is that of natural
+// convection at a vertical plate as high as the square of all cells (S. W. Churchill, H. H. S. Chu,
+// Int. J. Heat Mass Transfer 18 (1975) 1323, eq. 9; 15 % of h over all Rayleigh numbers), with the
+// properties of dry air at the mean of T and T_air. Conduction into the platform is left out.
+struct CellHeat {
+  double air_K = 293.15;  // T_air
+  double air_pressure_Pa = 101325.0;
+  double surroundings_K = 293.15;                // T_s, that the faces radiate to
+  std::optional<double> convection_W_m2_K = {};  // h of each face; none: natural convection
+  double emissivity = 0.84;                      // ε of each face
+  double absorptance = 0.93;                     // α of the light that falls on the cells
+  int faces = 2;                                 // n
+  double capacity_J_m2_K = 2000.0;               // C: a cell with 1 mm of glass has about 2 kJ/m²K
+  double start_K = 293.15;                       // where a run over time begins
+
+  // "both faces in still air of 293.15 K, emissivity 0.84"
+  std::string in_words() const;
+};
+
+// The balance of a plate of one area.
+class CellPlate {
+ public:
+  CellPlate(const CellHeat& heat, double area_m2);
+
+  // Given off by all faces, per area of the cells; rises with the temperature.
+  double loss_W_m2(double temperature_K) const;
+  double loss_slope_W_m2_K(double temperature_K) const;
+  // Where it is `loss_W_m2`, within [1 K, hottest_cell_K].
+  double temperature_at_loss_K(double loss_W_m2) const;
+
+  // The temperature in light of an irradiance for good. `electric_W_m2` is the power delivered per
+  // area over the temperature, no steeper than the loss. Within [coldest_cell_K, hottest_cell_K]
+  // and good to 1e-8 of the value.
+  double steady_K(double light_W_m2, const std::function<double(double)>& electric_W_m2) const;
+
+  // A time of constant heating α E − P/A; second order in the time, and at rest in the steady
+  // state.
+  struct Step {
+    double end_K = 0.0;
+    double given_off_J_m2 = 0.0;
+  };
+  Step step(double from_K, double heating_W_m2, double step_s) const;
+
+ private:
+  double natural_convection_W_m2_K(double temperature_K) const;
+
+  CellHeat heat_;
+  double side_m_;
+};
+
+// Reads `[array.thermal]` of the table `[array]`, all keys optional: air_K, surroundings_K,
+// convection_W_m2_K, emissivity, absorptance, faces, capacity_J_m2_K, start_K. What is not stated
+// is that of `around`; in a vacuum there is no convection, and the faces radiate to deep space
+// (2.725 K). InputError for a plate that can give off no heat.
+CellHeat read_cell_heat(const Settings& array, const Surroundings& around);
+
+}  // namespace photorque
