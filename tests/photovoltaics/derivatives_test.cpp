@@ -56,6 +56,22 @@ std::vector<ArrayUnderTest> arrays_under_test() {
   std::vector<ArrayUnderTest> all = {
       ArrayUnderTest(1), ArrayUnderTest(2), ArrayUnderTest(1, Diode::Kind::junction),
       ArrayUnderTest(2, Diode::Kind::junction), ArrayUnderTest(2, Diode::Kind::junction, true)};
+  // Pairs of pairs in parallel, beside diodes of both kinds.
+  for (const Diode::Kind kind : {Diode::Kind::clamp, Diode::Kind::junction}) {
+    ArrayUnderTest nested(1);
+    Diode d;
+    d.kind = kind;
+    using Join = CellGroup::Join;
+    std::vector<CellGroup> groups;
+    for (int first = 0; first < columns * rows; first += 4) {
+      groups.push_back({Join::parallel,
+                        {{Join::series, {first, first + 1}, first == 4 ? d : Diode{}},
+                         {Join::series, {first + 2, first + 3}, first == 4 ? d : Diode{}}},
+                        first == 4 ? Diode{} : d});
+    }
+    nested.wiring = wiring_of({Join::series, groups}, {});
+    all.push_back(nested);
+  }
   const size_t plain = all.size();
   for (size_t i = 0; i < plain; ++i) {
     ArrayUnderTest with_resistance = all[i];
