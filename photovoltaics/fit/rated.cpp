@@ -374,10 +374,16 @@ RatedPoint RatedFit::predict(double irradiance_W_m2, double temperature_K) const
   const double first_W_m2 =
       CellCurve(model.reference).short_circuit_A(diode.photocurrent_A.value) / short_circuit_A_m2_W;
   const CellParameters warm = parameters_at(model, 1.0, temperature_K);
-  const CellCurve cell(in_light(warm, warm.shunt_light_A * irradiance_W_m2 / first_W_m2));
-  const double short_circuit_A =
+  const double suns = irradiance_W_m2 / first_W_m2;
+  const CellCurve cell(in_light(warm, warm.shunt_light_A * suns));
+  double short_circuit_A =
       short_circuit_A_m2_W * irradiance_W_m2 * photocurrent_factor(model, temperature_K);
-  const double light_A = cell.photocurrent_A(short_circuit_A);
+  double light_A = cell.photocurrent_A(short_circuit_A);
+  if (shunt_law == ShuntLaw::inverse) {
+    // The photocurrent is proportional to the light; what the shunt takes of it is not.
+    light_A = warm.shunt_light_A * suns;
+    short_circuit_A = cell.short_circuit_A(light_A);
+  }
   const CellOperatingPoint best = cell.maximum_power(light_A);
   return {irradiance_W_m2, temperature_K, short_circuit_A, cell.open_circuit_V(light_A),
           best.current_A,  best.voltage_V};

@@ -132,6 +132,34 @@ TEST(PhotovoltaicDerivatives, EveryLawOfTheDiodeGivesTheSameMaxima) {
   }
 }
 
+// A shunt that changes with the light is in each cell the one that its light makes.
+TEST(PhotovoltaicChanges, ShuntsFollowTheLightOfTheirCells) {
+  CellParameters changing = a_cell();
+  changing.shunt_ohm = 2.0;
+  changing.shunt_light_A = 1.0;
+  for (const int strings : {1, 2}) {
+    const ArrayUnderTest array(strings);
+    CellTables stated;
+    for (const double light_A : array.photocurrents_A) {
+      CellParameters p = a_cell();
+      p.shunt_ohm = 2.0 / light_A;
+      stated.push_back(diode_voltage_law(p));
+    }
+    const size_t cells = array.photocurrents_A.size();
+    const ArrayCurve by_light(array.wiring, CellTables(cells, diode_voltage_law(changing)),
+                              array.photocurrents_A);
+    const ArrayCurve by_cell(array.wiring, stated, array.photocurrents_A);
+    EXPECT_NEAR(by_light.maximum_power().power_W(), by_cell.maximum_power().power_W(), 1e-12);
+    // It matters: a constant one gives another maximum.
+    changing.shunt_light_A = 0.0;
+    const ArrayCurve constant(array.wiring, CellTables(cells, diode_voltage_law(changing)),
+                              array.photocurrents_A);
+    EXPECT_GT(std::abs(constant.maximum_power().power_W() - by_cell.maximum_power().power_W()),
+              1e-3);
+    changing.shunt_light_A = 1.0;
+  }
+}
+
 TEST(PhotovoltaicChanges, ResistanceTakesItsVoltage) {
   for (const int strings : {1, 2}) {
     ArrayUnderTest array(strings);
