@@ -200,7 +200,7 @@ inference::Fit best_fit(Task& task, const VectorXd& start, std::vector<OutlierRe
 void describe_light(const Task& task, ConditionsFit& result) {
   // ln(I_L/G) = c + α (T − T₀) by least squares.
   const double T0 = task.reference_K();
-  double n = 0.0, sum_t = 0.0, sum_tt = 0.0, sum_y = 0.0, sum_ty = 0.0;
+  double n = 0.0, sum_t = 0.0, sum_tt = 0.0, sum_y = 0.0, sum_ty = 0.0, sum_yy = 0.0;
   for (size_t k = 0; k < task.curves.size(); ++k) {
     const CurveAt& curve = task.curves[k];
     if (!(curve.irradiance_W_m2 > 0.0)) return;
@@ -211,10 +211,15 @@ void describe_light(const Task& task, ConditionsFit& result) {
     sum_tt += t * t;
     sum_y += y;
     sum_ty += t * y;
+    sum_yy += y * y;
   }
   const double spread = n * sum_tt - sum_t * sum_t;
   const double slope = task.fits_gap ? (n * sum_ty - sum_t * sum_y) / spread : 0.0;
   result.model.photocurrent_slope_1_K = slope;
+  if (task.fits_gap && n > 2.0) {
+    const double left = sum_yy - sum_y * sum_y / n - slope * slope * spread / n;
+    result.photocurrent_slope_error_1_K = std::sqrt(std::max(0.0, left) / (n - 2.0) * n / spread);
+  }
   result.photocurrent_A_m2_W = std::exp((sum_y - slope * sum_t) / n);
 }
 

@@ -31,8 +31,9 @@ struct ConditionsFit {
   double variance = 0.0;  // per degree of freedom, in units of the noise given
   size_t points = 0;
   // The photocurrent by the irradiance, where all curves state one: at the first temperature, and
-  // its slope, where there are several temperatures.
+  // the error of its slope in the model, where there are several temperatures.
   double photocurrent_A_m2_W = 0.0;
+  double photocurrent_slope_error_1_K = 0.0;
 };
 
 // I₀, n, R_s and R_sh shared by all curves, and a photocurrent for each; between temperatures I₀

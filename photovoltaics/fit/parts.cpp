@@ -210,11 +210,19 @@ bool take_outliers(std::span<IvSweep* const> sweeps, const std::vector<std::vect
   std::ranges::nth_element(all, middle);
   constexpr double of_median = 1.4826;  // a normal variable's standard deviation
   const double limit = far * std::max(1.0, of_median * *middle);
+  // More than two in a row are a part of the curve, a step of a shadow, say.
+  constexpr size_t longest = 2;
+  std::vector<std::vector<char>> is_out(sweeps.size());
   std::vector<OutlierReading> found;
   for (size_t s = 0; s < sweeps.size(); ++s) {
-    for (size_t i = 0; i < off[s].size(); ++i) {
-      if (!(off[s][i] > limit)) continue;
-      found.push_back({s, sweeps[s]->voltage_V[i], sweeps[s]->current_A[i]});
+    is_out[s].assign(off[s].size(), 0);
+    for (size_t i = 0, end = 0; i < off[s].size(); i = end + 1) {
+      for (end = i; end < off[s].size() && off[s][end] > limit;) ++end;
+      if (end - i > longest) continue;
+      for (size_t k = i; k < end; ++k) {
+        is_out[s][k] = 1;
+        found.push_back({s, sweeps[s]->voltage_V[k], sweeps[s]->current_A[k]});
+      }
     }
   }
   const auto count = static_cast<double>(found.size() + taken.size());
@@ -222,7 +230,7 @@ bool take_outliers(std::span<IvSweep* const> sweeps, const std::vector<std::vect
   for (size_t s = 0; s < sweeps.size(); ++s) {
     IvSweep kept;
     for (size_t i = 0; i < off[s].size(); ++i) {
-      if (off[s][i] > limit) continue;
+      if (is_out[s][i] != 0) continue;
       kept.voltage_V.push_back(sweeps[s]->voltage_V[i]);
       kept.current_A.push_back(sweeps[s]->current_A[i]);
     }

@@ -80,8 +80,8 @@ std::vector<BoundReached> bounds_reached(const inference::Fit& best,
                                          std::span<const NamedBound> named, Eigen::Index first = 0);
 
 // Takes readings out of sweeps that no errors explain, from how many of its errors each reading is
-// `off` its curve; whether there were any. Many are no accident: then the curve is another than a
-// diode's, and all stay.
+// `off` its curve; whether there were any. Many, or more than two in a row, are no accident: then
+// the curve is another than a diode's, and they stay.
 bool take_outliers(std::span<IvSweep* const> sweeps, const std::vector<std::vector<double>>& off,
                    std::vector<OutlierReading>& taken);
 

@@ -296,7 +296,8 @@ Product fit_several_conditions(const FitTask& task, const Console& console) {
   const bool has_gap = fit.gap_error_eV > 0.0, has_light = fit.photocurrent_A_m2_W > 0.0;
   if (has_gap) rows.push_back({"gap_eV", {fit.model.gap_eV, fit.gap_error_eV}});
   if (has_gap && has_light) {
-    rows.push_back({"photocurrent_slope_per_K", {fit.model.photocurrent_slope_1_K, 0.0}});
+    rows.push_back({"photocurrent_slope_per_K",
+                    {fit.model.photocurrent_slope_1_K, fit.photocurrent_slope_error_1_K}});
   }
   if (has_light) rows.push_back({"photocurrent_A_m2_W", {fit.photocurrent_A_m2_W, 0.0}});
   rows.push_back({"rms_fraction", {fit.rms, 0.0}});
