@@ -146,8 +146,8 @@ struct RatedFit {
 // there are more figures than parameters. What one diode cannot describe at all is in neither, nor
 // is, for one point alone, that the ideality was assumed.
 //
-// The shunt follows `shunt_law`; without one, points at several irradiances are fitted by both laws
-// and the one that leaves less is taken.
+// The shunt follows `shunt_law`; without one it is constant, unless points at several irradiances
+// leave less than half by the inverse law.
 RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureSlopes& slopes,
                           double ideality_guess_V, const RatedTolerance& tolerance = {},
                           std::optional<ShuntLaw> shunt_law = ShuntLaw::constant);

@@ -334,8 +334,10 @@ RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureS
   if (!shunt_law && differs(&RatedPoint::irradiance_W_m2)) {
     const Figures inverse{points, ShuntLaw::inverse};
     inference::Fit trial = best_fit(inverse, ideality_guess_V);
-    other_chi2 = std::max(best.chi2, trial.chi2);
-    if (trial.chi2 < best.chi2) {
+    other_chi2 = trial.chi2;
+    constexpr double decisive = 0.25;  // half the rms
+    if (trial.chi2 < decisive * best.chi2) {
+      other_chi2 = best.chi2;
       figures = inverse;
       best = std::move(trial);
     }

@@ -19,8 +19,8 @@ inline constexpr NumberKey curve_temperature("temperature_K", {1.0, 1000.0}, "of
                                              {.usually = "that in the file, else that of `[fit]`"});
 inline constexpr ChoiceKey shunt(
     "shunt", {"best", "constant", "inverse"}, 0,
-    "R_sh in any light, or inversely proportional to the irradiance (De Soto, CEC); `best`: what "
-    "leaves less, where there are several lights");
+    "R_sh in any light, or inversely proportional to the irradiance (De Soto, CEC); `best`: of "
+    "several lights, what describes them better");
 inline constexpr TablesKey datasheet("datasheet", "one to several points at one temperature");
 inline constexpr IntegerKey cells_in_series("cells_in_series", 1, 1, 2000, "of the device");
 inline constexpr NumberKey temperature(
