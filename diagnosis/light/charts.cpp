@@ -15,8 +15,8 @@ std::vector<size_t> wired_cells(const ArrayWiring& wiring, bool of_string, size_
   for (const ArrayWiring::String& s : wiring.strings) {
     for (const ArrayWiring::Substring& part : s.substrings) {
       if ((of_string ? string : bypass) == number) {
-        for (const std::vector<int>& row : part.rows) {
-          cells.insert(cells.end(), row.begin(), row.end());
+        for (const CellGroup& row : part.rows) {
+          row.for_each_cell([&](int cell) { cells.push_back(static_cast<size_t>(cell)); });
         }
       }
       ++bypass;

@@ -206,7 +206,8 @@ Headline headline(const PreparedArray& array, const LightBins& bins) {
   const double light_W = sum_of(light.incident_W);
   double alone_W = 0.0;
   for (size_t i = 0; i < light.current_A.size(); ++i) {
-    alone_W += array.tables[i]->curve().maximum_power(light.current_A[i]).power_W();
+    const auto law = law_in_light(array.tables[i], light.current_A[i]);
+    alone_W += law->curve().maximum_power(light.current_A[i]).power_W();
   }
   const double power_W = best.power_W();
   return {{power_W, best.voltage_V, best.current_A, light_W, sum_of(light.entering_W), alone_W,

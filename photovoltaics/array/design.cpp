@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
 
+#include "core/text/parse.h"
 #include "photovoltaics/array/keys.h"
 
 namespace photorque {
@@ -22,7 +24,7 @@ std::vector<int> serpentine(int columns, int rows, bool along_columns) {
   return order;
 }
 
-using Rows = std::vector<std::vector<int>>;
+using Rows = std::vector<CellGroup>;
 
 ArrayWiring::String bypassed_string(const Rows& rows, const RegularWiring& options) {
   ArrayWiring::String string{{}, options.blocking};
@@ -34,6 +36,70 @@ ArrayWiring::String bypassed_string(const Rows& rows, const RegularWiring& optio
                                  options.bypass});
   }
   return string;
+}
+
+// One level of a regular circuit: so many like parts in series or in parallel.
+struct Level {
+  CellGroup::Join join = CellGroup::Join::series;
+  size_t count = 1;
+  bool bypassed = false;  // a bypass diode beside each part
+};
+
+// "series 3 bypass", "parallel 2".
+Level read_level(const Settings& array, const std::string& text) {
+  const std::vector<std::string_view> words = words_of(text);
+  Level level;
+  const bool is_parallel = !words.empty() && words[0] == "parallel";
+  const auto count = words.size() > 1 ? number_in(words[1]) : std::nullopt;
+  const bool good = (words.size() == 2 || (words.size() == 3 && words[2] == "bypass")) &&
+                    (is_parallel || words[0] == "series") && count && *count >= 1.0 &&
+                    *count <= most_cells && *count == std::floor(*count);
+  if (!good) {
+    throw array.error(array_key::circuit, in_quotes(text),
+                      "\"series N\", \"parallel N\" or either with \"bypass\" after it");
+  }
+  if (is_parallel) level.join = CellGroup::Join::parallel;
+  level.count = static_cast<size_t>(*count);
+  level.bypassed = words.size() == 3;
+  return level;
+}
+
+// The cells cut into equal parts, level by level.
+CellGroup circuit_of(std::span<const int> cells, std::span<const Level> levels,
+                     const Diode& bypass) {
+  if (levels.empty()) return {cells[0]};
+  const Level& level = levels[0];
+  const size_t size = cells.size() / level.count;
+  std::vector<CellGroup> parts;
+  for (size_t i = 0; i < level.count; ++i) {
+    CellGroup part = circuit_of(cells.subspan(i * size, size), levels.subspan(1), bypass);
+    if (level.bypassed) {
+      if (part.is_cell() || part.bypass.kind != Diode::Kind::none) {
+        part = CellGroup(CellGroup::Join::series, {part});
+      }
+      part.bypass = bypass;
+    }
+    parts.push_back(std::move(part));
+  }
+  return {level.join, std::move(parts)};
+}
+
+ArrayWiring read_circuit(const Settings& array, const std::vector<int>& order, const Diode& bypass,
+                         const Diode& blocking) {
+  std::vector<Level> levels;
+  size_t cells = 1;
+  for (const std::string& text : array.get(array_key::circuit)) {
+    levels.push_back(read_level(array, text));
+    cells = std::min<size_t>(cells * levels.back().count, size_t{most_cells} + 1);
+  }
+  if (cells != order.size()) {
+    throw array.error(array_key::circuit,
+                      cells > most_cells ? "more than " + std::to_string(most_cells) + " cells"
+                                         : std::to_string(cells) + " cells",
+                      "the " + std::to_string(order.size()) +
+                          " cells of the array, as the product of all numbers");
+  }
+  return wiring_of(circuit_of(order, levels, bypass), blocking);
 }
 
 template <class Kinds>
@@ -56,17 +122,19 @@ Diode read_diode(const Settings& array, const Kinds& kinds, const TableKey& tabl
 // error.
 class WiringReader {
  public:
-  WiringReader(const Settings& array, int cells)
-      : array_(array), used_(static_cast<size_t>(cells), false) {}
+  WiringReader(const Settings& array, int cells, const Diode& bypass)
+      : array_(array), used_(static_cast<size_t>(cells), false), bypass_(bypass) {}
 
-  ArrayWiring read(const Diode& bypass, const Diode& blocking) {
+  ArrayWiring read(const Diode& blocking) {
     ArrayWiring wiring;
     for (const SettingsNode& string : list(array_.raw(array_key::wiring), "strings")) {
       ArrayWiring::String joined{{}, blocking};
       for (const SettingsNode& substring : list(string, "substrings")) {
         Rows rows;
-        for (const SettingsNode& row : list(substring, "cells")) rows.push_back(read_row(row));
-        joined.substrings.push_back({std::move(rows), bypass});
+        for (const SettingsNode& row : list(substring, "cells")) {
+          rows.push_back(read_group(row, CellGroup::Join::parallel, 0));
+        }
+        joined.substrings.push_back({std::move(rows), bypass_});
       }
       wiring.strings.push_back(std::move(joined));
     }
@@ -80,11 +148,24 @@ class WiringReader {
     return *array;
   }
 
-  std::vector<int> read_row(const SettingsNode& node) {
+  // A cell; or a list, whose members are joined in parallel and in series by turns.
+  CellGroup read_group(const SettingsNode& node, CellGroup::Join join, int depth) {
+    constexpr int deepest = 32;
     if (!node.is_array()) return {read_cell(node)};
-    std::vector<int> row;
-    for (const SettingsNode& cell : list(node, "cells")) row.push_back(read_cell(cell));
-    return row;
+    if (depth > deepest) fail(node, "at most 32 levels of joined cells");
+    const bool is_parallel = join == CellGroup::Join::parallel;
+    const SettingsNode::Array& members = list(node, "cells");
+    CellGroup group(join, {});
+    for (const SettingsNode& member : members) {
+      const auto* word = std::get_if<std::string>(&member.value);
+      if (word != nullptr && *word == "bypass" && &member == &members[0] && members.size() > 1) {
+        group.bypass = bypass_;
+        continue;
+      }
+      group.parts.push_back(read_group(
+          member, is_parallel ? CellGroup::Join::series : CellGroup::Join::parallel, depth + 1));
+    }
+    return group;
   }
 
   int read_cell(const SettingsNode& node) {
@@ -104,6 +185,7 @@ class WiringReader {
 
   const Settings& array_;
   std::vector<bool> used_;
+  const Diode& bypass_;
 };
 
 void read_size(const Settings& array, ArrayDesign& design) {
@@ -130,9 +212,13 @@ ArrayWiring read_wiring(const Settings& array, const ArrayDesign& design) {
                       "a drop_V > 0 for an ideal bypass diode");
   }
   if (array.has(array_key::wiring)) {
-    return WiringReader(array, design.cells()).read(options.bypass, options.blocking);
+    return WiringReader(array, design.cells(), options.bypass).read(options.blocking);
   }
   options.along_columns = array.get(array_key::series) == 0;
+  if (array.has(array_key::circuit)) {
+    return read_circuit(array, serpentine(design.columns, design.rows, options.along_columns),
+                        options.bypass, options.blocking);
+  }
   options.strings = static_cast<int>(array.get(array_key::strings.within(1, design.cells())));
   if (design.cells() % options.strings != 0) {
     throw array.error(array_key::strings, std::to_string(options.strings),
@@ -154,6 +240,13 @@ CellModel replaced(CellModel model, const Settings& s, bool area_is_stated) {
   p.ideality_2 = s.get_or(cell_key::ideality_2, p.ideality_2);
   p.series_ohm = s.get_or(cell_key::series, p.series_ohm);
   p.shunt_ohm = s.get_or(cell_key::shunt, p.shunt_ohm);
+  p.shunt_light_A = s.get_or(cell_key::shunt_photocurrent, p.shunt_light_A);
+  p.shunt_dark_ohm = s.get_or(cell_key::shunt_dark, p.shunt_dark_ohm);
+  p.shunt_exponent = s.get_or(cell_key::shunt_exponent, p.shunt_exponent);
+  if (p.shunt_light_A == 0.0 && s.has(cell_key::shunt_dark)) {
+    throw s.error(cell_key::shunt_dark, "no shunt_photocurrent_A > 0 beside it",
+                  "the photocurrent at which the shunt is shunt_ohm");
+  }
   p.breakdown_fraction = s.get_or(cell_key::breakdown_fraction, p.breakdown_fraction);
   p.breakdown_V = s.get_or(cell_key::breakdown, p.breakdown_V);
   p.breakdown_exponent = s.get_or(cell_key::breakdown_exponent, p.breakdown_exponent);
@@ -162,7 +255,8 @@ CellModel replaced(CellModel model, const Settings& s, bool area_is_stated) {
   model.photocurrent_slope_1_K =
       s.get_or(cell_key::photocurrent_slope, model.photocurrent_slope_1_K);
   using namespace cell_key;
-  for (const NumberKey& key : {saturation_1, saturation_2, series, shunt}) {
+  for (const NumberKey& key :
+       {saturation_1, saturation_2, series, shunt, shunt_photocurrent, shunt_dark}) {
     if (area_is_stated || !s.has(key)) continue;
     throw s.error(reference_area, "nothing beside " + std::string(key.name),
                   "the area of the cell that it was found on");
@@ -248,13 +342,12 @@ const CellOverride* ArrayDesign::override_of(size_t cell_index) const {
 ArrayWiring regular_wiring(int columns, int rows, const RegularWiring& options) {
   const std::vector<int> order = serpentine(columns, rows, options.along_columns);
   const size_t length = order.size() / static_cast<size_t>(options.strings);
-  std::vector<Rows> strings(static_cast<size_t>(options.strings));
-  for (size_t i = 0; i < order.size(); ++i) strings[i / length].push_back({order[i]});
-  if (options.cross_tied) {
-    for (size_t s = 1; s < strings.size(); ++s) {
-      for (size_t i = 0; i < length; ++i) strings[0][i].push_back(strings[s][i][0]);
-    }
-    strings.resize(1);
+  const auto count = static_cast<size_t>(options.strings);
+  std::vector<Rows> strings(options.cross_tied ? 1 : count);
+  for (size_t i = 0; i < (options.cross_tied ? length : order.size()); ++i) {
+    std::vector<int> row = {order[i]};
+    for (size_t s = 1; options.cross_tied && s < count; ++s) row.push_back(order[s * length + i]);
+    strings[options.cross_tied ? 0 : i / length].emplace_back(row);
   }
   ArrayWiring wiring;
   for (const Rows& string : strings) wiring.strings.push_back(bypassed_string(string, options));

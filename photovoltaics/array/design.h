@@ -71,8 +71,11 @@ ArrayWiring regular_wiring(int columns, int rows, const RegularWiring& options);
 //   strings = 1              parallel strings; must divide the number of cells
 //   bypass_every = 20        cells per bypass diode; default: all cells of a string
 //   cross_tied = false       tie cells of equal place in all strings
-//   wiring = [[[0, 1], [2, 3]]]   instead of the four keys above: strings of substrings of cells
-//                            (a list in place of a cell is a row of cells tied in parallel)
+//   circuit = ["series 3 bypass", "parallel 2", "series 20"]   instead of strings, bypass_every and
+//                            cross_tied: the serpentine in equal parts, level by level
+//   wiring = [[[0, 1], [2, 3]]]   instead of the five keys above: strings of substrings of cells
+//                            (a list in place of a cell is cells in parallel, a list in that is
+//                            cells in series, and so on by turns)
 //   bypass = "ideal"         "none", "ideal" (clamps at drop_V) or "junction"; default "ideal"
 //   blocking = "none"        the same choices
 //   [array.bypass_diode]     drop_V = 0.5, saturation_A = 1e-6, ideality = 1.05,

@@ -14,9 +14,9 @@ std::vector<Key> diode_keys(double drop_V) {
 std::vector<Key> cell_keys(std::string_view usual) {
   using namespace cell_key;
   std::vector<Key> keys;
-  for (const NumberKey& key :
-       {saturation_1, saturation_2, ideality_1, ideality_2, series, shunt, breakdown_fraction,
-        breakdown, breakdown_exponent, gap, gap_slope, photocurrent_slope}) {
+  for (const NumberKey& key : {saturation_1, saturation_2, ideality_1, ideality_2, series, shunt,
+                               shunt_photocurrent, shunt_dark, shunt_exponent, breakdown_fraction,
+                               breakdown, breakdown_exponent, gap, gap_slope, photocurrent_slope}) {
     keys.push_back(key.usually(usual));
   }
   return keys;
@@ -45,6 +45,7 @@ std::vector<Key> wiring_keys() {
           strings,
           bypass_every,
           cross_tied,
+          circuit,
           wiring,
           bypass,
           blocking,

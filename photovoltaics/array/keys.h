@@ -37,6 +37,16 @@ inline constexpr NumberKey ideality_1("ideality_1", Range{0.01, 100.0}, "n₁");
 inline constexpr NumberKey ideality_2("ideality_2", Range{0.01, 100.0}, "n₂");
 inline constexpr NumberKey series("series_ohm", series_ohm_range, "R_s");
 inline constexpr NumberKey shunt("shunt_ohm", Range::positive(), "R_sh");
+inline constexpr NumberKey shunt_photocurrent(
+    "shunt_photocurrent_A", Range::not_negative(),
+    "photocurrent at which the shunt is R_sh; at others it is inversely proportional to the "
+    "photocurrent (De Soto, CEC). 0: R_sh in any light");
+inline constexpr NumberKey shunt_dark("shunt_dark_ohm", Range::positive(),
+                                      "with `shunt_photocurrent_A`: R_sh in the dark, to which it "
+                                      "goes exponentially (PVsyst)");
+inline constexpr NumberKey shunt_exponent("shunt_exponent", Range{0.01, 100.0},
+                                          "with `shunt_dark_ohm`: c in e^(−c·light); PVsyst has "
+                                          "5.5");
 inline constexpr NumberKey breakdown_fraction("breakdown_fraction", {0.0, 7.0},
                                               "a; 0: no breakdown");
 inline constexpr NumberKey breakdown("breakdown_V", {-1e308, 0.0, false, true}, "V_br");
@@ -67,11 +77,19 @@ inline constexpr IntegerKey bypass_every(
     {.usually = "a whole string", .varies = true});
 inline constexpr FlagKey cross_tied("cross_tied", false,
                                     "ties cells of equal place in all strings");
+inline constexpr TextsKey circuit(
+    "circuit",
+    "instead of `strings`, `bypass_every` and `cross_tied`: the serpentine in equal parts, the "
+    "outermost level first, as `\"series N\"` or `\"parallel N\"`; with `bypass` after it each of "
+    "the N parts has a bypass diode. The numbers multiply to the number of cells. Half-cut: "
+    "`[\"series 3 bypass\", \"parallel 2\", \"series 20\"]`",
+    {.optional = true});
 inline constexpr OtherKey wiring(
     "wiring", Key::an_array,
-    "instead of the four keys above: `[string, …]`, a string `[substring, …]` with a "
+    "instead of the five keys above: `[string, …]`, a string `[substring, …]` with a "
     "bypass diode each, a substring `[cell, …]`, each cell at most once; `[cell, …]` in "
-    "place of a cell is a row tied in parallel",
+    "place of a cell is cells in parallel, a list in place of one of those is cells in series, "
+    "and so on by turns; `\"bypass\"` at the head of such a list is a diode beside it",
     {.optional = true});
 inline constexpr ChoiceKey bypass("bypass", diodes, 1, "the diode over every substring");
 inline constexpr ChoiceKey blocking("blocking", diodes, 0, "the diode in every string");

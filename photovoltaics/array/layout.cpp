@@ -18,8 +18,8 @@ std::vector<Place> places_of(const ArrayWiring& wiring) {
   for (size_t s = 0; s < wiring.strings.size(); ++s) {
     for (size_t b = 0; b < wiring.strings[s].substrings.size(); ++b) {
       for (const auto& row : wiring.strings[s].substrings[b].rows) {
-        if (row.size() != 1) {
-          throw InputError({}, "array.layout", "cross-tied cells", "cells in series");
+        if (!row.is_cell()) {
+          throw InputError({}, "array.layout", "cells tied in parallel", "cells in series");
         }
         places.push_back({s, b});
       }
@@ -32,7 +32,7 @@ std::vector<int> cells_of(const ArrayWiring& wiring) {
   std::vector<int> cells;
   for (const auto& string : wiring.strings) {
     for (const auto& substring : string.substrings) {
-      for (const auto& row : substring.rows) cells.push_back(row[0]);
+      for (const auto& row : substring.rows) cells.push_back(row.cell);
     }
   }
   return cells;
@@ -75,7 +75,7 @@ class Search {
     size_t next = 0;
     for (auto& string : wiring.strings) {
       for (auto& substring : string.substrings) {
-        for (auto& row : substring.rows) row[0] = cells[next++];
+        for (auto& row : substring.rows) row.cell = cells[next++];
       }
     }
     return wiring;

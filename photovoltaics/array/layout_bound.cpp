@@ -14,7 +14,7 @@ std::vector<int> all_cells(const ArrayWiring& shape) {
   std::vector<int> cells;
   for (const auto& string : shape.strings) {
     for (const auto& substring : string.substrings) {
-      for (const auto& row : substring.rows) cells.insert(cells.end(), row.begin(), row.end());
+      for (const CellGroup& row : substring.rows) cells.push_back(row.cell);
     }
   }
   return cells;
@@ -171,7 +171,8 @@ double layout_bound_W(const ArrayWiring& shape, const CellTables& tables,
   double alone_W = 0.0;
   for (const int cell : all_cells(shape)) {
     const auto i = static_cast<size_t>(cell);
-    alone_W += tables[i]->curve().maximum_power(light_A[i]).power_W();
+    const auto law = law_in_light(tables[i], light_A[i]);
+    alone_W += law->curve().maximum_power(light_A[i]).power_W();
   }
   if (!(alone_W > 0.0) || !of_one_kind(shape, tables)) return alone_W;
   constexpr double rounding = 1e-12;

@@ -130,9 +130,7 @@ Table uniformity_table(const ArrayResult& array, const ArrayWiring& wiring) {
   add("array", all);
   for (size_t s = 0; s < wiring.strings.size(); ++s) {
     std::vector<int> cells;
-    for (const auto& substring : wiring.strings[s].substrings) {
-      for (const auto& row : substring.rows) cells.insert(cells.end(), row.begin(), row.end());
-    }
+    wiring.strings[s].for_each_cell([&](int cell) { cells.push_back(cell); });
     add("string " + std::to_string(s + 1), cells);
   }
   return table;

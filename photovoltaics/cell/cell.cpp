@@ -43,6 +43,11 @@ void check(const CellParameters& p) {
           p.breakdown_exponent, "a number >= 1");
   require(finite(p.temperature_K) && p.temperature_K > 0, "temperature_K", p.temperature_K,
           "a number > 0");
+  require(finite(p.shunt_light_A) && p.shunt_light_A >= 0, "shunt_photocurrent_A", p.shunt_light_A,
+          "a number >= 0");
+  require(p.shunt_dark_ohm > 0, "shunt_dark_ohm", p.shunt_dark_ohm, "a number > 0");
+  require(finite(p.shunt_exponent) && p.shunt_exponent > 0, "shunt_exponent", p.shunt_exponent,
+          "a number > 0");
 }
 
 // The voltage at which one diode alone carries `current` (> 0 forward); ∞ without that diode.
@@ -56,6 +61,27 @@ double reverse_inverse(double current_A, double saturation_A, double scale_V) {
 }
 
 }  // namespace
+
+CellParameters in_light(CellParameters p, double photocurrent_A) {
+  if (p.shunt_light_A == 0.0) return p;
+  const double x = std::max(0.0, photocurrent_A) / p.shunt_light_A;
+  double ohm = p.shunt_ohm / x;
+  if (std::isfinite(p.shunt_dark_ohm)) {
+    const double full = std::exp(-p.shunt_exponent);
+    const double base_ohm = std::max(0.0, (p.shunt_ohm - p.shunt_dark_ohm * full) / (1.0 - full));
+    ohm = base_ohm + (p.shunt_dark_ohm - base_ohm) * std::exp(-p.shunt_exponent * x);
+  }
+  // In the dark next to nothing leaks; the breakdown fraction stays within its range.
+  constexpr double most = 1e9, most_fraction = 6.9;
+  double times = std::clamp(ohm / p.shunt_ohm, 1.0 / most, most);
+  if (p.breakdown_fraction > 0.0) {
+    times = std::min(times, std::max(1.0, most_fraction / p.breakdown_fraction));
+  }
+  p.shunt_ohm *= times;
+  p.breakdown_fraction *= times;
+  p.shunt_light_A = 0.0;
+  return p;
+}
 
 CellCurve::CellCurve(const CellParameters& parameters)
     : parameters_(parameters),

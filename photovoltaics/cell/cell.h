@@ -17,6 +17,8 @@
 // breakdown, J. W. Bishop, Solar Cells 25, 73 (1988), eq. 6.
 #pragma once
 
+#include <limits>
+
 namespace photorque {
 
 // At one temperature.
@@ -31,7 +33,28 @@ struct CellParameters {
   double breakdown_V = -15.0;       // V_br < 0
   double breakdown_exponent = 3.0;  // m ≥ 1
   double temperature_K = 298.15;    // T > 0
+  // The photocurrent at which the shunt is R_sh, where the shunt changes with the light
+  // (in_light()); 0: R_sh in any light.
+  double shunt_light_A = 0.0;
+  // Of such a shunt: R_sh in the dark, ∞ for one that is inversely proportional to the light.
+  double shunt_dark_ohm = std::numeric_limits<double>::infinity();
+  double shunt_exponent = 5.5;
 };
+
+// The circuit under a photocurrent, with a constant shunt. With x the photocurrent over
+// shunt_light_A, R_sh is
+//
+//   R_sh/x                                 without a resistance in the dark: W. De Soto, S. A.
+//   Klein,
+//                                          W. A. Beckman, Solar Energy 80, 78 (2006), eq. 12; and
+//                                          the CEC model, A. P. Dobos, J. Sol. Energy Eng. 134,
+//                                          021011 (2012)
+//   R_b + (R_0 − R_b) e^{−c x},            R_0 in the dark, c = shunt_exponent, and R_b ≥ 0 such
+//                                          that R_sh holds at x = 1: A. Mermoud, T. Lejeune, 25th
+//                                          EU PVSEC (2010), as PVsyst has it
+//
+// Breakdown keeps its own current.
+CellParameters in_light(CellParameters parameters, double photocurrent_A);
 
 // D of eq. 2 and its derivatives by V_d.
 struct DarkCurrent {

@@ -164,4 +164,11 @@ std::shared_ptr<const DiodeVoltageLaw> diode_voltage_law(const CellParameters& p
   return std::make_shared<const SolvedDiode>(curve);
 }
 
+std::shared_ptr<const DiodeVoltageLaw> law_in_light(std::shared_ptr<const DiodeVoltageLaw> law,
+                                                    double photocurrent_A) {
+  const CellParameters& p = law->curve().parameters();
+  if (p.shunt_light_A == 0.0) return law;
+  return diode_voltage_law(in_light(p, photocurrent_A));
+}
+
 }  // namespace photorque

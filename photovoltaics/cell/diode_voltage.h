@@ -103,4 +103,8 @@ class OneDiode final : public DiodeVoltageLaw {
 std::shared_ptr<const DiodeVoltageLaw> diode_voltage_law(const CellParameters& parameters,
                                                          double tabulated_A = 0.0);
 
+// The law of a cell under a photocurrent: the same where its shunt does not change with the light.
+std::shared_ptr<const DiodeVoltageLaw> law_in_light(std::shared_ptr<const DiodeVoltageLaw> law,
+                                                    double photocurrent_A);
+
 }  // namespace photorque

@@ -53,6 +53,8 @@ CellParameters parameters_at(const CellModel& model, double area_m2, double temp
   p.saturation_2_A *= size * ratio * ratio * ratio * std::exp(0.5 * exponent);
   p.series_ohm /= size;
   p.shunt_ohm /= size;
+  p.shunt_dark_ohm /= size;
+  p.shunt_light_A *= size * photocurrent_factor(model, temperature_K);
   return p;
 }
 

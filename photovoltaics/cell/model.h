@@ -14,7 +14,8 @@ namespace photorque {
 // diffusion diode 1 and f = 1/2 for the recombination diode 2, and E(T) = E₀ (1 + s (T − T₀)). With
 // s ≠ 0 and one diode this is W. De Soto, S. A. Klein, W. A. Beckman, Solar Energy 80, 78 (2006),
 // eq. 13–14 (s = −0.0002677 /K for silicon); with s = 0, S. M. Sze, Physics of Semiconductor
-// Devices, sec. 2.4. Resistances and breakdown are constant. The photocurrent grows by a fraction
+// Devices, sec. 2.4. Resistances and breakdown are constant (a shunt may change with the light, see
+// in_light()). The photocurrent grows by a fraction
 // per kelvin: about +4e-4 in sunlight, where the absorption edge moves; next to nothing for light
 // far from the edge.
 //

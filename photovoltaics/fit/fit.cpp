@@ -153,6 +153,23 @@ VectorXd start_from(const IvSweep& sweep, const SweepNoise& noise) {
   return best.at;
 }
 
+// How many of its errors each reading is off the curve.
+std::vector<std::vector<double>> off_curve(std::span<const IvSweep> sweeps, const SweepNoise& noise,
+                                           const VectorXd& x) {
+  const CellCurve cell = circuit(x);
+  std::vector<std::vector<double>> off(sweeps.size());
+  for (size_t s = 0; s < sweeps.size(); ++s) {
+    for (size_t i = 0; i < sweeps[s].voltage_V.size(); ++i) {
+      const double v = sweeps[s].voltage_V[i];
+      const PointOfCurve p = point_of_curve(cell, x, v);
+      const double error_A =
+          std::hypot(noise.current_fraction * x[light], noise.voltage_fraction * v * p.slope_S);
+      off[s].push_back(std::abs(sweeps[s].current_A[i] - p.current_A) / error_A);
+    }
+  }
+  return off;
+}
+
 double rms_A(std::span<const IvSweep> sweeps, const VectorXd& x) {
   const CellCurve cell = circuit(x);
   double squares = 0.0, points = 0.0;
@@ -172,12 +189,21 @@ SweepFit fit_sweeps(std::span<const IvSweep> sweeps, const SweepNoise& noise) {
   using namespace even_light;
   if (sweeps.empty()) throw InputError({}, "curves", "none", "at least one sweep");
   for (const IvSweep& sweep : sweeps) check_sweep(sweep);
-  const inference::Fit best = fit_rounds(sweeps, noise, start_from(sweeps[0], noise), 4);
+  inference::Fit best = fit_rounds(sweeps, noise, start_from(sweeps[0], noise), 4);
+  SweepFit result;
+  std::vector<IvSweep> kept(sweeps.begin(), sweeps.end());
+  for (int round = 0; round < 4 && std::isfinite(best.chi2); ++round) {
+    std::vector<IvSweep*> changed;
+    for (IvSweep& sweep : kept) changed.push_back(&sweep);
+    if (!take_outliers(changed, off_curve(kept, noise, best.at), result.outliers)) break;
+    sweeps = kept;
+    for (const IvSweep& sweep : sweeps) check_sweep(sweep);
+    best = fit_rounds(sweeps, noise, start_from(sweeps[0], noise), 4);
+  }
   if (!std::isfinite(best.chi2)) {
     throw InputError({}, "curves", "sweeps and noise that no diode fits together",
                      "sweeps of one lit cell and their noise");
   }
-  SweepFit result;
   const VectorXd& x = best.at;
   result.variance = best.variance();
   const VectorXd error = best.scatter_errors();

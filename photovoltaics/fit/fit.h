@@ -51,20 +51,29 @@ struct BoundReached {
   std::string meaning;
 };
 
+// A reading that no curve near the others comes close to.
+struct OutlierReading {
+  size_t sweep = 0;
+  double voltage_V = 0.0, current_A = 0.0;
+};
+
 struct SweepFit {
   SingleDiode diode;
   std::vector<BoundReached> bounds;
   double rms_A = 0.0;     // of current at the measured voltages
   double variance = 0.0;  // per degree of freedom, in units of the noise given
   size_t points = 0;
+  std::vector<OutlierReading> outliers;  // left out
 };
 
 // One set of parameters for all sweeps (repeats under the same light).
 //
 // Generalised least squares in the current: the covariance of a sweep is that of its noise, with
 // the voltage's error carried over by the curve's slope, taken from the fit of the round before.
-// Exact data give their parameters back to about 1e-12. Throws InputError for a sweep of less than
-// six points or without a short or open circuit in reach.
+// Exact data give their parameters back to about 1e-12. Readings more than eight of their errors
+// off, and eight times the median, are left out as outliers, as long as they are at most 5 %.
+// Throws InputError for a sweep of less than six points or without a short or open circuit in
+// reach.
 SweepFit fit_sweeps(std::span<const IvSweep> sweeps, const SweepNoise& noise);
 
 // Sweeps whose voltages were set in equal steps from zero (repeats of one ramp): the step is the
@@ -104,13 +113,22 @@ struct RatedTolerance {
 // since figures of one kind are printed alike (22.0 is not to be told from 22).
 RatedTolerance written_steps(std::span<const RatedPoint> points);
 
+// How the shunt resistance changes with the light.
+enum class ShuntLaw {
+  constant,
+  inverse,  // R_sh ∝ 1/irradiance: De Soto, CEC; see in_light()
+};
+
 struct RatedFit {
-  SingleDiode diode;  // photocurrent at the first point
+  SingleDiode diode;  // photocurrent, and shunt, at the first point
+  ShuntLaw shunt_law = ShuntLaw::constant;
   std::vector<BoundReached> bounds;
   CellModel model;                    // of the whole device, reference_area_m2 = 1
   double gap_error_eV = 0.0;          // standard error of the model's gap
   double short_circuit_A_m2_W = 0.0;  // short-circuit current over irradiance at the first point
   double rms = 0.0;                   // relative, over V_oc, I_mp and V_mp of the points given
+  double other_rms = 0.0;             // under the other law of the shunt; 0 where it was not tried
+  double rms_over_known = 0.0;        // root mean square of the same over how well each is known
 
   // What the device gives under other conditions.
   RatedPoint predict(double irradiance_W_m2, double temperature_K) const;
@@ -127,8 +145,12 @@ struct RatedFit {
 // and half the differences add up in quadrature; or, if larger, the scatter of the residuals where
 // there are more figures than parameters. What one diode cannot describe at all is in neither, nor
 // is, for one point alone, that the ideality was assumed.
+//
+// The shunt follows `shunt_law`; without one it is constant, unless points at several irradiances
+// leave less than half by the inverse law.
 RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureSlopes& slopes,
-                          double ideality_guess_V, const RatedTolerance& tolerance = {});
+                          double ideality_guess_V, const RatedTolerance& tolerance = {},
+                          std::optional<ShuntLaw> shunt_law = ShuntLaw::constant);
 
 // A string of like substrings, each with a bypass diode, under light that differs between them.
 struct ShadedFit {

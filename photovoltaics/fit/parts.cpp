@@ -180,12 +180,12 @@ void limit_resistances(const inference::Fit& best, const inference::ResidualFunc
 }
 
 std::vector<BoundReached> bounds_reached(const inference::Fit& best,
-                                         std::span<const NamedBound> named) {
+                                         std::span<const NamedBound> named, Index first) {
   constexpr double near = 1e-6;  // of a logarithm
   std::vector<BoundReached> reached;
   for (const NamedBound& bound : named) {
     const inference::Parameter& p = best.parameters.shared[static_cast<size_t>(bound.parameter)];
-    const double x = best.at[bound.parameter];
+    const double x = best.at[first + bound.parameter];
     const bool is_low = x<p.lowest + near, is_high = x> p.highest - near;
     if (!is_low && !is_high) continue;
     reached.push_back({bound.key, std::exp(bound.sign * (is_low ? p.lowest : p.highest)),
@@ -199,6 +199,45 @@ std::vector<NamedBound> resistance_bounds(Index series, Index shunt) {
            "the series resistance explains all of the curve: this is no lit cell"},
           {shunt, "shunt_ohm", -1.0, "the fit wants no leak at all",
            "the leak explains all of the curve: this is no lit cell"}};
+}
+
+bool take_outliers(std::span<IvSweep* const> sweeps, const std::vector<std::vector<double>>& off,
+                   std::vector<OutlierReading>& taken) {
+  constexpr double far = 8.0, most = 0.05;
+  std::vector<double> all;
+  for (const std::vector<double>& one : off) all.insert(all.end(), one.begin(), one.end());
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  std::ranges::nth_element(all, middle);
+  constexpr double of_median = 1.4826;  // a normal variable's standard deviation
+  const double limit = far * std::max(1.0, of_median * *middle);
+  // More than two in a row are a part of the curve, a step of a shadow, say.
+  constexpr size_t longest = 2;
+  std::vector<std::vector<char>> is_out(sweeps.size());
+  std::vector<OutlierReading> found;
+  for (size_t s = 0; s < sweeps.size(); ++s) {
+    is_out[s].assign(off[s].size(), 0);
+    for (size_t i = 0, end = 0; i < off[s].size(); i = end + 1) {
+      for (end = i; end < off[s].size() && off[s][end] > limit;) ++end;
+      if (end - i > longest) continue;
+      for (size_t k = i; k < end; ++k) {
+        is_out[s][k] = 1;
+        found.push_back({s, sweeps[s]->voltage_V[k], sweeps[s]->current_A[k]});
+      }
+    }
+  }
+  const auto count = static_cast<double>(found.size() + taken.size());
+  if (found.empty() || count > most * static_cast<double>(all.size() + taken.size())) return false;
+  for (size_t s = 0; s < sweeps.size(); ++s) {
+    IvSweep kept;
+    for (size_t i = 0; i < off[s].size(); ++i) {
+      if (is_out[s][i] != 0) continue;
+      kept.voltage_V.push_back(sweeps[s]->voltage_V[i]);
+      kept.current_A.push_back(sweeps[s]->current_A[i]);
+    }
+    *sweeps[s] = std::move(kept);
+  }
+  taken.insert(taken.end(), found.begin(), found.end());
+  return true;
 }
 
 }  // namespace photorque

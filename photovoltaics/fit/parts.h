@@ -75,8 +75,15 @@ struct NamedBound {
   std::string at_least;  // what the parameter's lower bound means
   std::string at_most;   // its upper one
 };
+// `first`: where the parameters begin in a point, after those of single runs.
 std::vector<BoundReached> bounds_reached(const inference::Fit& best,
-                                         std::span<const NamedBound> named);
+                                         std::span<const NamedBound> named, Eigen::Index first = 0);
+
+// Takes readings out of sweeps that no errors explain, from how many of its errors each reading is
+// `off` its curve; whether there were any. Many, or more than two in a row, are no accident: then
+// the curve is another than a diode's, and they stay.
+bool take_outliers(std::span<IvSweep* const> sweeps, const std::vector<std::vector<double>>& off,
+                   std::vector<OutlierReading>& taken);
 
 // Those of the two resistances, as every fit here has them.
 std::vector<NamedBound> resistance_bounds(Eigen::Index series, Eigen::Index shunt);

@@ -21,9 +21,20 @@ using Eigen::Index, Eigen::VectorXd;
 
 enum Parameter { saturation, scale, series, shunt, count };
 
-CellCurve circuit(const VectorXd& x) {
+// The points, and how the shunt changes between them.
+struct Figures {
+  std::span<const RatedPoint> points;
+  ShuntLaw law = ShuntLaw::constant;
+
+  // Of the shunt's conductance over that at the first point.
+  double shunt_factor(const RatedPoint& p) const {
+    return law == ShuntLaw::constant ? 1.0 : p.irradiance_W_m2 / points[0].irradiance_W_m2;
+  }
+};
+
+CellCurve circuit(const VectorXd& x, double shunt_factor) {
   return CellCurve(single_diode(std::exp(x[saturation]), std::exp(x[scale]), std::exp(x[series]),
-                                std::exp(-x[shunt])));
+                                std::exp(-x[shunt]) / shunt_factor));
 }
 
 void check(std::span<const RatedPoint> points) {
@@ -60,13 +71,13 @@ std::vector<RatedPoint> at_first_temperature(std::span<const RatedPoint> points,
   return moved;
 }
 
-VectorXd relative_errors(std::span<const RatedPoint> points, const VectorXd& x) {
-  VectorXd errors = VectorXd::Constant(3 * static_cast<Index>(points.size()),
+VectorXd relative_errors(const Figures& figures, const VectorXd& x) {
+  VectorXd errors = VectorXd::Constant(3 * static_cast<Index>(figures.points.size()),
                                        std::numeric_limits<double>::infinity());
   if (!reasonable(x)) return errors;
-  const CellCurve cell = circuit(x);
   Index row = 0;
-  for (const RatedPoint& p : points) {
+  for (const RatedPoint& p : figures.points) {
+    const CellCurve cell = circuit(x, figures.shunt_factor(p));
     const double light_A = cell.photocurrent_A(p.short_circuit_A);
     const CellOperatingPoint best = cell.maximum_power(light_A);
     errors[row++] = 1.0 - cell.open_circuit_V(light_A) / p.open_circuit_V;
@@ -86,20 +97,21 @@ std::vector<inference::Parameter> parameters_from(const VectorXd& start,
   return all;
 }
 
-inference::Fit fit_from(const VectorXd& start, std::span<const RatedPoint> points, double guess_V) {
-  std::vector<inference::Parameter> parameters = parameters_from(start, points);
-  if (points.size() == 1) {
+inference::Fit fit_from(const VectorXd& start, const Figures& figures, double guess_V) {
+  std::vector<inference::Parameter> parameters = parameters_from(start, figures.points);
+  if (figures.points.size() == 1) {
     // Without a second point a weak pull keeps n V_t where it was guessed.
     parameters[scale].mean = std::log(guess_V);
     parameters[scale].sigma = 1.0;
   }
   const inference::ResidualModel model(
       parameters,
-      inference::with_differences([&](const VectorXd& x) { return relative_errors(points, x); }));
+      inference::with_differences([&](const VectorXd& x) { return relative_errors(figures, x); }));
   return inference::fit(model, start, inference::Options::to_rounding());
 }
 
-inference::Fit best_fit(std::span<const RatedPoint> points, double guess_V) {
+inference::Fit best_fit(const Figures& figures, double guess_V) {
+  const std::span<const RatedPoint> points = figures.points;
   const RatedPoint& first = points[0];
   inference::Fit best;
   for (const double blunter : {1.0, 1.5}) {
@@ -109,7 +121,7 @@ inference::Fit best_fit(std::span<const RatedPoint> points, double guess_V) {
       start << std::log(first.short_circuit_A) - first.open_circuit_V / a, std::log(a),
           std::log(0.02 * resistive * first.open_circuit_V / first.short_circuit_A),
           std::log(0.01 * first.short_circuit_A / first.open_circuit_V);
-      const inference::Fit trial = fit_from(start, points, guess_V);
+      const inference::Fit trial = fit_from(start, figures, guess_V);
       if (trial.chi2 < best.chi2) best = trial;
     }
   }
@@ -134,10 +146,10 @@ double gap_eV(const CellModel& model, double light_A, double growth_1_K, double 
 }
 
 // Without errors.
-RatedFit described(const VectorXd& x, std::span<const RatedPoint> points,
-                   const TemperatureSlopes& slopes) {
-  const RatedPoint& first = points[0];
+RatedFit described(const VectorXd& x, const Figures& figures, const TemperatureSlopes& slopes) {
+  const RatedPoint& first = figures.points[0];
   RatedFit result;
+  result.shunt_law = figures.law;
   result.diode = {{0.0, 0.0},
                   exponential(x[saturation], 0.0),
                   exponential(x[scale], 0.0),
@@ -149,9 +161,10 @@ RatedFit described(const VectorXd& x, std::span<const RatedPoint> points,
   result.model.gap_eV = gap_eV(result.model, light_A, slopes.short_circuit_1_K,
                                slopes.open_circuit_1_K * first.open_circuit_V);
   result.model.photocurrent_slope_1_K = slopes.short_circuit_1_K;
+  if (figures.law == ShuntLaw::inverse) result.model.reference.shunt_light_A = light_A;
   result.short_circuit_A_m2_W = first.short_circuit_A / first.irradiance_W_m2;
-  result.rms = std::sqrt(relative_errors(points, x).squaredNorm() /
-                         (3.0 * static_cast<double>(points.size())));
+  result.rms = std::sqrt(relative_errors(figures, x).squaredNorm() /
+                         (3.0 * static_cast<double>(figures.points.size())));
   return result;
 }
 
@@ -166,7 +179,7 @@ FigureErrors figures_of(const RatedFit& fit) {
 
 // From the covariance of the parameters, by central differences. Figures that depend on a parameter
 // which the points do not determine are undetermined too.
-FigureErrors scatter_errors(const inference::Fit& fitted, std::span<const RatedPoint> points,
+FigureErrors scatter_errors(const inference::Fit& fitted, const Figures& figures,
                             const TemperatureSlopes& slopes) {
   constexpr double step = 1e-4;  // of logarithms
   Eigen::Matrix<double, with_errors, Eigen::Dynamic> jacobian(with_errors, Index{count});
@@ -174,7 +187,7 @@ FigureErrors scatter_errors(const inference::Fit& fitted, std::span<const RatedP
     const auto moved = [&](double by) {
       VectorXd x = fitted.at;
       x[k] += by;
-      return figures_of(described(x, points, slopes));
+      return figures_of(described(x, figures, slopes));
     };
     jacobian.col(k) = (moved(step) - moved(-step)) / (2.0 * step);
   }
@@ -198,9 +211,10 @@ double rounded_sigma(double figure, double step, double fraction) {
 
 // Half the difference of the fits with one figure moved up and down by its standard deviation, in
 // quadrature over all figures.
-FigureErrors rounding_errors(const VectorXd& start, std::span<const RatedPoint> points,
+FigureErrors rounding_errors(const VectorXd& start, const Figures& figures,
                              const TemperatureSlopes& slopes, double guess_V,
                              const RatedTolerance& tolerance) {
+  const std::span<const RatedPoint> points = figures.points;
   struct Figure {
     double RatedPoint::*member;
     double step;
@@ -217,7 +231,8 @@ FigureErrors rounding_errors(const VectorXd& start, std::span<const RatedPoint> 
       const auto moved = [&](double by) {
         std::vector<RatedPoint> trial(points.begin(), points.end());
         trial[p].*figure.member += by;
-        return figures_of(described(fit_from(start, trial, guess_V).at, trial, slopes));
+        const Figures of_trial{trial, figures.law};
+        return figures_of(described(fit_from(start, of_trial, guess_V).at, of_trial, slopes));
       };
       squares += (0.5 * (moved(sigma) - moved(-sigma))).cwiseAbs2();
     }
@@ -225,12 +240,11 @@ FigureErrors rounding_errors(const VectorXd& start, std::span<const RatedPoint> 
   return squares.cwiseSqrt();
 }
 
-// The limits of the resistances: the profile of the figures' errors over how well they are known.
-// That of a current holds the short circuit's, of which the photocurrent is made.
-void limit_by_figures(const inference::Fit& best, std::span<const RatedPoint> points,
-                      const RatedTolerance& tolerance, SingleDiode& diode) {
+// How well each of relative_errors() is known: by rounding and tolerance, and by `scatter`. A
+// current's holds the short circuit's, of which the photocurrent is made.
+VectorXd known_to(std::span<const RatedPoint> points, const RatedTolerance& tolerance,
+                  double scatter) {
   constexpr double exact = 1e-12;  // figures without rounding
-  const double scatter = std::sqrt(best.variance());
   VectorXd sigma(3 * static_cast<Index>(points.size()));
   Index row = 0;
   for (const RatedPoint& p : points) {
@@ -243,9 +257,17 @@ void limit_by_figures(const inference::Fit& best, std::span<const RatedPoint> po
                                     relative(p.short_circuit_A, tolerance.step_A)));
     sigma[row++] = known(relative(p.maximum_V, tolerance.step_V));
   }
+  return sigma;
+}
+
+// The limits of the resistances: the profile of the figures' errors over how well they are known.
+void limit_by_figures(const inference::Fit& best, const Figures& figures,
+                      const RatedTolerance& tolerance, SingleDiode& diode) {
+  const std::span<const RatedPoint> points = figures.points;
+  const VectorXd sigma = known_to(points, tolerance, std::sqrt(best.variance()));
   const inference::ResidualFunction residuals =
       inference::with_differences([&](const VectorXd& x) -> VectorXd {
-        return relative_errors(points, x).cwiseQuotient(sigma);
+        return relative_errors(figures, x).cwiseQuotient(sigma);
       });
   std::vector<inference::Parameter> parameters = parameters_from(best.at, points);
   if (points.size() == 1) {
@@ -290,20 +312,36 @@ RatedTolerance written_steps(std::span<const RatedPoint> points) {
 }
 
 RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureSlopes& slopes,
-                          double ideality_guess_V, const RatedTolerance& tolerance) {
+                          double ideality_guess_V, const RatedTolerance& tolerance,
+                          std::optional<ShuntLaw> shunt_law) {
   using namespace rated_points;
   check(points);
-  const bool moves = std::ranges::any_of(
-      points, [&](const RatedPoint& p) { return p.temperature_K != points[0].temperature_K; });
-  if (moves) {
+  const auto differs = [&](double RatedPoint::*figure) {
+    return std::ranges::any_of(points,
+                               [&](const RatedPoint& p) { return p.*figure != points[0].*figure; });
+  };
+  if (differs(&RatedPoint::temperature_K)) {
     return fit_rated_points(at_first_temperature(points, slopes), slopes, ideality_guess_V,
-                            tolerance);
+                            tolerance, shunt_law);
   }
   if (!(ideality_guess_V > 0)) {
     throw InputError({}, "datasheet", "n V_t = " + std::to_string(ideality_guess_V),
                      "a number > 0");
   }
-  const inference::Fit best = best_fit(points, ideality_guess_V);
+  Figures figures{points, shunt_law.value_or(ShuntLaw::constant)};
+  inference::Fit best = best_fit(figures, ideality_guess_V);
+  double other_chi2 = 0.0;
+  if (!shunt_law && differs(&RatedPoint::irradiance_W_m2)) {
+    const Figures inverse{points, ShuntLaw::inverse};
+    inference::Fit trial = best_fit(inverse, ideality_guess_V);
+    other_chi2 = trial.chi2;
+    constexpr double decisive = 0.25;  // half the rms
+    if (trial.chi2 < decisive * best.chi2) {
+      other_chi2 = best.chi2;
+      figures = inverse;
+      best = std::move(trial);
+    }
+  }
   if (best.at.size() == 0) {
     throw InputError({}, "datasheet",
                      std::to_string(points[0].open_circuit_V) +
@@ -311,10 +349,16 @@ RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureS
                          std::to_string(ideality_guess_V) + " V gives",
                      "the figures of one cell, or of a module with its cells_in_series");
   }
-  RatedFit result = described(best.at, points, slopes);
+  RatedFit result = described(best.at, figures, slopes);
+  const auto count = 3.0 * static_cast<double>(points.size());
+  result.other_rms = std::sqrt(other_chi2 / count);
+  result.rms_over_known = std::sqrt(relative_errors(figures, best.at)
+                                        .cwiseQuotient(known_to(points, tolerance, 0.0))
+                                        .squaredNorm() /
+                                    count);
   const FigureErrors errors =
-      scatter_errors(best, points, slopes)
-          .cwiseMax(rounding_errors(best.at, points, slopes, ideality_guess_V, tolerance));
+      scatter_errors(best, figures, slopes)
+          .cwiseMax(rounding_errors(best.at, figures, slopes, ideality_guess_V, tolerance));
   SingleDiode& d = result.diode;
   Index row = 0;
   for (Estimate* of :
@@ -322,17 +366,26 @@ RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureS
     of->standard_error = errors[row++];
   }
   result.gap_error_eV = errors[row];
-  limit_by_figures(best, points, tolerance, d);
+  limit_by_figures(best, figures, tolerance, d);
   result.bounds = bounds_reached(best, resistance_bounds(series, shunt));
   return result;
 }
 
 RatedPoint RatedFit::predict(double irradiance_W_m2, double temperature_K) const {
   using namespace rated_points;
-  const CellCurve cell(parameters_at(model, 1.0, temperature_K));
-  const double short_circuit_A =
+  const double first_W_m2 =
+      CellCurve(model.reference).short_circuit_A(diode.photocurrent_A.value) / short_circuit_A_m2_W;
+  const CellParameters warm = parameters_at(model, 1.0, temperature_K);
+  const double suns = irradiance_W_m2 / first_W_m2;
+  const CellCurve cell(in_light(warm, warm.shunt_light_A * suns));
+  double short_circuit_A =
       short_circuit_A_m2_W * irradiance_W_m2 * photocurrent_factor(model, temperature_K);
-  const double light_A = cell.photocurrent_A(short_circuit_A);
+  double light_A = cell.photocurrent_A(short_circuit_A);
+  if (shunt_law == ShuntLaw::inverse) {
+    // The photocurrent is proportional to the light; what the shunt takes of it is not.
+    light_A = warm.shunt_light_A * suns;
+    short_circuit_A = cell.short_circuit_A(light_A);
+  }
   const CellOperatingPoint best = cell.maximum_power(light_A);
   return {irradiance_W_m2, temperature_K, short_circuit_A, cell.open_circuit_V(light_A),
           best.current_A,  best.voltage_V};

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "core/errors.h"
 #include "core/numerics/interpolation.h"
@@ -15,8 +17,24 @@ namespace {
 
 // Where a diode switches that does not.
 constexpr double never = std::numeric_limits<double>::infinity();
+// Above any voltage.
+constexpr double always = std::numeric_limits<double>::max();
 // Relative step of a string's current at which its solution ends: the error is of second order.
 constexpr double fine = 1e-9;
+
+void check(const CellGroup& group, std::vector<char>& used) {
+  if (!group.is_cell()) {
+    if (group.parts.empty()) throw InputError({}, "array", "an empty group of cells", "cells");
+    for (const CellGroup& part : group.parts) check(part, used);
+    return;
+  }
+  const auto cell = static_cast<size_t>(group.cell);
+  if (group.cell < 0 || cell >= used.size() || used[cell] != 0) {
+    throw InputError({}, "array", "cell " + std::to_string(group.cell),
+                     "each of the " + std::to_string(used.size()) + " cells at most once");
+  }
+  used[cell] = 1;
+}
 
 void check(const ArrayWiring& wiring, size_t cells) {
   std::vector<char> used(cells, 0);
@@ -24,16 +42,7 @@ void check(const ArrayWiring& wiring, size_t cells) {
     if (string.substrings.empty()) throw InputError({}, "array", "an empty string", "substrings");
     for (const auto& substring : string.substrings) {
       if (substring.rows.empty()) throw InputError({}, "array", "an empty substring", "cells");
-      for (const auto& row : substring.rows) {
-        if (row.empty()) throw InputError({}, "array", "an empty row", "cells");
-        for (const int cell : row) {
-          if (cell < 0 || static_cast<size_t>(cell) >= cells || used[static_cast<size_t>(cell)]) {
-            throw InputError({}, "array", "cell " + std::to_string(cell),
-                             "each of the " + std::to_string(cells) + " cells at most once");
-          }
-          used[static_cast<size_t>(cell)] = 1;
-        }
-      }
+      for (const CellGroup& row : substring.rows) check(row, used);
     }
   }
   if (wiring.strings.empty()) throw InputError({}, "array", "no strings", "at least one");
@@ -57,10 +66,23 @@ ArrayCurve::ArrayCurve(const ArrayWiring& wiring, CellTables tables,
                      "one per photocurrent");
   }
   check(wiring, cells_);
+  put_in_light(photocurrents_A);
   add_strings(wiring, photocurrents_A, changes);
   if (!by_current()) group_strings();
   for (const StringCurve& string : strings_) switches_.push_back(switches_of(string));
   end_x_ = find_end_x();
+}
+
+// Cells whose shunt changes with the light: one law for each light.
+void ArrayCurve::put_in_light(const std::vector<double>& photocurrents_A) {
+  std::map<std::pair<const DiodeVoltageLaw*, double>, std::shared_ptr<const DiodeVoltageLaw>> known;
+  std::vector<std::shared_ptr<const DiodeVoltageLaw>> replaced;  // alive, so that addresses differ
+  for (size_t i = 0; i < cells_; ++i) {
+    if (tables_[i]->curve().parameters().shunt_light_A == 0.0) continue;
+    auto& law = known[{tables_[i].get(), photocurrents_A[i]}];
+    if (law == nullptr) law = law_in_light(tables_[i], photocurrents_A[i]);
+    replaced.push_back(std::exchange(tables_[i], law));
+  }
 }
 
 void ArrayCurve::add_strings(const ArrayWiring& wiring, const std::vector<double>& photocurrents_A,
@@ -194,7 +216,8 @@ ArrayCurve::Switches ArrayCurve::switches_of(const StringCurve& string) const {
   for (double& clamp : switches.clamp_x) {
     if (clamp == never) continue;
     string.at_current(clamp, string.regime_at(clamp), fine, state);
-    clamp = state.voltage_V;
+    // No current that a blocking diode lets back ends its conduction.
+    clamp = std::isfinite(state.voltage_V) ? state.voltage_V : always;
   }
   if (string.has_blocking_clamp()) switches.blocked_x = string.open_circuit_V();
   return switches;

@@ -38,7 +38,8 @@ struct CellStates {
 class ArrayCurve {
  public:
   // `tables[i]` and `photocurrents_A[i]` (≥ 0) belong to cell i of the wiring; like cells share a
-  // law. Throws InputError for a wiring without cells or with a cell that is not there.
+  // law. A shunt that changes with the light is that of the cell's photocurrent (in_light()).
+  // Throws InputError for a wiring without cells or with a cell that is not there.
   ArrayCurve(const ArrayWiring& wiring, CellTables tables,
              const std::vector<double>& photocurrents_A, const ArrayChanges& changes = {});
 
@@ -128,6 +129,7 @@ class ArrayCurve {
   };
   CurrentGuess guess_current(size_t s, double x, Node& node, const Node* low,
                              const Node* high) const;
+  void put_in_light(const std::vector<double>& photocurrents_A);
   void add_strings(const ArrayWiring& wiring, const std::vector<double>& photocurrents_A,
                    const ArrayChanges& changes);
   void group_strings();

@@ -2,107 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
 
 #include "core/constants.h"
-#include "core/numerics/root.h"
 
 namespace photorque {
-namespace {
-
-// Sums over the cells of a row, each at a current of its own.
-struct RowSums {
-  Slopes current;  // of I(V)
-
-  void add(const ElementPoint& cell) { current += inverted(cell.slopes()); }
-  ElementPoint at(double voltage_V) const {
-    const Slopes voltage = inverted(current);
-    return {voltage_V, voltage.slope, voltage.curvature, voltage.third};
-  }
-};
-
-constexpr size_t max_tied_cells = 64;  // in a row that is solved for all currents at once
-
-// Newton's method for all currents at once: each cell's curve is replaced by its tangent and the
-// tangents are made to meet at one voltage. Cells of one type without series resistance would all
-// have the same dark current; from there two or three rounds are enough. Empty if they are not.
-std::optional<ElementPoint> solve_together(std::span<const LitCell> cells, double current_A,
-                                           std::span<JunctionState> states) {
-  if (cells.size() > max_tied_cells) return std::nullopt;
-  double all_A = 0.0;
-  for (const LitCell& cell : cells) all_A += cell.photocurrent_A;
-  const double dark_A = (all_A - current_A) / static_cast<double>(cells.size());
-  double cell_A[max_tied_cells];
-  ElementPoint points[max_tied_cells];
-  for (size_t i = 0; i < cells.size(); ++i) cell_A[i] = cells[i].photocurrent_A - dark_A;
-  for (int round = 0; round < 12; ++round) {
-    RowSums sums;
-    double tangents_A = -current_A;
-    for (size_t i = 0; i < cells.size(); ++i) {
-      points[i] = cell_at(cells[i], cell_A[i], states[i]);
-      sums.add(points[i]);
-      tangents_A += cell_A[i] + points[i].voltage_V / points[i].slope_ohm;
-    }
-    const double voltage_V = tangents_A / sums.current.slope;
-    double spread_V = 0.0;
-    for (size_t i = 0; i < cells.size(); ++i) {
-      const double apart_V = points[i].voltage_V - voltage_V;
-      cell_A[i] += apart_V / points[i].slope_ohm;
-      spread_V = std::max(spread_V, std::abs(apart_V));
-    }
-    // What is left is of second order in the spread over n V_t.
-    if (spread_V <= 1e-9) return sums.at(voltage_V);
-  }
-  return std::nullopt;
-}
-
-// The same by one search for the voltage, with a search for each cell's current inside.
-ElementPoint solve_nested(std::span<const LitCell> cells, double current_A,
-                          std::span<JunctionState> states) {
-  // Were the current shared equally, the row's voltage would lie between its cells'.
-  const double cell_A = current_A / static_cast<double>(cells.size());
-  double low_V = std::numeric_limits<double>::infinity(), high_V = -low_V;
-  for (const LitCell& cell : cells) {
-    JunctionState unused;
-    const double v = cell_at(cell, cell_A, unused).voltage_V;
-    low_V = std::min(low_V, v);
-    high_V = std::max(high_V, v);
-  }
-  RowSums sums;
-  const auto excess_A = [&](double voltage_V) {
-    double sum_A = -current_A;
-    sums = {};
-    for (size_t i = 0; i < cells.size(); ++i) {
-      const double i_A =
-          cells[i].law->curve().current_A(cells[i].photocurrent_A, voltage_V - cells[i].offset_V);
-      sums.add(cell_at(cells[i], i_A, states[i]));
-      sum_A += i_A;
-    }
-    return FunctionAt{sum_A, -sums.current.slope, sums.current.curvature, sums.current.third};
-  };
-  const double voltage_V =
-      falling_root(low_V, high_V, std::midpoint(low_V, high_V), 1e-9, excess_A);
-  return sums.at(voltage_V);
-}
-
-}  // namespace
-
-ElementPoint tied_cells_at(std::span<const LitCell> cells, double current_A,
-                           std::span<JunctionState> states) {
-  const auto together = solve_together(cells, current_A, states);
-  return together ? *together : solve_nested(cells, current_A, states);
-}
-
-SlopeRange tied_cells_range(std::span<const LitCell> cells, std::span<const JunctionState> high_v,
-                            std::span<const JunctionState> low_v) {
-  SlopeRange sum;
-  for (size_t i = 0; i < cells.size(); ++i) {
-    sum += inverted(cell_range(cells[i], high_v[i], low_v[i]));
-  }
-  return inverted(sum);
-}
-
 double extrapolated_A(const ElementPoint& at, double current_A, double voltage_V) {
   const Slopes current = inverted(at.slopes());
   const double h = voltage_V - at.voltage_V;

@@ -1,5 +1,5 @@
 // Two-terminal elements of a string at a point of their curves: derivatives, bounds on them over an
-// interval, and how they combine when elements are joined; cells, cells tied in parallel, diodes.
+// interval, and how they combine when elements are joined; cells and diodes.
 #pragma once
 
 #include <algorithm>
@@ -125,13 +125,6 @@ inline SlopeRange cell_range(const LitCell& cell, const JunctionState& high_v,
 // I(V) beyond a point from V(I) and its derivatives there: a straight line and an exponential, as a
 // shunt and a diode have it; to third order any curve.
 double extrapolated_A(const ElementPoint& at, double current_A, double voltage_V);
-
-// Cells tied in parallel at a total current; `states` has one entry per cell.
-ElementPoint tied_cells_at(std::span<const LitCell> cells, double current_A,
-                           std::span<JunctionState> states);
-// Bounds on V(I) of the whole row.
-SlopeRange tied_cells_range(std::span<const LitCell> cells, std::span<const JunctionState> high_v,
-                            std::span<const JunctionState> low_v);
 
 // For a junction: with u its voltage without R_s, the current is i = I_s (e^{u/nV_t} − 1) and its
 // own conductance g = (i + I_s)/nV_t. Positive forwards.

@@ -190,7 +190,7 @@ void FourStrings::write_diodes(const Point& at, double voltage_V, const Quad& cu
   for (size_t i = 0; i < count_; ++i) {
     if (!solves(i, voltage_V)) continue;
     StringState& to = states[member_[i]];
-    to.bypasses[0].junction_S = at.bypass_S[i];
+    to.parts[0].junction_S = at.bypass_S[i];
     to.blocking_ohm = blocking_scale_V_[i] / (current_A[i] + blocking_saturation_A_[i]);
   }
 }

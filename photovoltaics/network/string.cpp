@@ -14,149 +14,55 @@ constexpr double max_ohm = 1e90;
 }  // namespace
 
 std::optional<PlainString> StringCurve::plain() const {
-  if (substrings_.size() != 1 || runs_.size() != 1 || !rows_.empty()) return std::nullopt;
+  if (parts_.size() != 1 || runs_.size() != 1) return std::nullopt;
   const Run& run = runs_[0];
   if (run.offset_V != 0.0) return std::nullopt;
   return PlainString{run.law,
                      std::span(photocurrents_A_).subspan(run.first_cell, run.filled_cells),
                      std::span(copies_).subspan(run.first_cell, run.filled_cells),
                      run.series_ohm,
-                     &substrings_[0].bypass,
+                     &parts_[0].bypass,
                      &blocking_};
 }
 
 StringState StringCurve::make_state() const {
   StringState state;
   state.cells.resize(cells_.size());
-  state.bypasses.resize(substrings_.size());
+  state.parts.resize(parts_.size());
   return state;
 }
 
 StringRegime StringCurve::regime_at(double current_A) const {
   StringRegime regime;
-  regime.clamped.reserve(substrings_.size());
-  for (const Substring& s : substrings_) regime.clamped.push_back(current_A >= s.clamp_A);
+  regime.clamped.reserve(parts_.size());
+  for (const Part& p : parts_) regime.clamped.push_back(current_A >= p.clamp_A);
   return regime;
 }
 
 std::vector<double> StringCurve::clamp_currents_A() const {
   std::vector<double> currents;
-  currents.reserve(substrings_.size());
-  for (const Substring& s : substrings_) currents.push_back(s.clamp_A);
+  currents.reserve(parts_.size());
+  for (const Part& p : parts_) currents.push_back(p.clamp_A);
   return currents;
 }
 
 double StringCurve::lowest_V() const {
   double sum_V = -blocking_drop_V(0.0);
-  for (const Substring& s : substrings_) {
-    sum_V -= s.bypass.kind == Diode::Kind::clamp ? s.bypass.drop_V
-                                                 : std::numeric_limits<double>::infinity();
-  }
+  for (uint32_t k = 0; k < substrings_; ++k) sum_V += parts_[k].lowest_V;
   return sum_V;
 }
 
 double StringCurve::first_guess_A() const {
   double guess_A = largest_photocurrent_A_;
-  for (const Substring& s : substrings_) guess_A = std::min(guess_A, s.clamp_A);
+  for (uint32_t k = 0; k < substrings_; ++k) guess_A = std::min(guess_A, parts_[k].clamp_A);
   return guess_A;
-}
-
-ElementPoint StringCurve::rows_at(const Substring& substring, double current_A,
-                                  StringState& state) const {
-  ElementPoint sum;
-  for (const Run& run : runs_of(substring)) {
-    const DiodeVoltage v =
-        run.law->series_at(std::span(photocurrents_A_).subspan(run.first_cell, run.filled_cells),
-                           std::span(copies_).subspan(run.first_cell, run.filled_cells), current_A,
-                           std::span(state.cells).subspan(run.first_cell, run.filled_cells));
-    sum += {v.value_V + run.offset_V - current_A * run.series_ohm, v.slope_ohm + run.series_ohm,
-            v.curvature_V_A2, -v.third_V_A3};
-  }
-  for (const Row& row : rows_of(substring)) {
-    sum += tied_cells_at(lit(row), current_A,
-                         std::span(state.cells).subspan(row.first_cell, row.cells));
-  }
-  return sum;
-}
-
-// From the last solution along the substring's derivatives there; where that is too far, as if the
-// rows kept the current at which they turn the diode on.
-double StringCurve::bypass_guess_V(const Substring& substring, const StringState::Bypass& last,
-                                   double current_A) {
-  const DiodeJunction& d = substring.bypass;
-  const double h = current_A - last.current_A;
-  const double last_through_A = last.junction_S * d.scale_V;
-  if (std::abs(h) > 0.3 * last_through_A && current_A > substring.turn_on_A) {
-    return d.scale_V * std::log1p((current_A - substring.turn_on_A) / d.saturation_A);
-  }
-  const ElementPoint& p = last.substring;
-  const double fall_V = h * (p.slope_ohm - h * (p.curvature_V_A2 / 2.0 + h * p.third_V_A3 / 6.0));
-  return last.junction_V + fall_V / (1.0 + last.junction_S * d.series_ohm);
-}
-
-// With u the junction voltage of the bypass diode, its current is i(u) = I_s (e^{u/nV_t} − 1) and
-// the substring's voltage is −(u + i R_s): one equation, V_rows(I − i(u)) + u + i(u) R_s = 0,
-// rising in u. A diode that carries all of I leaves the rows at V ≥ 0, and one that carries nothing
-// leaves them at most at their open circuit: between the two lies u.
-ElementPoint StringCurve::bypassed_at(uint32_t index, double current_A, double tolerance,
-                                      StringState& state) const {
-  const Substring& substring = substrings_[index];
-  const DiodeJunction& d = substring.bypass;
-  StringState::Bypass& last = state.bypasses[index];
-  if (last.junction_V <= d.saturated_V() && current_A <= substring.turn_on_A) {
-    // Far in reverse the diode leaks I_s and no more: nothing to solve.
-    const ElementPoint rows = rows_at(substring, current_A + d.saturation_A, state);
-    const double u = d.saturation_A * d.series_ohm - rows.voltage_V;
-    last = {u, 0.0, current_A, rows};
-    if (u <= d.saturated_V()) return rows;
-  }
-  ElementPoint rows;
-  double through_A = 0.0, g = 0.0;
-  const auto shortfall_V = [&](double u) {
-    through_A = d.saturation_A * std::expm1(u * d.per_scale_1_V);
-    g = (through_A + d.saturation_A) * d.per_scale_1_V;
-    rows = rows_at(substring, current_A - through_A, state);
-    const double bend = (rows.slope_ohm + d.series_ohm) * g * d.per_scale_1_V;
-    const double curved = rows.curvature_V_A2 * g * g;
-    const double shortfall = -(rows.voltage_V + u + through_A * d.series_ohm);
-    return FunctionAt{shortfall, -((rows.slope_ohm + d.series_ohm) * g + 1.0), -(curved + bend),
-                      rows.third_V_A3 * g * g * g - (3.0 * curved + bend) * d.per_scale_1_V,
-                      close(shortfall)};
-  };
-  const double lowest_V = current_A >= 0.0 ? -substring.open_circuit_V
-                                           : -rows_at(substring, current_A, state).voltage_V;
-  const double highest_V = d.scale_V * std::log1p(std::max(current_A, 0.0) / d.saturation_A);
-  const double u = falling_root(lowest_V, highest_V, bypass_guess_V(substring, last, current_A),
-                                std::min(tolerance, 1e-2), shortfall_V);
-  // What was evaluated last lies a small step away.
-  const double step_A = through_A - d.saturation_A * std::expm1(u * d.per_scale_1_V);
-  through_A -= step_A;
-  g = (through_A + d.saturation_A) * d.per_scale_1_V;
-  Slopes current = inverted(
-      Slopes{rows.slope_ohm - step_A * (rows.curvature_V_A2 + 0.5 * step_A * rows.third_V_A3),
-             rows.curvature_V_A2 + step_A * rows.third_V_A3, rows.third_V_A3});
-  current += d.slopes(g);
-  const Slopes voltage = inverted(current);
-  last = {u,
-          g,
-          current_A,
-          {-(u + through_A * d.series_ohm), voltage.slope, voltage.curvature, voltage.third}};
-  return last.substring;
 }
 
 ElementPoint StringCurve::substrings_at(double current_A, const StringRegime& regime,
                                         double tolerance, StringState& state) const {
   ElementPoint sum;
-  for (uint32_t s = 0; s < substrings_.size(); ++s) {
-    const Substring& substring = substrings_[s];
-    if (regime.clamped[s]) {
-      sum.voltage_V -= substring.bypass.drop_V;
-      continue;
-    }
-    const ElementPoint p = substring.bypass.kind == Diode::Kind::junction
-                               ? bypassed_at(s, current_A, tolerance, state)
-                               : rows_at(substring, current_A, state);
-    sum += p;
+  for (uint32_t k = 0; k < substrings_; ++k) {
+    sum += part_at(k, current_A, &regime, tolerance, state);
   }
   return sum;
 }
@@ -226,10 +132,10 @@ void StringCurve::reverse_at_voltage(double voltage_V, const StringRegime& regim
 
 // With the current r through the cells as the unknown, all is explicit: their voltage, hence the
 // current i ≤ 0 of the diode beside them, the string's I = r + i and its voltage.
-FunctionAt StringCurve::beside_junction(double rows_A, double voltage_V, ElementPoint& rows,
-                                        StringState& state) const {
-  const DiodeJunction& bypass = substrings_[0].bypass;
-  rows = rows_at(substrings_[0], rows_A, state);
+FunctionAt StringCurve::beside_junction(double rows_A, double voltage_V, const StringRegime& regime,
+                                        ElementPoint& rows, StringState& state) const {
+  const DiodeJunction& bypass = parts_[0].bypass;
+  rows = inside_at(0, rows_A, &regime, 1e-9, state);
   const double i_A = bypass.current_A(bypass.junction_V(-rows.voltage_V));
   const double current_A = std::max(rows_A + i_A, 0.0);
   FunctionAt f{rows.voltage_V - voltage_V, -rows.slope_ohm, rows.curvature_V_A2, rows.third_V_A3,
@@ -252,10 +158,11 @@ FunctionAt StringCurve::beside_junction(double rows_A, double voltage_V, Element
   return f;
 }
 
-void StringCurve::beside_junction_at_voltage(double voltage_V, double low_A, double high_A,
-                                             double tolerance, StringState& state) const {
-  const DiodeJunction& bypass = substrings_[0].bypass;
-  StringState::Bypass& last = state.bypasses[0];
+void StringCurve::beside_junction_at_voltage(double voltage_V, const StringRegime& regime,
+                                             double low_A, double high_A, double tolerance,
+                                             StringState& state) const {
+  const DiodeJunction& bypass = parts_[0].bypass;
+  StringState::Part& last = state.parts[0];
   ElementPoint rows;
   double at_A = 0.0;
   const double rows_V = voltage_V + blocking_drop_V(std::max(state.current_A, 0.0));
@@ -263,7 +170,7 @@ void StringCurve::beside_junction_at_voltage(double voltage_V, double low_A, dou
   const double root_A =
       falling_root(low_A, high_A + bypass.saturation_A, guess_A, tolerance, [&](double rows_A) {
         at_A = rows_A;
-        return beside_junction(rows_A, voltage_V, rows, state);
+        return beside_junction(rows_A, voltage_V, regime, rows, state);
       });
   // To third order in the last step.
   const double step_A = root_A - at_A;
@@ -299,9 +206,9 @@ void StringCurve::at_voltage(double voltage_V, const StringRegime& regime, doubl
     reverse_at_voltage(voltage_V, regime, state);
     return;
   }
-  const bool one = substrings_.size() == 1 && substrings_[0].bypass.kind == Diode::Kind::junction;
+  const bool one = substrings_ == 1 && parts_[0].bypass.kind == Diode::Kind::junction;
   if (one && voltage_V >= 0.0 && voltage_V < open_circuit_V_) {
-    beside_junction_at_voltage(voltage_V, std::max(low_A, 0.0), high_A, tolerance, state);
+    beside_junction_at_voltage(voltage_V, regime, std::max(low_A, 0.0), high_A, tolerance, state);
     return;
   }
   const auto excess_V = [&](double current_A) {

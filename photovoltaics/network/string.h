@@ -36,15 +36,15 @@ struct StringState {
   double curvature_V_A2 = 0.0;  // d²V/dI²
   double third_V_A3 = 0.0;      // d³V/dI³
   std::vector<JunctionState> cells;
-  // A junction beside a substring: its voltage without R_s, where the next solution starts, and its
-  // conductance there; and the substring, at what current.
-  struct Bypass {
+  // A part at its current, where the next solution starts; of a junction beside it the voltage
+  // without R_s and the conductance.
+  struct Part {
     double junction_V = -std::numeric_limits<double>::infinity();
     double junction_S = 0.0;
     double current_A = 0.0;
-    ElementPoint substring;
+    ElementPoint at;
   };
-  std::vector<Bypass> bypasses;
+  std::vector<Part> parts;
   double blocking_ohm = 0.0;  // of the blocking junction, without R_s
 
   Slopes slopes() const { return {slope_ohm, curvature_V_A2, third_V_A3}; }
@@ -53,7 +53,7 @@ struct StringState {
 // Which ideal diodes conduct. Over a piece of the curve on which this does not change, the string
 // is a smooth element.
 struct StringRegime {
-  std::vector<char> clamped;  // per substring: its bypass carries the current
+  std::vector<char> clamped;  // per part: its ideal bypass diode carries the current
   bool blocked = false;       // the blocking diode carries none
 
   bool operator==(const StringRegime&) const = default;
@@ -74,11 +74,12 @@ class StringCurve {
               const std::function<bool(size_t)>& is_shorted);
 
   // Whether all substrings are shorted.
-  bool is_shorted() const { return substrings_.empty(); }
+  bool is_shorted() const { return substrings_ == 0; }
 
   // The regime at a current ≥ 0.
   StringRegime regime_at(double current_A) const;
-  // Per substring, the current at which a clamping bypass diode begins to conduct; ∞ without one.
+  // Per part, the string's current at which an ideal bypass diode beside it begins to conduct; ∞
+  // without one, and where the current never gets there.
   std::vector<double> clamp_currents_A() const;
   // The largest photocurrent: V ≤ 0 from this current on.
   double largest_photocurrent_A() const { return largest_photocurrent_A_; }
@@ -123,77 +124,120 @@ class StringCurve {
                 std::vector<double>& currents_A) const;
 
  private:
-  // Cells of a substring: first those in series, in runs of one law, then the rows of tied ones.
-  struct Row {
-    uint32_t first_cell, cells;
-  };
-  // Filled up with cells of no copies to a multiple of DiodeVoltageLaw::lanes.
+  // Cells of one law in series, filled up with cells of no copies to a multiple of
+  // DiodeVoltageLaw::lanes.
   struct Run {
     const DiodeVoltageLaw* law;
     double series_ohm, offset_V;  // of all cells
     uint32_t first_cell, cells, filled_cells;
   };
-  struct Substring {
+  static constexpr uint32_t nothing = std::numeric_limits<uint32_t>::max();
+  static constexpr double unlimited = std::numeric_limits<double>::infinity();
+  // Runs of cells and parts in series, or tied cells and parts in parallel, with a bypass diode
+  // beside all of them or none. The substrings come first; a part stands before those inside it.
+  struct Part {
     DiodeJunction bypass;
-    uint32_t first_run = 0, runs = 0;  // of cells in series
-    uint32_t first_row = 0, rows = 0;  // of tied cells
-    double clamp_A = std::numeric_limits<double>::infinity();
-    double turn_on_A = std::numeric_limits<double>::infinity();  // of a junction, about
-    double open_circuit_V = 0.0;                                 // of the rows
+    bool in_parallel = false;
+    uint32_t parent = nothing;
+    uint32_t first_run = 0, runs = 0;    // in series
+    uint32_t first_cell = 0, cells = 0;  // tied
+    uint32_t first_part = 0, parts = 0;  // of inner_
+    double largest_A = 0.0;              // V ≤ 0 from this current on
+    double light_A = 0.0;                // about the short-circuit current
+    double open_circuit_V = 0.0;         // without the bypass diode
+    // Currents of this part: where its ideal diode begins to conduct; about where its junction
+    // does.
+    double own_clamp_A = unlimited, turn_on_A = unlimited;
+    double clamp_A = unlimited;  // of the string, where this part's ideal diode begins to conduct
+    // Which voltage no current goes below, and the current that gets there.
+    double lowest_V = -unlimited, lowest_A = unlimited;
+    bool has_clamps = false;  // inside it
+  };
+  struct Source {
+    const CellTables& tables;
+    const std::vector<double>& photocurrents_A;
   };
 
   bool close(double voltage_V) const { return std::abs(voltage_V) <= close_V_; }
   void reserve(const ArrayWiring::String& wiring);
-  void add_cell(int cell, const CellTables& tables, const std::vector<double>& photocurrents_A);
-  void add_series(std::vector<int> cells, const CellTables& tables,
-                  const std::vector<double>& photocurrents_A);
-  void add_substring(const ArrayWiring::Substring& wiring, const CellTables& tables,
-                     const std::vector<double>& photocurrents_A);
-  ElementPoint rows_at(const Substring& substring, double current_A, StringState& state) const;
-  static double bypass_guess_V(const Substring& substring, const StringState::Bypass& last,
-                               double current_A);
-  ElementPoint bypassed_at(uint32_t index, double current_A, double tolerance,
-                           StringState& state) const;
+  void add_cell(int cell, const Source& source);
+  void add_series(std::vector<int> cells, const Source& source);
+  void fill_part(uint32_t index, const std::vector<CellGroup>& members, const Source& source);
+  void prepare_part(uint32_t index, StringState& state);
+  void find_clamp(uint32_t index, StringState& state);
+
+  // A part at its current, without and with the diode beside it. Without a regime every ideal diode
+  // conducts where the voltage asks for it.
+  ElementPoint inside_at(uint32_t index, double current_A, const StringRegime* regime,
+                         double tolerance, StringState& state) const;
+  ElementPoint part_at(uint32_t index, double current_A, const StringRegime* regime,
+                       double tolerance, StringState& state) const;
+  ElementPoint bypassed_at(uint32_t index, double current_A, const StringRegime* regime,
+                           double tolerance, StringState& state) const;
+  ElementPoint tied_at(uint32_t index, double current_A, const StringRegime* regime,
+                       StringState& state) const;
+  std::optional<ElementPoint> tied_together_at(uint32_t index, double current_A,
+                                               const StringRegime* regime,
+                                               StringState& state) const;
+  ElementPoint tied_nested_at(uint32_t index, double current_A, const StringRegime* regime,
+                              StringState& state) const;
+  // Of all cells and parts in a part at a voltage but one.
+  double tied_A(uint32_t index, double voltage_V, const StringRegime* regime, uint32_t but,
+                Slopes* slopes, StringState& state) const;
+  // The part in parallel whose diodes hold the voltage of all; `nothing` where none does.
+  uint32_t holding_part(uint32_t index, const StringRegime& regime) const;
+  bool is_held(uint32_t index, const StringRegime& regime) const;
+  // The current of a part at a voltage.
+  double part_A(uint32_t index, double voltage_V, const StringRegime* regime,
+                StringState& state) const;
+  static double bypass_guess_V(const Part& part, const StringState::Part& last, double current_A);
   ElementPoint substrings_at(double current_A, const StringRegime& regime, double tolerance,
                              StringState& state) const;
   // At a voltage from 0 to open circuit of a string that is one substring beside a junction: what
   // is left of the voltage at a current through its cells, whose point goes to `rows`; and the
   // whole.
-  FunctionAt beside_junction(double rows_A, double voltage_V, ElementPoint& rows,
-                             StringState& state) const;
-  void beside_junction_at_voltage(double voltage_V, double low_A, double high_A, double tolerance,
-                                  StringState& state) const;
+  FunctionAt beside_junction(double rows_A, double voltage_V, const StringRegime& regime,
+                             ElementPoint& rows, StringState& state) const;
+  void beside_junction_at_voltage(double voltage_V, const StringRegime& regime, double low_A,
+                                  double high_A, double tolerance, StringState& state) const;
   double blocking_drop_V(double current_A) const;
   void add_blocking(StringState& state) const;
   void reverse_at_voltage(double voltage_V, const StringRegime& regime, StringState& state) const;
-  // At which the rows have the voltage −drop_V.
-  double rows_current_A(const Substring& substring, double drop_V, StringState& state) const;
-  double largest_A(const Substring& substring) const;
-  SlopeRange substring_range(uint32_t index, const StringState& low_i,
-                             const StringState& high_i) const;
+  // At which a part without its diode has the voltage −drop_V.
+  double inside_A(uint32_t index, double drop_V, StringState& state) const;
+  SlopeRange part_range(uint32_t index, const StringState& low_i, const StringState& high_i,
+                        const StringRegime& regime) const;
+  // How a part moves with the photocurrents of its cells, and its slopes.
+  struct PartMotion {
+    std::vector<VoltageMotion> moved;  // cells of this string
+    double slope_ohm = 0.0, curvature_V_A2 = 0.0;
+  };
+  PartMotion motion_of(uint32_t index, const StringState& state, const StringRegime& regime) const;
+  void part_cells_at(uint32_t index, double current_A, StringState& state,
+                     std::vector<double>& voltages_V, std::vector<double>& currents_A) const;
 
-  std::span<const LitCell> lit(const Row& row) const {
-    return std::span(cells_).subspan(row.first_cell, row.cells);
+  std::span<const LitCell> tied_cells(const Part& part) const {
+    return std::span(cells_).subspan(part.first_cell, part.cells);
+  }
+  std::span<const uint32_t> inner(const Part& part) const {
+    return std::span(inner_).subspan(part.first_part, part.parts);
+  }
+  std::span<const Run> runs_of(const Part& part) const {
+    return std::span(runs_).subspan(part.first_run, part.runs);
   }
   std::span<const int> wired_to(uint32_t cell) const {
     const uint32_t first = first_wired_[cell];
     const size_t end = cell + 1 < first_wired_.size() ? first_wired_[cell + 1] : wired_.size();
     return std::span(wired_).subspan(first, end - first);
   }
-  std::span<const Row> rows_of(const Substring& substring) const {
-    return std::span(rows_).subspan(substring.first_row, substring.rows);
-  }
-  std::span<const Run> runs_of(const Substring& substring) const {
-    return std::span(runs_).subspan(substring.first_run, substring.runs);
-  }
-
   std::vector<LitCell> cells_;
   std::vector<double> photocurrents_A_, copies_;  // of cells_, side by side for vector registers
   std::vector<int> wired_;  // the wiring's cells behind each of cells_, one after the other
   std::vector<uint32_t> first_wired_;  // of each of cells_
   std::vector<Run> runs_;
-  std::vector<Row> rows_;
-  std::vector<Substring> substrings_;
+  std::vector<Part> parts_;
+  std::vector<uint32_t> inner_;  // the parts in each part
+  uint32_t substrings_ = 0;
   DiodeJunction blocking_;
   double cell_offset_V_ = 0.0;
   double close_V_ = std::numeric_limits<double>::infinity();

@@ -13,65 +13,59 @@ StringCurve::StringCurve(const ArrayWiring::String& wiring, const CellTables& ta
                          const std::function<bool(size_t)>& is_shorted)
     : blocking_(wiring.blocking), cell_offset_V_(cell_offset_V) {
   reserve(wiring);
+  const Source source{tables, photocurrents_A};
+  std::vector<const ArrayWiring::Substring*> substrings;
   for (size_t s = 0; s < wiring.substrings.size(); ++s) {
-    if (!is_shorted(s)) add_substring(wiring.substrings[s], tables, photocurrents_A);
+    if (is_shorted(s)) continue;
+    substrings.push_back(&wiring.substrings[s]);
+    parts_.push_back({DiodeJunction(wiring.substrings[s].bypass)});
   }
-  for (const Substring& substring : substrings_) {
-    largest_photocurrent_A_ = std::max(largest_photocurrent_A_, largest_A(substring));
-  }
+  substrings_ = static_cast<uint32_t>(substrings.size());
+  for (uint32_t s = 0; s < substrings_; ++s) fill_part(s, substrings[s]->rows, source);
   StringState state = make_state();
-  for (Substring& substring : substrings_) {
-    const DiodeJunction& bypass = substring.bypass;
-    if (bypass.kind == Diode::Kind::clamp) {
-      substring.clamp_A = rows_current_A(substring, bypass.drop_V, state);
-    } else if (bypass.kind == Diode::Kind::junction) {
-      const double typical_A = 0.2 * largest_photocurrent_A_;
-      substring.turn_on_A = rows_current_A(
-          substring, bypass.scale_V * std::log1p(typical_A / bypass.saturation_A), state);
-    }
-    substring.open_circuit_V = rows_at(substring, 0.0, state).voltage_V;
+  // A part stands before those inside it.
+  for (size_t k = parts_.size(); k-- > 0;) prepare_part(static_cast<uint32_t>(k), state);
+  for (uint32_t s = 0; s < substrings_; ++s) {
+    largest_photocurrent_A_ = std::max(largest_photocurrent_A_, parts_[s].largest_A);
   }
+  for (uint32_t k = 0; k < parts_.size(); ++k) find_clamp(k, state);
   at_current(0.0, regime_at(0.0), 1e-9, state);
   open_circuit_V_ = state.voltage_V;
 }
 
 // Room for all, filled up in runs of like tables.
 void StringCurve::reserve(const ArrayWiring::String& wiring) {
-  size_t cells = 0;
-  for (const auto& substring : wiring.substrings) {
-    for (const auto& row : substring.rows) cells += row.size();
-    cells += DiodeVoltageLaw::lanes;
-  }
+  size_t cells = wiring.substrings.size() * DiodeVoltageLaw::lanes;
+  wiring.for_each_cell([&](int) { ++cells; });
   cells_.reserve(cells);
   photocurrents_A_.reserve(cells);
   copies_.reserve(cells);
   wired_.reserve(cells);
   first_wired_.reserve(cells);
-  substrings_.reserve(wiring.substrings.size());
+  parts_.reserve(wiring.substrings.size());
 }
 
-void StringCurve::add_cell(int cell, const CellTables& tables,
-                           const std::vector<double>& photocurrents_A) {
+void StringCurve::add_cell(int cell, const Source& source) {
   const auto i = static_cast<size_t>(cell);
-  cells_.push_back({tables[i].get(), photocurrents_A[i], tables[i]->curve().parameters().series_ohm,
-                    1.0, cell_offset_V_});
-  photocurrents_A_.push_back(photocurrents_A[i]);
-  close_V_ = std::min(close_V_, 0.1 * tables[i]->curve().min_scale_V());
+  const DiodeVoltageLaw* law = source.tables[i].get();
+  cells_.push_back(
+      {law, source.photocurrents_A[i], law->curve().parameters().series_ohm, 1.0, cell_offset_V_});
+  photocurrents_A_.push_back(source.photocurrents_A[i]);
+  close_V_ = std::min(close_V_, 0.1 * law->curve().min_scale_V());
   copies_.push_back(1.0);
   first_wired_.push_back(static_cast<uint32_t>(wired_.size()));
   wired_.push_back(cell);
 }
 
 // Cells of one law stand next to each other; like cells under the same light become one.
-void StringCurve::add_series(std::vector<int> cells, const CellTables& tables,
-                             const std::vector<double>& photocurrents_A) {
-  const auto law = [&](int cell) { return tables[static_cast<size_t>(cell)].get(); };
+void StringCurve::add_series(std::vector<int> cells, const Source& source) {
+  const auto law = [&](int cell) { return source.tables[static_cast<size_t>(cell)].get(); };
   // In the order in which the string meets them, which no address in memory changes.
   std::vector<const DiodeVoltageLaw*> laws;
   for (const int cell : cells) {
     if (std::ranges::find(laws, law(cell)) == laws.end()) laws.push_back(law(cell));
   }
-  const auto light_A = [&](int cell) { return photocurrents_A[static_cast<size_t>(cell)]; };
+  const auto light_A = [&](int cell) { return source.photocurrents_A[static_cast<size_t>(cell)]; };
   std::ranges::stable_sort(cells, [&](int a, int b) {
     if (law(a) != law(b)) {
       return std::ranges::find(laws, law(a)) < std::ranges::find(laws, law(b));
@@ -86,14 +80,14 @@ void StringCurve::add_series(std::vector<int> cells, const CellTables& tables,
         copies_.back() += 1.0;
         wired_.push_back(cells[end]);
       } else {
-        add_cell(cells[end], tables, photocurrents_A);
+        add_cell(cells[end], source);
       }
       run.series_ohm += cells_.back().series_ohm;
       run.offset_V += cell_offset_V_;
     }
     run.cells = static_cast<uint32_t>(cells_.size()) - run.first_cell;
     while ((cells_.size() - run.first_cell) % DiodeVoltageLaw::lanes != 0) {
-      add_cell(cells[end - 1], tables, photocurrents_A);
+      add_cell(cells[end - 1], source);
       copies_.back() = 0.0;
     }
     run.filled_cells = static_cast<uint32_t>(cells_.size()) - run.first_cell;
@@ -101,54 +95,134 @@ void StringCurve::add_series(std::vector<int> cells, const CellTables& tables,
   }
 }
 
-void StringCurve::add_substring(const ArrayWiring::Substring& wiring, const CellTables& tables,
-                                const std::vector<double>& photocurrents_A) {
-  std::vector<int> singles;
-  for (const auto& row : wiring.rows) {
-    if (row.size() == 1) singles.push_back(row[0]);
-  }
-  Substring substring{DiodeJunction(wiring.bypass)};
-  substring.first_run = static_cast<uint32_t>(runs_.size());
-  add_series(std::move(singles), tables, photocurrents_A);
-  substring.runs = static_cast<uint32_t>(runs_.size()) - substring.first_run;
-  substring.first_row = static_cast<uint32_t>(rows_.size());
-  for (const auto& row : wiring.rows) {
-    if (row.size() == 1) continue;
-    rows_.push_back({static_cast<uint32_t>(cells_.size()), static_cast<uint32_t>(row.size())});
-    for (const int cell : row) add_cell(cell, tables, photocurrents_A);
-  }
-  substring.rows = static_cast<uint32_t>(rows_.size()) - substring.first_row;
-  substrings_.push_back(substring);
-}
-
-// From this current on no row has a voltage above zero.
-double StringCurve::largest_A(const Substring& substring) const {
-  double largest = 0.0;
-  for (const Run& run : runs_of(substring)) {
-    largest = std::max(largest, cells_[run.first_cell + run.cells - 1].photocurrent_A);
-  }
-  for (const Row& row : rows_of(substring)) {
-    double sum = 0.0;
-    for (const LitCell& cell : lit(row)) sum += cell.photocurrent_A;
-    largest = std::max(largest, sum);
-  }
-  return largest;
-}
-
-double StringCurve::rows_current_A(const Substring& substring, double drop_V,
-                                   StringState& state) const {
-  const auto excess_V = [&](double current_A) {
-    const ElementPoint p = rows_at(substring, current_A, state);
-    const double excess = p.voltage_V + drop_V;
-    return FunctionAt{excess, -p.slope_ohm, p.curvature_V_A2, p.third_V_A3, close(excess)};
+// Members that are joined like their part, without a diode, are members of it.
+void StringCurve::fill_part(uint32_t index, const std::vector<CellGroup>& members,
+                            const Source& source) {
+  const CellGroup::Join join =
+      parts_[index].in_parallel ? CellGroup::Join::parallel : CellGroup::Join::series;
+  std::vector<int> cells;
+  std::vector<const CellGroup*> groups;
+  const std::function<void(const CellGroup&)> gather = [&](const CellGroup& member) {
+    if (member.is_cell()) {
+      cells.push_back(member.cell);
+    } else if (member.bypass.kind == Diode::Kind::none &&
+               (member.join == join || member.parts.size() == 1)) {
+      for (const CellGroup& part : member.parts) gather(part);
+    } else {
+      groups.push_back(&member);
+    }
   };
-  double low = 0.0, high = largest_A(substring), step = 1e-3 * high + 1e-9;
-  while (excess_V(high).value > 0.0) {
-    low = high;
-    high += step;
-    step *= 4.0;
+  for (const CellGroup& member : members) gather(member);
+  if (join == CellGroup::Join::parallel) {
+    parts_[index].first_cell = static_cast<uint32_t>(cells_.size());
+    parts_[index].cells = static_cast<uint32_t>(cells.size());
+    for (const int cell : cells) add_cell(cell, source);
+  } else {
+    parts_[index].first_run = static_cast<uint32_t>(runs_.size());
+    add_series(std::move(cells), source);
+    parts_[index].runs = static_cast<uint32_t>(runs_.size()) - parts_[index].first_run;
   }
-  return falling_root(low, high, std::midpoint(low, high), 1e-9, excess_V);
+  std::vector<uint32_t> inside;
+  for (const CellGroup* group : groups) {
+    const auto place = static_cast<uint32_t>(parts_.size());
+    inside.push_back(place);
+    Part& part = parts_.emplace_back(Part{DiodeJunction(group->bypass)});
+    part.in_parallel = group->join == CellGroup::Join::parallel;
+    part.parent = index;
+    fill_part(place, group->parts, source);
+  }
+  parts_[index].first_part = static_cast<uint32_t>(inner_.size());
+  parts_[index].parts = static_cast<uint32_t>(inside.size());
+  inner_.insert(inner_.end(), inside.begin(), inside.end());
+}
+
+// What a part needs to know of itself; the parts inside it are prepared.
+void StringCurve::prepare_part(uint32_t index, StringState& state) {
+  Part& part = parts_[index];
+  for (const uint32_t p : inner(part)) {
+    part.has_clamps =
+        part.has_clamps || parts_[p].has_clamps || parts_[p].bypass.kind == Diode::Kind::clamp;
+  }
+  if (part.in_parallel) {
+    for (const LitCell& cell : tied_cells(part)) part.largest_A += cell.photocurrent_A;
+    part.light_A = part.largest_A;
+    for (const uint32_t p : inner(part)) {
+      part.largest_A += parts_[p].largest_A;
+      part.light_A += parts_[p].light_A;
+    }
+    uint32_t holding = nothing;
+    for (const uint32_t p : inner(part)) {
+      if (parts_[p].lowest_V > part.lowest_V) {
+        holding = p;
+        part.lowest_V = parts_[p].lowest_V;
+      }
+    }
+    if (holding != nothing) {
+      part.lowest_A =
+          parts_[holding].lowest_A + tied_A(index, part.lowest_V, nullptr, holding, nullptr, state);
+    }
+  } else {
+    part.light_A = unlimited;
+    for (const Run& run : runs_of(part)) {
+      part.largest_A =
+          std::max(part.largest_A, cells_[run.first_cell + run.cells - 1].photocurrent_A);
+      part.light_A = std::min(part.light_A, cells_[run.first_cell].photocurrent_A);
+    }
+    double lowest_V = part.runs == 0 ? 0.0 : -unlimited, lowest_A = 0.0;
+    for (const uint32_t p : inner(part)) {
+      part.largest_A = std::max(part.largest_A, parts_[p].largest_A);
+      part.light_A = std::min(part.light_A, parts_[p].light_A);
+      lowest_V += parts_[p].lowest_V;
+      lowest_A = std::max(lowest_A, parts_[p].lowest_A);
+    }
+    if (lowest_V > -unlimited) {
+      part.lowest_V = lowest_V;
+      part.lowest_A = lowest_A;
+    }
+  }
+  part.open_circuit_V = inside_at(index, 0.0, nullptr, 1e-9, state).voltage_V;
+  const DiodeJunction& bypass = part.bypass;
+  if (bypass.kind == Diode::Kind::junction) {
+    const double typical_A = 0.2 * part.largest_A;
+    const double drop_V = bypass.scale_V * std::log1p(typical_A / bypass.saturation_A);
+    if (part.lowest_V < -drop_V) part.turn_on_A = inside_A(index, drop_V, state);
+    part.lowest_V = -unlimited;
+    part.lowest_A = unlimited;
+  } else if (bypass.kind == Diode::Kind::clamp && part.lowest_V < -bypass.drop_V) {
+    part.own_clamp_A = inside_A(index, bypass.drop_V, state);
+    part.lowest_V = -bypass.drop_V;
+    part.lowest_A = part.own_clamp_A;
+  }
+}
+
+// From the current of the part at which its diode begins to conduct to that of the string, from one
+// part to the one that it lies in.
+void StringCurve::find_clamp(uint32_t index, StringState& state) {
+  double current_A = parts_[index].own_clamp_A;
+  uint32_t below = index;
+  for (uint32_t p = parts_[index].parent; p != nothing && current_A < unlimited;
+       below = p, p = parts_[p].parent) {
+    const Part& part = parts_[p];
+    double inside_V = 0.0;
+    if (part.in_parallel) {
+      inside_V = part_at(below, current_A, nullptr, 1e-9, state).voltage_V;
+      for (const uint32_t other : inner(part)) {
+        constexpr double same_V = 1e-9;
+        if (parts_[other].lowest_V > inside_V + same_V) current_A = unlimited;
+      }
+      if (current_A < unlimited) {
+        current_A += tied_A(p, inside_V, nullptr, below, nullptr, state);
+      }
+    }
+    if (part.bypass.kind == Diode::Kind::clamp && current_A >= part.own_clamp_A) {
+      current_A = unlimited;
+    }
+    if (part.bypass.kind == Diode::Kind::junction && current_A < unlimited) {
+      if (!part.in_parallel) inside_V = inside_at(p, current_A, nullptr, 1e-9, state).voltage_V;
+      current_A += part.bypass.current_A(part.bypass.junction_V(-inside_V));
+    }
+  }
+  parts_[index].clamp_A = current_A;
 }
 
 }  // namespace photorque

@@ -1,34 +1,41 @@
 // Bounds of a StringCurve between two points, its derivatives, and the states of its cells.
+#include <algorithm>
+#include <cmath>
+
 #include "photovoltaics/network/string.h"
 
 namespace photorque {
 
-SlopeRange StringCurve::substring_range(uint32_t index, const StringState& low_i,
-                                        const StringState& high_i) const {
-  const Substring& substring = substrings_[index];
+SlopeRange StringCurve::part_range(uint32_t index, const StringState& low_i,
+                                   const StringState& high_i, const StringRegime& regime) const {
+  if (regime.clamped[index] != 0) return {};
+  const Part& part = parts_[index];
   SlopeRange sum;
-  for (const Run& run : runs_of(substring)) {
-    for (uint32_t c = run.first_cell; c < run.first_cell + run.cells; ++c) {
-      sum += cell_range(cells_[c], low_i.cells[c], high_i.cells[c]) * cells_[c].copies;
+  if (part.in_parallel) {
+    if (holding_part(index, regime) != nothing) return {};
+    for (uint32_t c = part.first_cell; c < part.first_cell + part.cells; ++c) {
+      sum += inverted(cell_range(cells_[c], low_i.cells[c], high_i.cells[c]));
     }
+    for (const uint32_t p : inner(part)) sum += inverted(part_range(p, low_i, high_i, regime));
+    sum = inverted(sum);
+  } else {
+    for (const Run& run : runs_of(part)) {
+      for (uint32_t c = run.first_cell; c < run.first_cell + run.cells; ++c) {
+        sum += cell_range(cells_[c], low_i.cells[c], high_i.cells[c]) * cells_[c].copies;
+      }
+    }
+    for (const uint32_t p : inner(part)) sum += part_range(p, low_i, high_i, regime);
   }
-  for (const Row& row : rows_of(substring)) {
-    sum += tied_cells_range(lit(row), std::span(low_i.cells).subspan(row.first_cell, row.cells),
-                            std::span(high_i.cells).subspan(row.first_cell, row.cells));
-  }
-  if (substring.bypass.kind != Diode::Kind::junction) return sum;
+  if (part.bypass.kind != Diode::Kind::junction || sum.slope_high == 0.0) return sum;
   SlopeRange both = inverted(sum);
-  both +=
-      substring.bypass.range(low_i.bypasses[index].junction_S, high_i.bypasses[index].junction_S);
+  both += part.bypass.range(low_i.parts[index].junction_S, high_i.parts[index].junction_S);
   return inverted(both);
 }
 
 SlopeRange StringCurve::resistance_range(const StringState& low_i, const StringState& high_i,
                                          const StringRegime& regime) const {
   SlopeRange sum;
-  for (uint32_t s = 0; s < substrings_.size(); ++s) {
-    if (!regime.clamped[s]) sum += substring_range(s, low_i, high_i);
-  }
+  for (uint32_t k = 0; k < substrings_; ++k) sum += part_range(k, low_i, high_i, regime);
   if (blocking_.kind == Diode::Kind::junction) {
     const double low = high_i.blocking_ohm, high = low_i.blocking_ohm;
     sum += SlopeRange{low + blocking_.series_ohm, high + blocking_.series_ohm,
@@ -42,93 +49,142 @@ SlopeRange StringCurve::conductance_range(const StringState& low_i, const String
   return regime.blocked ? SlopeRange{} : inverted(resistance_range(low_i, high_i, regime));
 }
 
-// Of the rows of a substring V_r(I_r) each photocurrent moves the voltage by r = dV_d/dj, and the
-// slope by −q, q = dr/dj. In a row of tied cells at one voltage a cell's current moves by a =
-// r/(r + R_s) of its photocurrent's change, and the row's voltage by a/S, S = Σ 1/(r + R_s); the
-// slope follows by the chain rule through the currents of all its cells. A junction beside the
-// rows, of the conductance g = di/dw, shares what they get: with ρ = −dV_r/dI_r and D = 1 + ρ g,
-//   ∂V/∂I_k = r/D,   ∂²V/∂I∂I_k = −q/D² − r (ρ² dg/dw − g d²V_r/dI_r²)/D³.
-std::vector<VoltageMotion> StringCurve::voltage_motions(const StringState& state,
-                                                        const StringRegime& regime) const {
-  std::vector<VoltageMotion> all, moved;  // the wiring's cells, and those of a substring
-  for (uint32_t s = 0; s < substrings_.size(); ++s) {
-    if (regime.clamped[s]) continue;
-    const Substring& substring = substrings_[s];
-    moved.clear();
-    double rows_ohm = 0.0, rows_V_A2 = 0.0;
-    for (const Run& run : runs_of(substring)) {
+// At a fixed current of a part each photocurrent p moves its voltage by m = ∂V/∂p, and the slope by
+// m′ = ∂²V/∂I∂p. Of a cell m = r = dV_d/dj and m′ = −q, q = dr/dj; in series they stay. In parallel
+// the current of a branch of ρ = −dV/dI and κ = d²V/dI² moves at a fixed voltage by g = m/ρ, and
+// its slope dI/dV by h = −(κ g + m′)/ρ²; with S = Σ 1/ρ and K = Σ κ/ρ³ over all branches
+//   ∂V/∂p = g/S,   ∂²V/∂I∂p = −(K g/S + h)/S².
+// A junction beside cells, of the conductance G = di/dw, shares what they get: with D = 1 + ρ G,
+//   ∂V/∂p = m/D,   ∂²V/∂I∂p = m′/D² − m (ρ² dG/dw − G κ)/D³.
+StringCurve::PartMotion StringCurve::motion_of(uint32_t index, const StringState& state,
+                                               const StringRegime& regime) const {
+  PartMotion motion;
+  if (regime.clamped[index] != 0) return motion;
+  const Part& part = parts_[index];
+  if (part.in_parallel) {
+    if (holding_part(index, regime) != nothing) return motion;
+    Slopes all;  // of I(V)
+    const auto add = [&](const Slopes& branch, std::vector<VoltageMotion> moved) {
+      all += inverted(branch);
+      for (VoltageMotion& m : moved) {
+        const double g = m.voltage_ohm / branch.slope;
+        m.slope_V_A2 = -(branch.curvature * g + m.slope_V_A2) / (branch.slope * branch.slope);
+        m.voltage_ohm = g;
+        motion.moved.push_back(m);
+      }
+    };
+    for (uint32_t c = part.first_cell; c < part.first_cell + part.cells; ++c) {
+      const JunctionState& cell = state.cells[c];
+      add({cell.slope_ohm + cells_[c].series_ohm, cell.curvature_V_A2, 0.0},
+          {{c, cell.slope_ohm, -cell.curvature_V_A2}});
+    }
+    for (const uint32_t p : inner(part)) {
+      PartMotion branch = motion_of(p, state, regime);
+      add({branch.slope_ohm, branch.curvature_V_A2, 0.0}, std::move(branch.moved));
+    }
+    const double S = all.slope, K = all.curvature;
+    for (VoltageMotion& m : motion.moved) {
+      m.slope_V_A2 = -(K * m.voltage_ohm / S + m.slope_V_A2) / (S * S);
+      m.voltage_ohm /= S;
+    }
+    motion.slope_ohm = 1.0 / S;
+    motion.curvature_V_A2 = K / (S * S * S);
+  } else {
+    for (const Run& run : runs_of(part)) {
       for (uint32_t c = run.first_cell; c < run.first_cell + run.cells; ++c) {
         const JunctionState& cell = state.cells[c];
-        moved.push_back({c, cell.slope_ohm, -cell.curvature_V_A2});
-        rows_ohm += copies_[c] * (cell.slope_ohm + cells_[c].series_ohm);
-        rows_V_A2 += copies_[c] * cell.curvature_V_A2;
+        motion.moved.push_back({c, cell.slope_ohm, -cell.curvature_V_A2});
+        motion.slope_ohm += copies_[c] * (cell.slope_ohm + cells_[c].series_ohm);
+        motion.curvature_V_A2 += copies_[c] * cell.curvature_V_A2;
       }
     }
-    for (const Row& row : rows_of(substring)) {
-      double all_S = 0.0, bend = 0.0;
-      for (uint32_t c = row.first_cell; c < row.first_cell + row.cells; ++c) {
-        const double cell_S = 1.0 / (state.cells[c].slope_ohm + cells_[c].series_ohm);
-        all_S += cell_S;
-        bend += state.cells[c].curvature_V_A2 * cell_S * cell_S * cell_S;
-      }
-      for (uint32_t c = row.first_cell; c < row.first_cell + row.cells; ++c) {
-        const JunctionState& cell = state.cells[c];
-        const double ohm = cell.slope_ohm + cells_[c].series_ohm, part = cell.slope_ohm / ohm;
-        moved.push_back({c, part / all_S,
-                         -(cell.curvature_V_A2 * cells_[c].series_ohm / (ohm * ohm * ohm) +
-                           part * bend / all_S) /
-                             (all_S * all_S)});
-      }
-      rows_ohm += 1.0 / all_S;
-      rows_V_A2 += bend / (all_S * all_S * all_S);
+    for (const uint32_t p : inner(part)) {
+      const PartMotion member = motion_of(p, state, regime);
+      motion.moved.insert(motion.moved.end(), member.moved.begin(), member.moved.end());
+      motion.slope_ohm += member.slope_ohm;
+      motion.curvature_V_A2 += member.curvature_V_A2;
     }
-    double beside = 1.0, more = 0.0;  // D, and what multiplies −r/D³
-    if (substring.bypass.kind == Diode::Kind::junction) {
-      const Slopes diode = substring.bypass.slopes(state.bypasses[s].junction_S);
-      beside = 1.0 + rows_ohm * diode.slope;
-      more = rows_ohm * rows_ohm * diode.curvature - diode.slope * rows_V_A2;
-    }
-    for (const VoltageMotion& m : moved) {
+  }
+  if (part.bypass.kind != Diode::Kind::junction) return motion;
+  const Slopes diode = part.bypass.slopes(state.parts[index].junction_S);
+  const double ohm = motion.slope_ohm, D = 1.0 + ohm * diode.slope;
+  const double more = ohm * ohm * diode.curvature - diode.slope * motion.curvature_V_A2;
+  for (VoltageMotion& m : motion.moved) {
+    m.slope_V_A2 = (m.slope_V_A2 - m.voltage_ohm * more / D) / (D * D);
+    m.voltage_ohm /= D;
+  }
+  motion.slope_ohm = ohm / D;
+  motion.curvature_V_A2 = (motion.curvature_V_A2 + ohm * ohm * ohm * diode.curvature) / (D * D * D);
+  return motion;
+}
+
+std::vector<VoltageMotion> StringCurve::voltage_motions(const StringState& state,
+                                                        const StringRegime& regime) const {
+  std::vector<VoltageMotion> all;  // of the wiring's cells
+  for (uint32_t k = 0; k < substrings_; ++k) {
+    for (const VoltageMotion& m : motion_of(k, state, regime).moved) {
       for (const int wired : wired_to(static_cast<uint32_t>(m.cell))) {
-        all.push_back({static_cast<size_t>(wired), m.voltage_ohm / beside,
-                       (m.slope_V_A2 - m.voltage_ohm * more / beside) / (beside * beside)});
+        all.push_back({static_cast<size_t>(wired), m.voltage_ohm, m.slope_V_A2});
       }
     }
   }
   return all;
 }
 
-void StringCurve::cells_at(double current_A, std::vector<double>& voltages_V,
-                           std::vector<double>& currents_A) const {
-  StringState state = make_state();
-  const StringRegime regime = regime_at(current_A);
-  for (uint32_t s = 0; s < substrings_.size(); ++s) {
-    const Substring& substring = substrings_[s];
-    double rows_A = regime.clamped[s] ? substring.clamp_A : current_A;
-    if (substring.bypass.kind == Diode::Kind::junction) {
-      bypassed_at(s, current_A, 1e-9, state);
-      rows_A -= substring.bypass.saturation_A *
-                std::expm1(state.bypasses[s].junction_V / substring.bypass.scale_V);
-    }
-    for (const Run& run : runs_of(substring)) {
+void StringCurve::part_cells_at(uint32_t index, double current_A, StringState& state,
+                                std::vector<double>& voltages_V,
+                                std::vector<double>& currents_A) const {
+  const Part& part = parts_[index];
+  double inside_A = current_A;
+  if (part.bypass.kind == Diode::Kind::clamp) inside_A = std::min(inside_A, part.own_clamp_A);
+  if (part.bypass.kind == Diode::Kind::junction) {
+    bypassed_at(index, current_A, nullptr, 1e-9, state);
+    inside_A -=
+        part.bypass.saturation_A * std::expm1(state.parts[index].junction_V / part.bypass.scale_V);
+  }
+  if (!part.in_parallel) {
+    for (const Run& run : runs_of(part)) {
       for (uint32_t c = run.first_cell; c < run.first_cell + run.cells; ++c) {
-        const double voltage_V = cell_at(cells_[c], rows_A, state.cells[c]).voltage_V;
+        const double voltage_V = cell_at(cells_[c], inside_A, state.cells[c]).voltage_V;
         for (const int wired : wired_to(c)) {
           voltages_V[static_cast<size_t>(wired)] = voltage_V;
-          currents_A[static_cast<size_t>(wired)] = rows_A;
+          currents_A[static_cast<size_t>(wired)] = inside_A;
         }
       }
     }
-    for (const Row& row : rows_of(substring)) {
-      const auto states = std::span(state.cells).subspan(row.first_cell, row.cells);
-      const double voltage_V = tied_cells_at(lit(row), rows_A, states).voltage_V;
-      for (uint32_t c = row.first_cell; c < row.first_cell + row.cells; ++c) {
-        const auto wired = static_cast<size_t>(wired_to(c).front());
-        voltages_V[wired] = voltage_V;
-        currents_A[wired] = cells_[c].law->curve().current_A(cells_[c].photocurrent_A,
-                                                             voltage_V - cells_[c].offset_V);
-      }
+    for (const uint32_t p : inner(part)) {
+      part_cells_at(p, inside_A, state, voltages_V, currents_A);
     }
+    return;
+  }
+  const double voltage_V = inside_at(index, inside_A, nullptr, 1e-9, state).voltage_V;
+  double left_A = inside_A;
+  for (uint32_t c = part.first_cell; c < part.first_cell + part.cells; ++c) {
+    const auto wired = static_cast<size_t>(wired_to(c).front());
+    voltages_V[wired] = voltage_V;
+    currents_A[wired] =
+        cells_[c].law->curve().current_A(cells_[c].photocurrent_A, voltage_V - cells_[c].offset_V);
+    left_A -= currents_A[wired];
+  }
+  uint32_t holding = nothing;
+  for (const uint32_t p : inner(part)) {
+    constexpr double same_V = 1e-9;
+    if (holding == nothing && voltage_V <= parts_[p].lowest_V + same_V) {
+      holding = p;
+      continue;
+    }
+    const double part_current_A = part_A(p, voltage_V, nullptr, state);
+    left_A -= part_current_A;
+    part_cells_at(p, part_current_A, state, voltages_V, currents_A);
+  }
+  if (holding != nothing) part_cells_at(holding, left_A, state, voltages_V, currents_A);
+}
+
+void StringCurve::cells_at(double current_A, std::vector<double>& voltages_V,
+                           std::vector<double>& currents_A) const {
+  StringState state = make_state();
+  for (uint32_t k = 0; k < substrings_; ++k) {
+    part_cells_at(k, current_A, state, voltages_V, currents_A);
   }
 }
 

@@ -1,6 +1,7 @@
 // How the cells of an array are joined.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 namespace photorque {
@@ -20,20 +21,60 @@ struct Diode {
   double temperature_K = 298.15;
 };
 
+// A cell, or parts joined in series or in parallel, to any depth. A bypass diode may lie beside
+// parts that are joined.
+struct CellGroup {
+  enum class Join { cell, series, parallel };
+  Join join = Join::cell;
+  int cell = -1;  // its index, where it is one
+  std::vector<CellGroup> parts;
+  Diode bypass;
+
+  CellGroup(int index) : cell(index) {}
+  // Cells tied in parallel; the cell alone where there is one.
+  CellGroup(const std::vector<int>& tied) : join(Join::parallel) {
+    if (tied.size() == 1) {
+      *this = CellGroup(tied[0]);
+    } else {
+      parts.assign(tied.begin(), tied.end());
+    }
+  }
+  CellGroup(Join how, std::vector<CellGroup> joined, const Diode& beside = {})
+      : join(how), parts(std::move(joined)), bypass(beside) {}
+
+  bool is_cell() const { return join == Join::cell; }
+  template <class Function>
+  void for_each_cell(const Function& f) const {
+    if (is_cell()) f(cell);
+    for (const CellGroup& part : parts) part.for_each_cell(f);
+  }
+};
+
 // An array is strings in parallel; a string is substrings in series behind one blocking diode; a
-// substring is rows in series beside one bypass diode; a row is cells tied in parallel (one cell
-// where nothing is cross-tied). Cells are named by their index; each occurs once.
+// substring is cells and groups of cells in series beside one bypass diode. Cells are named by
+// their index; each occurs once.
 struct ArrayWiring {
   struct Substring {
-    std::vector<std::vector<int>> rows;
+    std::vector<CellGroup> rows;
     Diode bypass;
   };
   struct String {
     std::vector<Substring> substrings;
     Diode blocking;
+
+    template <class Function>
+    void for_each_cell(const Function& f) const {
+      for (const Substring& substring : substrings) {
+        for (const CellGroup& row : substring.rows) row.for_each_cell(f);
+      }
+    }
   };
   std::vector<String> strings;
 };
+
+// An array of one circuit: its parallel branches are the strings, each behind the blocking diode,
+// and what lies in series in a string are its substrings.
+ArrayWiring wiring_of(const CellGroup& circuit, const Diode& blocking);
 
 // What differs from an array as it is wired.
 struct ArrayChanges {

@@ -49,7 +49,7 @@ struct Network {
     tables.assign(cells, plain);
     light_A.assign(cells, usual.photocurrent_A);
     if (!split) return;
-    wiring.strings[0].substrings[0].rows[0].push_back(cells);
+    wiring.strings[0].substrings[0].rows[0] = std::vector{0, cells};
     tables.push_back(plain);
     light_A.push_back(0.0);
   }

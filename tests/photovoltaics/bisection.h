@@ -87,31 +87,56 @@ struct Array {
   CellParameters cell;
   std::vector<double> photocurrents_A;
 
-  Real row_V(const std::vector<int>& row, Real current_A) const {
-    const auto light = [&](int i) { return photocurrents_A[static_cast<size_t>(i)]; };
-    if (row.size() == 1) return cell_V(cell, light(row[0]), current_A);
-    return root(cell.breakdown_V * 0.9999, 3.0L, [&](Real v) {
+  // Of a cell, or of cells joined in any way, with the diode beside them.
+  Real row_V(const CellGroup& row, Real current_A) const {
+    if (row.is_cell()) {
+      return cell_V(cell, photocurrents_A[static_cast<size_t>(row.cell)], current_A);
+    }
+    return beside_V(row.bypass, current_A, [&](Real i) { return joined_V(row, i); });
+  }
+  Real joined_V(const CellGroup& row, Real current_A) const {
+    if (row.join == CellGroup::Join::series) {
+      Real sum = 0;
+      for (const CellGroup& part : row.parts) sum += row_V(part, current_A);
+      return sum;
+    }
+    // Were the current shared equally, the voltage would lie between the branches'.
+    Real low = 1e3L, high = -1e3L;
+    for (const CellGroup& part : row.parts) {
+      const Real v = row_V(part, current_A / row.parts.size());
+      low = std::min(low, v);
+      high = std::max(high, v);
+    }
+    if (!(low < high)) return low;
+    return root(low, high, [&](Real v) {
       Real sum = -current_A;
-      for (const int i : row) sum += cell_A(cell, light(i), v);
+      for (const CellGroup& part : row.parts) sum += row_A(part, v);
       return sum;
     });
+  }
+  // An ideal diode takes any current at its voltage: the least is meant.
+  Real row_A(const CellGroup& row, Real voltage_V) const {
+    if (row.is_cell() && voltage_V > cell.breakdown_V * 0.9999) {
+      return cell_A(cell, photocurrents_A[static_cast<size_t>(row.cell)], voltage_V);
+    }
+    return root(-100.0L, 100.0L, [&](Real i) { return row_V(row, i) - voltage_V; });
   }
   Real rows_V(const ArrayWiring::Substring& substring, Real current_A) const {
     Real sum = 0;
     for (const auto& row : substring.rows) sum += row_V(row, current_A);
     return sum;
   }
+  template <typename Inside>
+  static Real beside_V(const Diode& d, Real current_A, const Inside& inside_V) {
+    if (d.kind == Diode::Kind::none) return inside_V(current_A);
+    if (d.kind == Diode::Kind::clamp) return std::max<Real>(inside_V(current_A), -d.drop_V);
+    // For the current through the diode: −V_inside(I − i) − V_diode(i) falls with i.
+    const Real through = root(-Real(d.saturation_A) * (1 - 1e-18L), std::max<Real>(current_A, 0),
+                              [&](Real i) { return -inside_V(current_A - i) - diode_V(d, i); });
+    return inside_V(current_A - through);
+  }
   Real substring_V(const ArrayWiring::Substring& substring, Real current_A) const {
-    const Diode& d = substring.bypass;
-    if (d.kind == Diode::Kind::none) return rows_V(substring, current_A);
-    if (d.kind == Diode::Kind::clamp) {
-      return std::max<Real>(rows_V(substring, current_A), -d.drop_V);
-    }
-    // For the current through the diode: −V_rows(I − i) − V_diode(i) falls with i.
-    const Real through =
-        root(-Real(d.saturation_A) * (1 - 1e-18L), std::max<Real>(current_A, 0),
-             [&](Real i) { return -rows_V(substring, current_A - i) - diode_V(d, i); });
-    return rows_V(substring, current_A - through);
+    return beside_V(substring.bypass, current_A, [&](Real i) { return rows_V(substring, i); });
   }
   Real string_V(const ArrayWiring::String& string, Real current_A) const {
     Real sum = 0;

@@ -252,6 +252,26 @@ TEST(PhotovoltaicTable, IsExactOverItsRangeAndBeyond) {
   }
 }
 
+// PVsyst's at 800 W/m² and in the dark: the values of pvlib's test_calcparams_pvsyst (R_sh_ref 300
+// Ω, R_sh_0 1000 Ω, R_sh_exp 5.5). Breakdown keeps its current.
+TEST(PhotovoltaicCell, ShuntInLightIsThatOfTheNamedModels) {
+  CellParameters p;
+  p.shunt_ohm = 300.0;
+  p.breakdown_fraction = 2e-3;
+  EXPECT_EQ(in_light(p, 3.0).shunt_ohm, 300.0);
+  p.shunt_light_A = 6.0;
+  EXPECT_NEAR(in_light(p, 1.5).shunt_ohm, 1200.0, 1e-9);
+  EXPECT_NEAR(in_light(p, 12.0).shunt_ohm, 150.0, 1e-9);
+  EXPECT_NEAR(in_light(p, 1.5).breakdown_fraction / in_light(p, 1.5).shunt_ohm, 2e-3 / 300.0,
+              1e-15);
+  EXPECT_GT(in_light(p, 0.0).shunt_ohm, 1e5);
+  EXPECT_TRUE(std::isfinite(in_light(p, 0.0).shunt_ohm));
+  p.shunt_dark_ohm = 1000.0;
+  EXPECT_NEAR(in_light(p, 0.8 * 6.0).shunt_ohm, 305.757, 5e-4);
+  EXPECT_NEAR(in_light(p, 0.0).shunt_ohm, 1000.0, 1e-9);
+  EXPECT_NEAR(in_light(p, 6.0).shunt_ohm, 300.0, 1e-9);
+}
+
 TEST(PhotovoltaicCell, ParametersOutOfRangeAreNamed) {
   CellParameters p;
   p.shunt_ohm = -1.0;

@@ -56,6 +56,22 @@ std::vector<ArrayUnderTest> arrays_under_test() {
   std::vector<ArrayUnderTest> all = {
       ArrayUnderTest(1), ArrayUnderTest(2), ArrayUnderTest(1, Diode::Kind::junction),
       ArrayUnderTest(2, Diode::Kind::junction), ArrayUnderTest(2, Diode::Kind::junction, true)};
+  // Pairs of pairs in parallel, beside diodes of both kinds.
+  for (const Diode::Kind kind : {Diode::Kind::clamp, Diode::Kind::junction}) {
+    ArrayUnderTest nested(1);
+    Diode d;
+    d.kind = kind;
+    using Join = CellGroup::Join;
+    std::vector<CellGroup> groups;
+    for (int first = 0; first < columns * rows; first += 4) {
+      groups.push_back({Join::parallel,
+                        {{Join::series, {first, first + 1}, first == 4 ? d : Diode{}},
+                         {Join::series, {first + 2, first + 3}, first == 4 ? d : Diode{}}},
+                        first == 4 ? Diode{} : d});
+    }
+    nested.wiring = wiring_of({Join::series, groups}, {});
+    all.push_back(nested);
+  }
   const size_t plain = all.size();
   for (size_t i = 0; i < plain; ++i) {
     ArrayUnderTest with_resistance = all[i];
@@ -113,6 +129,34 @@ TEST(PhotovoltaicDerivatives, EveryLawOfTheDiodeGivesTheSameMaxima) {
         EXPECT_NEAR(maxima[i].current_A, closed_form[i].current_A, 1e-9);
       }
     }
+  }
+}
+
+// A shunt that changes with the light is in each cell the one that its light makes.
+TEST(PhotovoltaicChanges, ShuntsFollowTheLightOfTheirCells) {
+  CellParameters changing = a_cell();
+  changing.shunt_ohm = 2.0;
+  changing.shunt_light_A = 1.0;
+  for (const int strings : {1, 2}) {
+    const ArrayUnderTest array(strings);
+    CellTables stated;
+    for (const double light_A : array.photocurrents_A) {
+      CellParameters p = a_cell();
+      p.shunt_ohm = 2.0 / light_A;
+      stated.push_back(diode_voltage_law(p));
+    }
+    const size_t cells = array.photocurrents_A.size();
+    const ArrayCurve by_light(array.wiring, CellTables(cells, diode_voltage_law(changing)),
+                              array.photocurrents_A);
+    const ArrayCurve by_cell(array.wiring, stated, array.photocurrents_A);
+    EXPECT_NEAR(by_light.maximum_power().power_W(), by_cell.maximum_power().power_W(), 1e-12);
+    // It matters: a constant one gives another maximum.
+    changing.shunt_light_A = 0.0;
+    const ArrayCurve constant(array.wiring, CellTables(cells, diode_voltage_law(changing)),
+                              array.photocurrents_A);
+    EXPECT_GT(std::abs(constant.maximum_power().power_W() - by_cell.maximum_power().power_W()),
+              1e-3);
+    changing.shunt_light_A = 1.0;
   }
 }
 

@@ -1,12 +1,14 @@
 // `fit-cell`, and what `power` says beyond the maximum power point, as a user meets them.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 
 #include "attitude/recordings/text_lines.h"
+#include "tests/outside.h"
 #include "tests/tools/command_test.h"
 
 namespace photorque {
@@ -31,6 +33,99 @@ TEST_F(ArrayCommand, FitsADatasheetAndPrintsTheCell) {
   EXPECT_THAT(file_text(at("out/summary.json")), HasSubstr("\"ideality\""));
   EXPECT_TRUE(fs::exists(at("out/parameters.csv")));
   EXPECT_TRUE(fs::exists(at("out/fit.png")));
+}
+
+// A number of the JSON that --json prints: "name": {"value": …
+double json_value(const std::string& text, const std::string& name) {
+  const size_t at = text.find("\"" + name + "\"");
+  if (at == std::string::npos) return std::nan("");
+  const size_t value = text.find("\"value\":", at);
+  return std::stod(text.substr(value + 8));
+}
+
+// Half-cut module under uneven light: twice what one of its two groups gives.
+TEST_F(ArrayCommand, TwinModulesAreOneCircuit) {
+  write("plate.obj",
+        "o plate\nv -0.4 -0.1 0\nv 0.4 -0.1 0\nv 0.4 0.1 0\nv -0.4 0.1 0\nusemtl m\nf 1 2 3 4\n");
+  std::string twin =
+      "[scene]\nfile = \"plate.obj\"\nunit = \"m\"\n[[material]]\nname = \"m\"\nabsorptance = 1\n"
+      "[[source]]\nkind = \"sun\"\ndirection = [0, 0, -1]\nirradiance_W_m2 = 1000\n"
+      "angular_radius_deg = 0\n[[receiver]]\nkind = \"flux_map\"\nnode = \"plate\"\nbins = [8, 2]\n"
+      "[trace]\nrays = 16384\n[array]\ncells = [8, 1]\nbypass = \"ideal\"\n"
+      "temperature_K = 298.15\nCIRCUIT\n";
+  for (const int index : {2, 3, 4, 5}) {
+    twin += "[[array.cell_override]]\nindex = " + std::to_string(index) +
+            "\nphotocurrent_factor = 0.5\n";
+  }
+  for (const char* circuit : {"wiring = [ [ [ [[0, 1], [2, 3]] ], [ [[4, 5], [6, 7]] ] ] ]",
+                              "circuit = [\"series 2 bypass\", \"parallel 2\", \"series 2\"]"}) {
+    std::string text = twin;
+    text.replace(text.find("CIRCUIT"), 7, circuit);
+    write("twin.toml", text);
+    const Outcome got = run("power " + at("twin.toml") + " --json --out " + at("out"));
+    ASSERT_EQ(got.status, 0) << got.err;
+    EXPECT_THAT(got.out, HasSubstr("22.272")) << circuit;
+  }
+}
+
+TEST_F(ArrayCommand, AShuntThatFollowsTheLightIsNamed) {
+  write("fit.toml",
+        "[fit]\ncells_in_series = 60\n"
+        "[[fit.datasheet]]\nirradiance_W_m2 = 1000\nshort_circuit_A = 8.9731\n"
+        "open_circuit_V = 36.068\nmaximum_A = 8.1782\nmaximum_V = 28.813\n"
+        "[[fit.datasheet]]\nirradiance_W_m2 = 500\nshort_circuit_A = 4.4933\n"
+        "open_circuit_V = 34.895\nmaximum_A = 4.1057\nmaximum_V = 28.789\n"
+        "[[fit.datasheet]]\nirradiance_W_m2 = 200\nshort_circuit_A = 1.7989\n"
+        "open_circuit_V = 33.344\nmaximum_A = 1.6450\nmaximum_V = 27.981\n"
+        "[[fit.datasheet]]\nirradiance_W_m2 = 100\nshort_circuit_A = 0.8997\n"
+        "open_circuit_V = 32.171\nmaximum_A = 0.8224\nmaximum_V = 27.093\n");
+  const Outcome got = run("fit-cell " + at("fit.toml") + " --out " + at("out"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, HasSubstr("inversely proportional to the light"));
+  EXPECT_THAT(got.out, HasSubstr("shunt_photocurrent_A = "));
+  const Outcome constant =
+      run("fit-cell " + at("fit.toml") + " --set fit.shunt='\"constant\"' --out " + at("out2"));
+  ASSERT_EQ(constant.status, 0) << constant.err;
+  EXPECT_THAT(constant.out, HasSubstr("times their rounding"));
+}
+
+// The curve of the case "iv_clipped_tail", in another instrument's words: n 1.10 and 8.00 A.
+TEST_F(ArrayCommand, ACurveThatTheMeterClippedIsFitted) {
+  std::string text = "Sweep of 27 November\nVoltage (V);Current (mA)\n";
+  for (int i = 0; i <= 70; ++i) {
+    const double v = 0.01 * i;
+    // The explicit diode voltage by fixed steps of Newton's method for I.
+    double a = 8.0;
+    for (int k = 0; k < 200; ++k) {
+      const double d = v + 5e-3 * a, e = 1e-9 * std::exp(d / (1.1 * 0.0256926));
+      a -= (a - 8.0 + (e - 1e-9) + d / 50.0) / (1.0 + 5e-3 * (e / (1.1 * 0.0256926) + 0.02));
+    }
+    char line[60];
+    std::snprintf(line, sizeof line, "%.4f;%.2f\n", v, a > 0.0 ? 1e3 * a : -10.0);
+    text += line;
+  }
+  write("sweep.txt", text);
+  write("fit.toml", "[fit]\ncurves = [\"sweep.txt\"]\ncells_in_series = 1\n");
+  const Outcome got = run("fit-cell " + at("fit.toml") + " --out " + at("out"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, HasSubstr("where the meter stays at -0.01 A"));
+  const Outcome json = run("fit-cell " + at("fit.toml") + " --json --out " + at("out2"));
+  EXPECT_NEAR(json_value(json.out, "ideality"), 1.10, 0.02) << json.out;
+  EXPECT_NEAR(json_value(json.out, "photocurrent_A"), 8.0, 0.01);
+}
+
+// All curves of a day in one file, by one set of parameters. Those of 6:30 to 7:00 are shaded,
+// which leaves up to 8 % of them.
+TEST_F(ArrayCommand, ADayOfMeasuredCurvesHasOneSetOfParameters) {
+  const fs::path day = outside::third_party("recordings/nist_day/day_a.csv.gz");
+  if (!fs::exists(day)) GTEST_SKIP() << "without ../shared/recordings/nist_day/day_a.csv.gz";
+  fs::copy_file(day, at("day_a.csv.gz"));
+  write("fit.toml", "[fit]\ncurves = [\"day_a.csv.gz\"]\ncells_in_series = 60\n");
+  const Outcome got = run("fit-cell " + at("fit.toml") + " --json --out " + at("out"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  EXPECT_LT(json_value(got.out, "rms_fraction"), 0.03);
+  EXPECT_NEAR(json_value(got.out, "ideality"), 1.1, 0.1);
+  EXPECT_TRUE(fs::exists(at("out/curves.csv")));
 }
 
 // Figures at the temperature of operation, and the same moved to 25 °C by hand: 20 K warmer, at

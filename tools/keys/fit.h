@@ -8,8 +8,19 @@ namespace photorque {
 namespace fit_key {
 inline constexpr TextsKey curves(
     "curves",
-    "files of `voltage_V,current_A` (or `V,I`); several are repeats under the same light; *or*",
+    "files of voltage and current, as `voltage_V,current_A`, `V,I`, `Voltage (V);Current (mA)`; "
+    "several are repeats under the same light, or have lights of their own; *or*",
     {.optional = true});
+inline constexpr TablesKey curve("curve", "curves whose light or temperature is stated; *or*");
+inline constexpr TextKey curve_file("file", "one of `curves`");
+inline constexpr NumberKey curve_irradiance("irradiance_W_m2", Range::positive(), "of its light",
+                                            {.usually = "that in the file, if any"});
+inline constexpr NumberKey curve_temperature("temperature_K", {1.0, 1000.0}, "of the cells",
+                                             {.usually = "that in the file, else that of `[fit]`"});
+inline constexpr ChoiceKey shunt(
+    "shunt", {"best", "constant", "inverse"}, 0,
+    "R_sh in any light, or inversely proportional to the irradiance (De Soto, CEC); `best`: of "
+    "several lights, what describes them better");
 inline constexpr TablesKey datasheet("datasheet", "one to several points at one temperature");
 inline constexpr IntegerKey cells_in_series("cells_in_series", 1, 1, 2000, "of the device");
 inline constexpr NumberKey temperature(

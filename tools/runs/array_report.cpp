@@ -273,9 +273,9 @@ Product layout_report(const Console& console, const ArrayPower& array, const Cel
       wiring += b ? ", [" : "[";
       const auto& rows = found.wiring.strings[s].substrings[b].rows;
       for (size_t r = 0; r < rows.size(); ++r) {
-        wiring += (r ? ", " : "") + std::to_string(rows[r][0]);
+        wiring += (r ? ", " : "") + std::to_string(rows[r].cell);
         table.row()
-            .set("cell", rows[r][0])
+            .set("cell", rows[r].cell)
             .set("string", static_cast<double>(s + 1))
             .set("substring", static_cast<double>(b + 1));
       }

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/settings/settings.h"
 #include "core/text/format.h"
-#include "core/text/parse.h"
-#include "diagnosis/light/model/recording.h"
+#include "photovoltaics/fit/conditions.h"
+#include "photovoltaics/fit/curve_text.h"
 #include "photovoltaics/fit/fit.h"
 #include "photovoltaics/fit/rated_keys.h"
 #include "scenes/experiment/toml.h"
@@ -23,25 +24,83 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// voltage_V,current_A; or V,I as some instruments write.
-IvSweep read_sweep(const fs::path& file) {
-  if (file.extension() == ".gz") {
-    const LightRecording recording = read_light_recording(file, {});
-    if (recording.kind != LightRecording::Kind::sweep) {
-      throw InputError({file.string()}, "header", "another recording of light",
-                       "a curve with voltage_V,current_A");
-    }
-    return {recording.voltage_V, recording.current_A};
+std::string text_of(const fs::path& file) {
+  TextLines lines(file);
+  std::string text;
+  for (std::string_view line; lines.next(line);) {
+    text += line;
+    text += '\n';
   }
-  const std::vector<std::string> header = read_column_names(file);
-  const auto named = [&](const std::string& name, const std::string& other) {
-    const bool has_other = std::ranges::find(header, name) == header.end() &&
-                           std::ranges::find(header, other) != header.end();
-    return has_other ? other : name;
-  };
-  const NumberColumns numbers =
-      read_number_columns(file, {named("voltage_V", "V"), named("current_A", "I")});
-  return {numbers.columns[0], numbers.columns[1]};
+  return text;
+}
+
+// The curves of a file, cleaned; what was left out goes to the notes.
+void add_curves(const fs::path& file, std::optional<double> irradiance_W_m2,
+                std::optional<double> temperature_K, FitTask& task) {
+  std::vector<MeasuredCurve> curves = curves_in(text_of(file), file.string());
+  for (size_t k = 0; k < curves.size(); ++k) {
+    MeasuredCurve& curve = curves[k];
+    const std::string name =
+        file.filename().string() + (curves.size() > 1 ? ", curve " + std::to_string(k + 1) : "");
+    const auto note = [&](size_t count, const std::string& what) {
+      if (count == 0) return;
+      task.notes.push_back(name + ": left out " + std::to_string(count) + " " + what);
+    };
+    note(curve.unread, "rows without a reading");
+    const CurveCleaning cleaning = clean_curve(curve.sweep);
+    note(cleaning.spikes, "readings far from both neighbours");
+    note(cleaning.clipped, "points from " + show(cleaning.clipped_from_V) +
+                               " V on, beyond open circuit, where the meter stays at " +
+                               show(cleaning.clipped_A) + " A");
+    task.sweeps.push_back(curve.sweep);
+    task.names.push_back(name);
+    task.conditions.push_back(
+        {curve.sweep, temperature_K.value_or(curve.temperature_K.value_or(task.temperature_K)),
+         irradiance_W_m2.value_or(curve.irradiance_W_m2.value_or(0.0))});
+  }
+}
+
+// Repeats have one light and one temperature.
+bool are_repeats(const std::vector<CurveAt>& curves) {
+  const auto [cold, warm] = std::ranges::minmax(curves, {}, &CurveAt::temperature_K);
+  const auto [dim, bright] = std::ranges::minmax(curves, {}, &CurveAt::irradiance_W_m2);
+  double least_A = 1e300, most_A = 0.0;
+  for (const CurveAt& curve : curves) {
+    const double largest_A = std::ranges::max(curve.sweep.current_A);
+    least_A = std::min(least_A, largest_A);
+    most_A = std::max(most_A, largest_A);
+  }
+  constexpr double alike = 0.03, alike_K = 1.0;
+  return most_A <= (1.0 + alike) * least_A && warm.temperature_K - cold.temperature_K <= alike_K &&
+         bright.irradiance_W_m2 <= (1.0 + alike) * dim.irradiance_W_m2;
+}
+
+void read_curves(const Settings& s, const fs::path& folder, FitTask& task) {
+  if (s.has(fit_key::curves)) {
+    for (const std::string& name : s.get(fit_key::curves)) {
+      task.files.push_back(folder / name);
+      add_curves(task.files.back(), {}, {}, task);
+    }
+  }
+  if (s.has(fit_key::curve)) {
+    for (const Settings& one : s.get(fit_key::curve)) {
+      const auto stated = [&](const NumberKey& key) -> std::optional<double> {
+        if (!one.has(key)) return std::nullopt;
+        return one.get(key);
+      };
+      task.files.push_back(folder / one.get(fit_key::curve_file));
+      add_curves(task.files.back(), stated(fit_key::curve_irradiance),
+                 stated(fit_key::curve_temperature), task);
+    }
+  }
+  if (task.conditions.empty()) return;
+  for (const IvSweep& sweep : task.sweeps) {
+    if (sweep.current_A.empty()) {
+      throw s.error(fit_key::curves, "a curve without readings", "pairs of voltage and current");
+    }
+  }
+  task.temperature_K = task.conditions[0].temperature_K;
+  if (are_repeats(task.conditions)) task.conditions.clear();
 }
 
 // The open-circuit voltage of one cell: 0.3 V in moonlight, 4.5 V of the best stacks of junctions.
@@ -70,10 +129,13 @@ FitTask read_fit_task(const Settings& root, const fs::path& folder) {
   FitTask task;
   task.cells_in_series = static_cast<int>(s.get(fit_key::cells_in_series));
   task.temperature_K = s.get(fit_key::temperature);
-  if (s.has(fit_key::curves) == s.has(fit_key::datasheet)) {
-    throw s.error(fit_key::curves, s.has(fit_key::curves) ? "curves and a datasheet" : "neither",
-                  "either curves = [\"sweep.csv\"] or [[fit.datasheet]]");
+  const bool has_curves = s.has(fit_key::curves) || s.has(fit_key::curve);
+  if (has_curves == s.has(fit_key::datasheet)) {
+    throw s.error(fit_key::curves, has_curves ? "curves and a datasheet" : "neither",
+                  "either curves = [\"sweep.csv\"], [[fit.curve]] or [[fit.datasheet]]");
   }
+  const size_t law = s.get(fit_key::shunt);
+  if (law > 0) task.shunt_law = law == 1 ? ShuntLaw::constant : ShuntLaw::inverse;
   if (s.has(fit_key::datasheet)) {
     if (s.has(fit_key::temperature)) {
       throw s.error(fit_key::temperature, "a temperature beside a datasheet",
@@ -87,10 +149,7 @@ FitTask read_fit_task(const Settings& root, const fs::path& folder) {
                       s.get_or(fit_key::rounding_voltage, written.step_V),
                       s.get(fit_key::tolerance)};
   } else {
-    for (const std::string& name : s.get(fit_key::curves)) {
-      task.files.push_back(folder / name);
-      task.sweeps.push_back(read_sweep(task.files.back()));
-    }
+    read_curves(s, folder, task);
     task.noise.current_fraction = s.get(fit_key::current_noise);
     task.noise.voltage_fraction = s.get(fit_key::voltage_noise);
     task.noise.correlation_points = s.get(fit_key::correlation_points);
@@ -103,6 +162,13 @@ FitTask read_fit_task(const Settings& root, const fs::path& folder) {
     if (task.substrings > 0 && s.has(fit_key::correlation_points)) {
       throw s.error(fit_key::correlation_points, "a correlation for a partly shaded string",
                     "none: there every point has an error of its own");
+    }
+    if (!task.conditions.empty() && (task.substrings > 0 || s.has(fit_key::correlation_points) ||
+                                     s.get(fit_key::even_voltage_steps))) {
+      throw s.error(task.substrings > 0 ? fit_key::substrings.name : fit_key::curves.name,
+                    "curves under different light or temperature",
+                    "repeats under the same light with substrings, correlation_points or "
+                    "even_voltage_steps");
     }
     if (s.get(fit_key::even_voltage_steps)) {
       const EvenSweeps even = with_even_steps(task.sweeps, task.noise);
@@ -158,6 +224,21 @@ void print_misfit(const Console& console, double scatter) {
                "are widened to the scatter; `photorque diagnose` with [module] says what is wrong");
 }
 
+void print_left_out(const Console& console, const FitTask& task,
+                    const std::vector<OutlierReading>& outliers) {
+  for (const std::string& note : task.notes) console.line("  note: " + note);
+  if (outliers.empty()) return;
+  std::string where;
+  constexpr size_t shown = 5;
+  for (size_t i = 0; i < std::min(shown, outliers.size()); ++i) {
+    where += (i > 0 ? ", " : "") + show(outliers[i].voltage_V) + " V " +
+             show(outliers[i].current_A) + " A";
+  }
+  console.line("  note: left out " + std::to_string(outliers.size()) +
+               " outliers, more than eight errors off: " + where +
+               (outliers.size() > shown ? ", …" : ""));
+}
+
 std::vector<ArrayPoint> cell_points(const CellCurve& cell, double light_A) {
   constexpr int steps = 200;
   std::vector<ArrayPoint> points;
@@ -185,6 +266,7 @@ Product fit_even_light(const FitTask& task, const Console& console) {
   print_undetermined(console, rows);
   print_bounds(console, fit.bounds);
   print_ideality_note(console, fit.diode, task);
+  print_left_out(console, task, fit.outliers);
   console.line("  rms of current " + show(fit.rms_A) + " A over " + std::to_string(fit.points) +
                " points; scatter over that expected " + show(std::sqrt(fit.variance)));
   print_misfit(console, std::sqrt(fit.variance));
@@ -197,10 +279,77 @@ Product fit_even_light(const FitTask& task, const Console& console) {
   return product;
 }
 
+// The shunt in words, and `more`.
+void print_shunt_law(const Console& console, ShuntLaw law, const std::string& more) {
+  console.line(std::string("  shunt: ") +
+               (law == ShuntLaw::constant ? "constant" : "inversely proportional to the light") +
+               more);
+}
+
+Product fit_several_conditions(const FitTask& task, const Console& console) {
+  const ConditionsFit fit = fit_conditions(task.conditions, task.noise, task.shunt_law);
+  check_ideality(fit.diode, task);
+  double worst_A = 0.0;
+  for (const ConditionsFit::Curve& curve : fit.curves) worst_A = std::max(worst_A, curve.rms_A);
+  check_rms(worst_A, task);
+  std::vector<CellRow> rows = diode_rows(fit.diode, task);
+  const bool has_gap = fit.gap_error_eV > 0.0, has_light = fit.photocurrent_A_m2_W > 0.0;
+  if (has_gap) rows.push_back({"gap_eV", {fit.model.gap_eV, fit.gap_error_eV}});
+  if (has_gap && has_light) {
+    rows.push_back({"photocurrent_slope_per_K",
+                    {fit.model.photocurrent_slope_1_K, fit.photocurrent_slope_error_1_K}});
+  }
+  if (has_light) rows.push_back({"photocurrent_A_m2_W", {fit.photocurrent_A_m2_W, 0.0}});
+  rows.push_back({"rms_fraction", {fit.rms, 0.0}});
+  print_rows(console, rows);
+  print_undetermined(console, rows);
+  print_bounds(console, fit.bounds);
+  print_ideality_note(console, fit.diode, task);
+  print_left_out(console, task, fit.outliers);
+  print_shunt_law(console, fit.shunt_law, "");
+  console.line("  rms of current " + show_percent(fit.rms) + " of the photocurrent over " +
+               std::to_string(fit.points) + " points of " + std::to_string(fit.curves.size()) +
+               " curves; scatter over that expected " + show(std::sqrt(fit.variance)));
+  print_misfit(console, std::sqrt(fit.variance));
+  Table table = Table::of("curves", "The curves",
+                          {"curve", "irradiance_W_m2", "temperature_K", "photocurrent_A",
+                           "standard_error_A", "rms_A", "maximum_power_W"});
+  FitTask at_first = task;
+  at_first.sweeps.clear();
+  std::vector<ArrayPoint> points, maxima;
+  for (size_t k = 0; k < fit.curves.size(); ++k) {
+    const CurveAt& at = task.conditions[k];
+    const double light_A = fit.curves[k].photocurrent_A.value;
+    const CellCurve cell(in_light(parameters_at(fit.model, 1.0, at.temperature_K), light_A));
+    const ArrayPoint best = best_point(cell, light_A);
+    table.row()
+        .set("curve", task.names[k])
+        .set("irradiance_W_m2", at.irradiance_W_m2)
+        .set("temperature_K", at.temperature_K)
+        .set("photocurrent_A", light_A)
+        .set("standard_error_A", fit.curves[k].photocurrent_A.standard_error)
+        .set("rms_A", fit.curves[k].rms_A)
+        .set("maximum_power_W", best.power_W());
+    if (k == 0) {
+      points = cell_points(cell, light_A);
+      maxima = {best};
+      at_first.sweeps = {at.sweep};
+    }
+  }
+  print_cell(console, fit.diode, task, fit.shunt_law);
+  if (has_gap) print_key(console, "gap_eV", fit.model.gap_eV);
+  if (has_gap) print_key(console, "gap_slope_per_K", fit.model.gap_slope_1_K);
+  Product product = parameter_product(rows);
+  product.tables.push_back(table);
+  add_fit_plot(at_first, points, maxima, product);
+  return product;
+}
+
 Product fit_datasheet(const FitTask& task, const Console& console) {
   const double guess_V = 1.2 * task.cells_in_series * boltzmann_J_K *
                          task.datasheet[0].temperature_K / elementary_charge_C;
-  const RatedFit fit = fit_rated_points(task.datasheet, task.slopes, guess_V, task.tolerance);
+  const RatedFit fit =
+      fit_rated_points(task.datasheet, task.slopes, guess_V, task.tolerance, task.shunt_law);
   FitTask at_first = task;
   at_first.temperature_K = task.datasheet[0].temperature_K;
   check_ideality(fit.diode, at_first);
@@ -222,7 +371,16 @@ Product fit_datasheet(const FitTask& task, const Console& console) {
       "  errors: of figures rounded to " + show(t.step_A) + " A and " + show(t.step_V) + " V" +
       (t.fraction > 0.0 ? ", each good to " + show_percent(t.fraction) + " (one sigma)" : "") +
       (task.datasheet.size() == 1 ? "; one point leaves the ideality as assumed" : ""));
-  print_cell(console, fit.diode, at_first);
+  print_shunt_law(console, fit.shunt_law,
+                  fit.other_rms > 0.0 ? "; the other law leaves " + show(fit.other_rms) : "");
+  constexpr double usual = 3.0;
+  if (fit.rms_over_known > usual && task.datasheet.size() > 1) {
+    console.line("  warning: the figures are off by " + show(fit.rms) + " (rms), " +
+                 show(fit.rms_over_known) +
+                 " times their rounding: one diode with such a shunt does not describe them; "
+                 "tolerance = N states how well they are known");
+  }
+  print_cell(console, fit.diode, at_first, fit.shunt_law);
   print_key(console, "gap_eV", fit.model.gap_eV);
   print_key(console, "gap_slope_per_K", fit.model.gap_slope_1_K);
   print_key(console, "photocurrent_slope_per_K", fit.model.photocurrent_slope_1_K);
@@ -251,6 +409,7 @@ Product fit_uneven_light(const FitTask& task, const Console& console) {
   print_rows(console, rows);
   print_undetermined(console, shared);
   print_bounds(console, fit.bounds);
+  print_left_out(console, task, {});
   console.line("  rms of current " + show(fit.rms_A) + " A");
   const ArrayCurve::Scan scan = fit.curve(task.temperature_K).scan(400);
   console.heading("Local maxima of the power");
@@ -292,9 +451,10 @@ RunResult run_fit_cell(const RunOptions& options, const Console& console) {
   for (const fs::path& file : task.files) {
     provenance.inputs.emplace_back(file.filename().string(), content_hash(read_file(file)));
   }
-  Product product = !task.datasheet.empty() ? fit_datasheet(task, console)
-                    : task.substrings > 0   ? fit_uneven_light(task, console)
-                                            : fit_even_light(task, console);
+  Product product = !task.datasheet.empty()    ? fit_datasheet(task, console)
+                    : task.substrings > 0      ? fit_uneven_light(task, console)
+                    : !task.conditions.empty() ? fit_several_conditions(task, console)
+                                               : fit_even_light(task, console);
   return {std::move(product), std::move(provenance), {wall.elapsed_s(), {}}};
 }
 

@@ -103,7 +103,8 @@ void print_key(const Console& console, const char* name, double value, const std
   console.line(text + (comment.empty() ? "" : "   # " + comment));
 }
 
-void print_cell(const Console& console, const SingleDiode& d, const FitTask& task) {
+void print_cell(const Console& console, const SingleDiode& d, const FitTask& task,
+                ShuntLaw shunt_law) {
   const double cells = task.cells_in_series;
   console.heading("One cell, for [array.cell_parameters]");
   print_key(console, "saturation_1_A", d.saturation_A.value);
@@ -117,6 +118,9 @@ void print_cell(const Console& console, const SingleDiode& d, const FitTask& tas
     print_key(console, "shunt_ohm", *d.shunt_above_ohm / cells, "a lower limit (95 %)");
   } else {
     print_key(console, "shunt_ohm", d.shunt_ohm.value / cells);
+  }
+  if (shunt_law == ShuntLaw::inverse) {
+    print_key(console, "shunt_photocurrent_A", d.photocurrent_A.value);
   }
   print_key(console, "reference_temperature_K", task.temperature_K);
   console.line("  reference_area_m2 =   # to be filled in: the area of one cell");

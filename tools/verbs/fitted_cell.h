@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/product.h"
+#include "photovoltaics/fit/conditions.h"
 #include "photovoltaics/fit/fit.h"
 #include "photovoltaics/network/curve.h"
 #include "tools/runs/console.h"
@@ -16,6 +18,11 @@ namespace photorque {
 struct FitTask {
   std::vector<std::filesystem::path> files;
   std::vector<IvSweep> sweeps;
+  // The same with light and temperature, where they are not repeats.
+  std::vector<CurveAt> conditions;
+  std::vector<std::string> names;  // of the sweeps
+  std::vector<std::string> notes;  // what was left out of them
+  std::optional<ShuntLaw> shunt_law;
   std::vector<RatedPoint> datasheet;
   TemperatureSlopes slopes;
   RatedTolerance tolerance;
@@ -49,7 +56,8 @@ void print_bounds(const Console& console, const std::vector<BoundReached>& bound
 void print_key(const Console& console, const char* name, double value,
                const std::string& comment = "");
 // The keys of an experiment's [array.cell_parameters] for one of the cells.
-void print_cell(const Console& console, const SingleDiode& diode, const FitTask& task);
+void print_cell(const Console& console, const SingleDiode& diode, const FitTask& task,
+                ShuntLaw shunt_law = ShuntLaw::constant);
 
 // Measured points and a fitted curve, as current and as power.
 void add_fit_plot(const FitTask& task, const std::vector<ArrayPoint>& fitted,

@@ -1,0 +1,48 @@
+// One set of parameters from curves under several lights and temperatures.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "photovoltaics/fit/fit.h"
+
+namespace photorque {
+
+// A curve and its temperature; irradiance 0: not stated.
+struct CurveAt {
+  IvSweep sweep;
+  double temperature_K = 298.15;
+  double irradiance_W_m2 = 0.0;
+};
+
+struct ConditionsFit {
+  SingleDiode diode;  // of the first curve
+  ShuntLaw shunt_law = ShuntLaw::constant;
+  CellModel model;  // of the whole device, reference_area_m2 = 1, at the first temperature
+  double gap_error_eV = 0.0;  // 0: one temperature, which tells nothing of the gap
+  std::vector<BoundReached> bounds;
+  std::vector<OutlierReading> outliers;  // left out
+  struct Curve {
+    Estimate photocurrent_A;
+    double rms_A = 0.0;
+  };
+  std::vector<Curve> curves;
+  double rms = 0.0;       // of current over the curve's photocurrent
+  double variance = 0.0;  // per degree of freedom, in units of the noise given
+  size_t points = 0;
+  // The photocurrent by the irradiance, where all curves state one: at the first temperature, and
+  // the error of its slope in the model, where there are several temperatures.
+  double photocurrent_A_m2_W = 0.0;
+  double photocurrent_slope_error_1_K = 0.0;
+};
+
+// I₀, n, R_s and R_sh shared by all curves, and a photocurrent for each; between temperatures I₀
+// follows the gap (model.h, with De Soto's slope of silicon), which is fitted where temperatures
+// differ by 5 K or more. The shunt follows `shunt_law`; without one, both are tried where the
+// photocurrents differ by a fifth or more, and the one that leaves less is taken. Errors of single
+// readings are independent of each other. Outliers are left out as by fit_sweeps(). Throws
+// InputError as fit_sweeps() does.
+ConditionsFit fit_conditions(std::span<const CurveAt> curves, const SweepNoise& noise,
+                             std::optional<ShuntLaw> shunt_law = {});
+
+}  // namespace photorque

@@ -1,0 +1,49 @@
+// Current-voltage curves as instruments and spreadsheets write them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "photovoltaics/fit/fit.h"
+
+namespace photorque {
+
+// One curve of a file, with the circumstances that its rows state: means over them.
+struct MeasuredCurve {
+  IvSweep sweep;
+  std::optional<double> irradiance_W_m2, temperature_K;
+  size_t unread = 0;  // rows without a number: empty, "NaN", "OL", or an instrument's overflow
+};
+
+// The curves of a text, which `file` names in messages.
+//
+// Cells are separated by tabs, semicolons, commas or blanks, the first of these that the header
+// has; between tabs and semicolons numbers may have a decimal comma. Lines before the header, and
+// those that begin with #, are skipped. The header names a voltage ("voltage_V", "Voltage (V)",
+// "Volts", "V", "U [mV]") and a current ("current_A", "Current (mA)", "Amps", "I"); it may name an
+// irradiance ("irradiance_W_m2", "G (W/m2)"), a temperature with its unit ("temperature_K",
+// "cell_temperature_K", "T (°C)"), and a column "sweep" or "curve" whose number tells the curves of
+// one file apart. Voltages and currents without a unit are V and A; a row below the header may
+// state the units instead.
+//
+// InputError with the line where there is no such header, a unit is unknown, or a cell is neither a
+// number nor a sign of a missing one.
+std::vector<MeasuredCurve> curves_in(std::string_view text, const std::string& file);
+
+// What was left out of a curve because no cell gives it.
+struct CurveCleaning {
+  size_t clipped = 0;  // points beyond open circuit where the meter shows no current
+  double clipped_from_V = 0.0, clipped_A = 0.0;  // their first voltage and their usual current
+  size_t spikes = 0;                             // single readings far from both neighbours
+};
+
+// Takes out of a sweep what the meter made: the tail beyond open circuit along which the current
+// stays where it is (a source that blocks reverse current shows 0 or a small offset), and single
+// spikes. Beyond open circuit the current of a cell falls the more steeply the higher the voltage;
+// a tail is points at the highest voltages whose currents lie within 3 % of zero and span less than
+// a quarter of what the steepest slope before them makes over their voltages.
+CurveCleaning clean_curve(IvSweep& sweep);
+
+}  // namespace photorque

@@ -1,0 +1,147 @@
+// Wirings as an experiment states them: against ngspice, and against each other.
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <sstream>
+
+#include "core/errors.h"
+#include "reference.h"
+
+namespace photorque {
+namespace {
+
+SettingsNode node(decltype(SettingsNode::value) value) {
+  return {std::move(value), {"array.toml", 1}};
+}
+
+SettingsNode words(const std::vector<std::string>& texts) {
+  SettingsNode::Array array;
+  for (const std::string& text : texts) array.push_back(node(text));
+  return node(std::move(array));
+}
+
+SettingsNode list(std::vector<SettingsNode> members) {
+  return node(SettingsNode::Array(std::move(members)));
+}
+
+ArrayDesign design(int64_t columns, int64_t rows, const std::string& key, const SettingsNode& value,
+                   const std::string& bypass, double temperature_K = 298.15) {
+  SettingsNode::Table table = {{"cells", list({node(columns), node(rows)})},
+                               {"bypass", node(bypass)},
+                               {"temperature_K", node(temperature_K)}};
+  table[key] = value;
+  SettingsNode root = node(std::move(table));
+  return read_array_design(
+      Settings(std::make_shared<const SettingsNode>(std::move(root)), "array"));
+}
+
+// The levels are those of tests/data/ngspice_wirings.py, which made the currents.
+TEST(PhotovoltaicWirings, EightWiringsUnderThreeMapsAgreeWithNgspice) {
+  const std::map<std::string, std::vector<std::string>> wirings = {
+      {"series", {"series 100"}},
+      {"half_cut", {"series 5 bypass", "parallel 2", "series 10"}},
+      {"shingled", {"series 2 bypass", "parallel 5", "series 10"}},
+      {"cross_tied", {"series 10", "parallel 10"}},
+      {"bypass_per_cell", {"series 100 bypass"}},
+      {"strings", {"parallel 5", "series 4 bypass", "series 5"}},
+      {"tied_modules", {"series 5", "parallel 4 bypass", "series 5"}},
+      {"nested", {"parallel 2", "series 5 bypass", "parallel 2", "series 5 bypass"}}};
+  const double temperature_K = reference::ngspice_temperature_K();
+  std::ifstream in(reference::file("ngspice_wirings"));
+  std::map<std::string, ArrayCurve> curves;
+  size_t compared = 0;
+  double worst = 0.0;
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::stringstream cells(line);
+    std::string wiring, map, voltage, current;
+    std::getline(cells, wiring, ',');
+    std::getline(cells, map, ',');
+    std::getline(cells, voltage, ',');
+    std::getline(cells, current, ',');
+    const std::string name = wiring + " " + map;
+    if (!curves.contains(name)) {
+      const ArrayDesign array =
+          design(10, 10, "circuit", words(wirings.at(wiring)), "junction", temperature_K);
+      curves.emplace(name, reference::curve(array.wiring, reference::suns(map),
+                                            reference::cell(temperature_K)));
+    }
+    const double expected_A = std::stod(current);
+    const double apart = std::abs(curves.at(name).current_A(std::stod(voltage)) / expected_A - 1.0);
+    EXPECT_LE(apart, 1e-6) << name << " at " << voltage << " V";
+    worst = std::max(worst, apart);
+    ++compared;
+  }
+  EXPECT_EQ(curves.size(), 24u);
+  EXPECT_GE(compared, 350u);
+  std::printf("    %zu currents within %.1e of ngspice's\n", compared, worst);
+}
+
+// Both groups of the module are alike, so that it gives twice what one of them gives; and one of
+// them is two strings in parallel under one diode.
+TEST(PhotovoltaicWirings, TwinModuleIsTwiceItsGroup) {
+  const auto whole = [](int64_t i) { return node(i); };
+  const auto chain = [&](int64_t i) { return list({whole(i), whole(i + 1)}); };
+  const SettingsNode group_0 = list({list({chain(0), chain(2)})});
+  const SettingsNode group_1 = list({list({chain(4), chain(6)})});
+  const ArrayDesign listed = design(8, 1, "wiring", list({list({group_0, group_1})}), "ideal");
+  const ArrayDesign levels =
+      design(8, 1, "circuit", words({"series 2 bypass", "parallel 2", "series 2"}), "ideal");
+  const ArrayDesign one =
+      design(8, 1, "wiring", list({list({chain(0)}), list({chain(2)})}), "ideal");
+  const std::vector<double> suns = {1.0, 1.0, 0.5, 0.5, 0.5, 0.5, 1.0, 1.0};
+  const auto power_W = [&](const ArrayDesign& array) {
+    return reference::curve(array.wiring, suns, reference::cell()).maximum_power().power_W();
+  };
+  EXPECT_NEAR(power_W(listed), 2.0 * power_W(one), 1e-9);
+  // The serpentine along columns of one cell goes straight on.
+  EXPECT_NEAR(power_W(levels), 2.0 * power_W(one), 1e-9);
+}
+
+// Regular keys, levels and lists say the same.
+TEST(PhotovoltaicWirings, LevelsAreTheRegularKeysInOtherWords) {
+  std::vector<double> suns;
+  for (int i = 0; i < 12; ++i) suns.push_back(0.6 + 0.35 * std::sin(2.3 * i));
+  const auto maxima = [&](const ArrayDesign& array) {
+    return reference::curve(array.wiring, suns, reference::cell()).maxima();
+  };
+  const auto strings = maxima(design(3, 4, "strings", node(int64_t{3}), "ideal"));
+  const auto levels =
+      maxima(design(3, 4, "circuit", words({"parallel 3 bypass", "series 4"}), "ideal"));
+  ASSERT_EQ(strings.size(), levels.size());
+  for (size_t i = 0; i < strings.size(); ++i) {
+    EXPECT_NEAR(strings[i].power_W(), levels[i].power_W(), 1e-10);
+  }
+  const auto every = maxima(design(3, 4, "bypass_every", node(int64_t{1}), "ideal"));
+  const auto each = maxima(design(3, 4, "circuit", words({"series 12 bypass"}), "ideal"));
+  ASSERT_EQ(every.size(), each.size());
+  for (size_t i = 0; i < every.size(); ++i) {
+    EXPECT_NEAR(every[i].power_W(), each[i].power_W(), 1e-10);
+  }
+}
+
+TEST(PhotovoltaicWirings, MistakesNameWhatIsExpected) {
+  const auto message = [](const std::string& key, const SettingsNode& value) -> std::string {
+    try {
+      design(3, 4, key, value, "ideal");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_NE(message("circuit", words({"series 3", "parallel 5"})).find("found 15 cells"),
+            std::string::npos);
+  EXPECT_NE(message("circuit", words({"series x"})).find("\"series N\""), std::string::npos);
+  EXPECT_NE(message("circuit", words({"in series 12"})).find("\"series N\""), std::string::npos);
+  EXPECT_NE(message("circuit", words({"series 12 bypassed"})).find("\"bypass\""),
+            std::string::npos);
+  const SettingsNode twice =
+      list({list({list({list({node(int64_t{1}), list({node(int64_t{1})})})})})});
+  EXPECT_NE(message("wiring", twice).find("at most once"), std::string::npos);
+  SettingsNode deep = node(int64_t{0});
+  for (int i = 0; i < 60; ++i) deep = list({deep});
+  EXPECT_NE(message("wiring", deep).find("32 levels"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace photorque
