@@ -45,6 +45,13 @@ HitFrame any_frame(const Vec3& n) {
           n};
 }
 
+Arrival arrival_in(const HitFrame& frame, const Incidence& incidence, const Vec3& axis) {
+  const double along = axis.dot(frame.x), across = axis.dot(frame.y);
+  const double length = std::hypot(along, across);
+  return length > 0.0 ? Arrival(incidence.cosine, along / length, across / length)
+                      : Arrival(incidence.cosine);
+}
+
 Vec3 mirrored(const Incidence& incidence) {
   const Vec3& n = incidence.normal;
   return incidence.direction - 2.0 * incidence.direction.dot(n) * n;
@@ -89,7 +96,8 @@ PowerFractions fractions_of(const OpticalSurface& surface, double cosine, size_t
 Vec3 scattered_direction(const OpticalSurface& surface, Component component,
                          const Incidence& incidence, const Draw& draw) {
   if (const Lobe* lobe = lobe_of(surface, component)) {
-    return plane_of_incidence(incidence).to_outer(lobe->direction(incidence.cosine, draw));
+    const HitFrame frame = plane_of_incidence(incidence);
+    return frame.to_outer(lobe->direction(arrival_in(frame, incidence, surface.bsdf->axis), draw));
   }
   switch (component) {
     case Component::specular:
@@ -107,7 +115,9 @@ Vec3 scattered_direction(const OpticalSurface& surface, Component component,
 Vec3 mean_flow(const OpticalSurface& surface, Component component, const Incidence& incidence,
                double power) {
   if (const Lobe* lobe = lobe_of(surface, component)) {
-    return power * plane_of_incidence(incidence).to_outer(lobe->mean_direction(incidence.cosine));
+    const HitFrame frame = plane_of_incidence(incidence);
+    return power *
+           frame.to_outer(lobe->mean_direction(arrival_in(frame, incidence, surface.bsdf->axis)));
   }
   switch (component) {
     case Component::specular:

@@ -60,20 +60,30 @@ struct Draw {
   }
 };
 
+// How light meets a surface, as far as a lobe is concerned.
+struct Arrival {
+  // NOLINTNEXTLINE(google-explicit-constructor): a cosine is all that most lobes use
+  Arrival(double incidence_cosine, double cosine_of_axis = 1.0, double sine_of_axis = 0.0)
+      : cosine(incidence_cosine), axis_cosine(cosine_of_axis), axis_sine(sine_of_axis) {}
+
+  double cosine;                  // ∈ (0, 1], cos θ_i
+  double axis_cosine, axis_sine;  // of Bsdf::axis along the surface, by its angle from x towards y
+};
+
 // The directions of one component's light. Immutable; called from many threads at once.
 class Lobe {
  public:
   virtual ~Lobe() = default;
 
-  // A unit direction with o_z > 0, distributed by density(). `cosine` ∈ (0, 1] is cos θ_i.
-  virtual Vec3 direction(double cosine, const Draw& draw) const = 0;
+  // A unit direction with o_z > 0, distributed by density().
+  virtual Vec3 direction(const Arrival& light, const Draw& draw) const = 0;
 
   // The expectation of direction(): times power over c, the momentum flow that leaves. From a
   // closed form, or a table that is made once.
-  virtual Vec3 mean_direction(double cosine) const = 0;
+  virtual Vec3 mean_direction(const Arrival& light) const = 0;
 
   // Per solid angle of o [1/sr]; integrates to 1 over the hemisphere.
-  virtual double density(double cosine, const Vec3& out) const = 0;
+  virtual double density(const Arrival& light, const Vec3& out) const = 0;
 };
 
 // Where the power of one band goes, in fractions that sum to 1.
@@ -106,6 +116,9 @@ struct Bsdf {
   double reemitted = 0.0;
   double front_emission = 0.5;
   std::string description = {};  // a few words for notices
+  // Body axes: the first axis of a lobe that is not the same all round the normal lies along this
+  // vector's projection onto the surface. Zero where all lobes are.
+  Vec3 axis = Vec3::Zero();
 };
 
 // How light meets a surface, in any right-handed frame.

@@ -36,9 +36,9 @@ class RoughGlass final : public Lobe {
   // E at `cosine`. To 1e-4, from a table.
   double reflectance(double cosine) const { return once_(cosine)[0]; }
 
-  Vec3 direction(double cosine, const Draw& draw) const override;
-  Vec3 mean_direction(double cosine) const override;
-  double density(double cosine, const Vec3& out) const override;
+  Vec3 direction(const Arrival& light, const Draw& draw) const override;
+  Vec3 mean_direction(const Arrival& light) const override;
+  double density(const Arrival& light, const Vec3& out) const override;
 
  private:
   Ggx facets_;
@@ -52,7 +52,8 @@ RoughGlass::RoughGlass(double alpha, double index)
             cosine, [this](double facing) { return fresnel_reflectance(facing, index_); });
       }) {}
 
-Vec3 RoughGlass::direction(double cosine, const Draw& draw) const {
+Vec3 RoughGlass::direction(const Arrival& light, const Draw& draw) const {
+  const double cosine = light.cosine;
   const Vec3 in = direction_at(cosine);
   Vec3 out = Vec3::UnitZ();
   // Glass reflects one ray in some 25 at a steep angle: as many attempts are the rule, this many
@@ -72,12 +73,14 @@ Vec3 RoughGlass::direction(double cosine, const Draw& draw) const {
   return out.normalized();
 }
 
-Vec3 RoughGlass::mean_direction(double cosine) const {
+Vec3 RoughGlass::mean_direction(const Arrival& light) const {
+  const double cosine = light.cosine;
   const auto [power, x, z] = once_(cosine);
   return {x / power, 0.0, z / power};
 }
 
-double RoughGlass::density(double cosine, const Vec3& out) const {
+double RoughGlass::density(const Arrival& light, const Vec3& out) const {
+  const double cosine = light.cosine;
   const Vec3 in = direction_at(cosine);
   const double facing = in.dot((in + out).normalized());
   return facets_.once_reflected_1_sr(in, out) * fresnel_reflectance(facing, index_) /
@@ -147,7 +150,7 @@ class ThroughFront final : public Lobe {
         mean_z_(even_mean([this](double cosine) { return cosine * (1.0 - front_(cosine)); }) /
                 passed_) {}
 
-  Vec3 direction(double, const Draw& draw) const override {
+  Vec3 direction(const Arrival&, const Draw& draw) const override {
     Vec3 out = lambertian_direction(draw.u, draw.v);
     constexpr uint64_t most = 256;
     for (uint64_t attempt = 1; attempt < most; ++attempt) {
@@ -158,9 +161,9 @@ class ThroughFront final : public Lobe {
     return out;
   }
 
-  Vec3 mean_direction(double) const override { return {0.0, 0.0, mean_z_}; }
+  Vec3 mean_direction(const Arrival&) const override { return {0.0, 0.0, mean_z_}; }
 
-  double density(double, const Vec3& out) const override {
+  double density(const Arrival&, const Vec3& out) const override {
     return (1.0 - front_(out.z())) * out.z() / (pi * passed_);
   }
 

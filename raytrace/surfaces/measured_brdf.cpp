@@ -142,7 +142,8 @@ class BrdfLobe final : public Lobe {
   double node_rad(size_t i) const { return polar()[i]; }
   double node_reflectance(size_t i) const { return reflectance_[i]; }
 
-  Vec3 direction(double cosine, const Draw& draw) const override {
+  Vec3 direction(const Arrival& light, const Draw& draw) const override {
+    const double cosine = light.cosine;
     const auto [i, part] = place_among(polar(), std::acos(std::min(cosine, 1.0)));
     const double high = part * reflectance_[i + 1], low = (1.0 - part) * reflectance_[i];
     const size_t node = draw.extra(1) * (low + high) < high ? i + 1 : i;
@@ -161,14 +162,16 @@ class BrdfLobe final : public Lobe {
     return point_in(cell, along, around).out;
   }
 
-  Vec3 mean_direction(double cosine) const override {
+  Vec3 mean_direction(const Arrival& light) const override {
+    const double cosine = light.cosine;
     const auto [i, part] = place_among(polar(), std::acos(std::min(cosine, 1.0)));
     const double whole = (1.0 - part) * reflectance_[i] + part * reflectance_[i + 1];
     if (!(whole > 0.0)) return Vec3::Zero();
     return ((1.0 - part) * momentum_[i] + part * momentum_[i + 1]) / whole;
   }
 
-  double density(double cosine, const Vec3& out) const override {
+  double density(const Arrival& light, const Vec3& out) const override {
+    const double cosine = light.cosine;
     const auto [i, i_part] = place_among(polar(), std::acos(std::min(cosine, 1.0)));
     const auto [o, o_part] = place_among(polar(), std::acos(std::clamp(out.z(), 0.0, 1.0)));
     const auto [a, a_part] = place_among(azimuth(), std::atan2(std::abs(out.y()), -out.x()));

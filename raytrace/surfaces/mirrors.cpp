@@ -1,6 +1,7 @@
 #include "raytrace/surfaces/mirrors.h"
 
 #include <cmath>
+#include <optional>
 
 #include "core/constants.h"
 #include "core/numerics/quadrature.h"
@@ -19,7 +20,8 @@ class RoughMirror final : public Lobe {
     tabulate_rest();
   }
 
-  Vec3 direction(double cosine, const Draw& draw) const override {
+  Vec3 direction(const Arrival& light, const Draw& draw) const override {
+    const double cosine = light.cosine;
     if (draw.extra(0) >= once_(cosine)[0]) return rest_direction(draw);
     const Vec3 in = direction_at(cosine);
     constexpr uint64_t most = 256;  // at worst one in three is kept
@@ -32,12 +34,14 @@ class RoughMirror final : public Lobe {
     return rest_direction(draw);
   }
 
-  Vec3 mean_direction(double cosine) const override {
+  Vec3 mean_direction(const Arrival& light) const override {
+    const double cosine = light.cosine;
     const auto [power, x, z] = once_(cosine);
     return {x, 0.0, z + (1.0 - power) * rest_z_};
   }
 
-  double density(double cosine, const Vec3& out) const override {
+  double density(const Arrival& light, const Vec3& out) const override {
+    const double cosine = light.cosine;
     const double rest = (1.0 - once_(cosine)[0]) * (1.0 - once_(out.z())[0]);
     return facets_.once_reflected_1_sr(direction_at(cosine), out) +
            (rest_ > 0.0 ? rest * out.z() / (pi * rest_) : 0.0);
@@ -92,79 +96,149 @@ namespace {
 
 class SlopeError final : public Lobe {
  public:
-  explicit SlopeError(double slope_rad)
-      : slope_rad_(slope_rad), mean_([this](double cosine) { return mean_of(cosine); }) {}
-
-  Vec3 direction(double cosine, const Draw& draw) const override {
-    const double size = slope_rad_ * std::sqrt(-2.0 * std::log(draw.u));
-    const double along = size * std::cos(2.0 * pi * draw.v);
-    const double side = size * std::sin(2.0 * pi * draw.v);
-    const Vec3 in = direction_at(cosine);
-    // `along` or its opposite, each as often as it shows.
-    const double turned = draw.extra(0) * 2.0 < shows(in, along) ? along : -along;
-    return reflect(in, turned, side);
+  SlopeError(double first_rad, double second_rad, SlopeShape shape)
+      : first_rad_(first_rad),
+        second_rad_(second_rad),
+        shape_(shape),
+        even_([this](double cosine) -> std::array<double, 2> {
+          const Vec3 mean = mean_of(cosine);
+          return {mean.x(), mean.z()};
+        }) {
+    if (first_rad != second_rad) {
+      turned_.emplace([this](double cosine) { return harmonics(cosine); });
+    }
   }
 
-  Vec3 mean_direction(double cosine) const override {
-    const auto [x, z] = mean_(cosine);
-    return {x, 0.0, z};
+  Vec3 direction(const Arrival& light, const Draw& draw) const override {
+    const double size = size_within(draw.u);
+    const double first = first_rad_ * size * std::cos(2.0 * pi * draw.v);
+    const double second = second_rad_ * size * std::sin(2.0 * pi * draw.v);
+    const Slope slope = slope_in(light, first, second);
+    const Vec3 in = direction_at(light.cosine);
+    // The slope or its opposite, each as often as it shows.
+    const double sign = draw.extra(0) * 2.0 < shows(in, slope.along) ? 1.0 : -1.0;
+    return reflect(in, sign * slope.along, sign * slope.across);
   }
 
-  double density(double cosine, const Vec3& out) const override {
-    const Vec3 in = direction_at(cosine);
+  // Even in the turn of the axis but for y, which is odd, and the same after half a turn.
+  Vec3 mean_direction(const Arrival& light) const override {
+    if (!turned_) {
+      const auto [x, z] = even_(light.cosine);
+      return {x, 0.0, z};
+    }
+    const Harmonics mean = (*turned_)(light.cosine);
+    // cos 2kφ and sin 2kφ by the addition theorem.
+    const double cosine_2 =
+        light.axis_cosine * light.axis_cosine - light.axis_sine * light.axis_sine;
+    const double sine_2 = 2.0 * light.axis_cosine * light.axis_sine;
+    double cosine = 1.0, sine = 0.0;
+    Vec3 sum = Vec3::Zero();
+    for (size_t k = 0; k < harmonic_count; ++k) {
+      sum += Vec3(cosine * mean[3 * k], sine * mean[3 * k + 1], cosine * mean[3 * k + 2]);
+      const double next = cosine * cosine_2 - sine * sine_2;
+      sine = sine * cosine_2 + cosine * sine_2;
+      cosine = next;
+    }
+    return sum;
+  }
+
+  double density(const Arrival& light, const Vec3& out) const override {
+    const Vec3 in = direction_at(light.cosine);
     const Vec3 normal = (in + out).normalized();
-    const double along = normal.x() / normal.z(), side = normal.y() / normal.z();
-    const double variance = slope_rad_ * slope_rad_;
-    const double spread =
-        std::exp(-(along * along + side * side) / (2.0 * variance)) / (2.0 * pi * variance);
+    const double along = normal.x() / normal.z(), across = normal.y() / normal.z();
+    const double first = (along * light.axis_cosine + across * light.axis_sine) / first_rad_;
+    const double second = (across * light.axis_cosine - along * light.axis_sine) / second_rad_;
     const double normal_z3 = normal.z() * normal.z() * normal.z();
-    return spread * shows(in, along) / (normal_z3 * 4.0 * in.dot(normal));
+    return spread(std::hypot(first, second)) / (first_rad_ * second_rad_) * shows(in, along) /
+           (normal_z3 * 4.0 * in.dot(normal));
   }
 
  private:
+  struct Slope {
+    double along, across;  // x and y of the frame of the hit
+  };
+  static Slope slope_in(const Arrival& light, double first, double second) {
+    return {first * light.axis_cosine - second * light.axis_sine,
+            first * light.axis_sine + second * light.axis_cosine};
+  }
+
+  // The size of a slope, in parts of the axes, within which a fraction u lies.
+  double size_within(double u) const {
+    return shape_ == SlopeShape::gaussian ? std::sqrt(-2.0 * std::log(u)) : std::sqrt(u);
+  }
+  // Density per area of slopes, in parts of the axes.
+  double spread(double size) const {
+    if (shape_ == SlopeShape::gaussian) return std::exp(-0.5 * size * size) / (2.0 * pi);
+    return size <= 1.0 ? 1.0 / pi : 0.0;
+  }
+
   // The part of the surface that leans by `along` towards the light, as it shows.
   static double shows(const Vec3& in, double along) {
     return std::clamp(1.0 + along * in.x() / in.z(), 0.0, 2.0);
   }
 
   // Light that would go below the surface meets it again.
-  static Vec3 reflect(const Vec3& in, double along, double side) {
-    const Vec3 normal = Vec3(along, side, 1.0).normalized();
+  static Vec3 reflect(const Vec3& in, double along, double across) {
+    const Vec3 normal = Vec3(along, across, 1.0).normalized();
     Vec3 out = 2.0 * in.dot(normal) * normal - in;
     out.z() = std::max(1e-9, std::abs(out.z()));
     return out;
   }
 
   // The expectation of direction(), over slopes up to 7 σ.
-  std::array<double, 2> mean_of(double cosine) const {
-    constexpr double reach = 7.0;
+  Vec3 mean_of(const Arrival& light) const {
+    const double reach = shape_ == SlopeShape::gaussian ? 7.0 : 1.0;
     constexpr size_t sizes = 40, angles = 48;
-    const Vec3 in = direction_at(cosine);
-    double x = 0.0, z = 0.0, sum = 0.0;
+    const Vec3 in = direction_at(light.cosine);
+    Vec3 mean = Vec3::Zero();
+    double sum = 0.0;
     for (const auto& [node, node_weight] : gauss_legendre(sizes)) {
       const double size = 0.5 * reach * (1.0 + node);
-      const double ring = node_weight * size * std::exp(-0.5 * size * size);
+      const double ring = node_weight * size * spread(size);
       for (size_t k = 0; k < angles; ++k) {
         const double angle = 2.0 * pi * (static_cast<double>(k) + 0.5) / angles;
-        const double along = slope_rad_ * size * std::cos(angle);
-        const double weight = ring * shows(in, along);
-        const Vec3 out = reflect(in, along, slope_rad_ * size * std::sin(angle));
-        x += weight * out.x();
-        z += weight * out.z();
+        const Slope slope = slope_in(light, first_rad_ * size * std::cos(angle),
+                                     second_rad_ * size * std::sin(angle));
+        const double weight = ring * shows(in, slope.along);
+        mean += weight * reflect(in, slope.along, slope.across);
         sum += weight;
       }
     }
-    return {x / sum, z / sum};
+    return mean / sum;
   }
 
-  double slope_rad_;
-  CosineTable<2> mean_;
+  // Coefficients of cos 2kφ (x, z) and sin 2kφ (y) in the turn φ of the axis, by the trapezoidal
+  // rule over half a turn. The k-th is of the order of the slopes to the power 2k.
+  static constexpr size_t harmonic_count = 4;
+  using Harmonics = std::array<double, 3 * harmonic_count>;
+  Harmonics harmonics(double cosine) const {
+    constexpr size_t turns = 2 * harmonic_count;
+    Harmonics sum{};
+    for (size_t i = 0; i < turns; ++i) {
+      const double turn_rad = pi * static_cast<double>(i) / turns;
+      const Vec3 mean = mean_of({cosine, std::cos(turn_rad), std::sin(turn_rad)});
+      for (size_t k = 0; k < harmonic_count; ++k) {
+        const double even = std::cos(2.0 * static_cast<double>(k) * turn_rad);
+        const double odd = std::sin(2.0 * static_cast<double>(k) * turn_rad);
+        const double weight = (k == 0 ? 1.0 : 2.0) / turns;
+        sum[3 * k] += weight * even * mean.x();
+        sum[3 * k + 1] += weight * odd * mean.y();
+        sum[3 * k + 2] += weight * even * mean.z();
+      }
+    }
+    return sum;
+  }
+
+  double first_rad_, second_rad_;
+  SlopeShape shape_;
+  CosineTable<2> even_;  // with equal axes
+  std::optional<CosineTable<3 * harmonic_count>> turned_;
 };
 
 }  // namespace
 
-std::shared_ptr<const Lobe> slope_error(double slope_rad) {
-  return std::make_shared<SlopeError>(slope_rad);
+std::shared_ptr<const Lobe> slope_error(double first_rad, double second_rad, SlopeShape shape) {
+  return std::make_shared<SlopeError>(first_rad, second_rad, shape);
 }
 
 }  // namespace photorque

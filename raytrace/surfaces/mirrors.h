@@ -19,18 +19,28 @@ namespace photorque {
 // `alpha` ∈ [0.001, 1]: the square of glTF's roughness. Momenta to 1e-4 of the power over c.
 std::shared_ptr<const Lobe> rough_mirror(double alpha);
 
+// How the slopes of a surface with slope errors are distributed.
+enum class SlopeShape {
+  gaussian,  // independent along two axes, with a standard deviation for each
+  pillbox,   // even over an ellipse with two semi-axes
+};
+
 // A mirror that is not quite flat: slope errors as solar concentrators state them.
 //
-// The surface's normal leans by slopes (tangents) along two axes, independent and Gaussian with the
-// same standard deviation σ, so that a reflected ray strays by 2σ across and 2σ along. Of a surface
+// The surface's normal leans by slopes (tangents) along two axes. A reflected ray strays by twice
+// the slope in the plane of incidence, and by twice the slope times cos θ across it. Of a surface
 // seen at a slant the parts that lean towards the viewer show more, by 1 + s tan θ for a slope s
 // towards it, cut to [0, 2]: with it the scattering is reciprocal, and for slopes far below cot θ
 // it is exact. Nothing is lost.
 // Source of the convention: F. Biggs and C. N. Vittitoe, The Helios Model for the Optical Behavior
 // of Reflecting Solar Concentrators (SAND76-0347, 1979).
 //
-// `slope_rad` ∈ (0, 0.2]: the standard deviation of the slope along each axis. Momenta to 1e-6 of
-// the power over c.
-std::shared_ptr<const Lobe> slope_error(double slope_rad);
+// Slopes ∈ (0, 0.2]: the standard deviation or semi-axis along Bsdf::axis and across it. Momenta to
+// 1e-6 of the power over c, with unequal axes to 1e-5.
+std::shared_ptr<const Lobe> slope_error(double first_rad, double second_rad, SlopeShape shape);
+inline std::shared_ptr<const Lobe> slope_error(double slope_rad,
+                                               SlopeShape shape = SlopeShape::gaussian) {
+  return slope_error(slope_rad, slope_rad, shape);
+}
 
 }  // namespace photorque

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "core/numerics/transpose.h"
 
@@ -145,7 +146,17 @@ struct BeamSample {
   static constexpr uint32_t rays = 4 * sobol_block;
 };
 
-BeamSample sample_beam(const Emitter& emitter, const RayPlacement& placement) {
+void emit(const Emitter& emitter, const std::optional<Targets>& targets, SampleBlock& samples,
+          RayBlock& rays) {
+  if (targets) {
+    targets->emit(samples, rays);
+  } else {
+    emitter.emit(samples, rays);
+  }
+}
+
+BeamSample sample_beam(const Emitter& emitter, const std::optional<Targets>& targets,
+                       const RayPlacement& placement) {
   BeamSample sample;
   SampleBlock samples;
   RayBlock rays;
@@ -153,7 +164,7 @@ BeamSample sample_beam(const Emitter& emitter, const RayPlacement& placement) {
   RayColumns placed;
   for (uint32_t first = 0; first < BeamSample::rays; first += sobol_block) {
     sobol_points({}, first, pointers(samples));
-    emitter.emit(samples, rays);
+    emit(emitter, targets, samples, rays);
     placement.place(rays, placed, landing);
     for (size_t i = 0; i < ray_block; ++i) {
       const float x = landing.x[i], y = landing.y[i];
@@ -187,14 +198,16 @@ std::array<int, sobol_dimensions> shared_bits(int bits, double aperture_m, doubl
 }  // namespace
 
 LaunchPlan plan_launch(const Emitter& emitter, const RigidTransform& body_from_emitter,
-                       const TraceableScene::Data& scene, int log2_rays) {
+                       const TraceableScene::Data& scene, int log2_rays,
+                       std::optional<Targets> targets) {
   const Vec3 centre = body_from_emitter.inverse().point(scene.centre_m);
   const RayPlacement placement(body_from_emitter, scene);
-  const BeamSample sample = sample_beam(emitter, placement);
+  const BeamSample sample = sample_beam(emitter, targets, placement);
   const auto bits = shared_bits(std::max(log2_rays - log2_batch, 0), std::sqrt(sample.aperture2),
                                 std::sqrt(sample.spread2) * std::max(centre.z(), 0.0));
   LaunchPlan plan{SobolCells(log2_rays, bits),
                   placement,
+                  std::move(targets),
                   sample.x_low,
                   sample.x_high,
                   sample.y_low,
@@ -232,7 +245,7 @@ void launch(const Emitter& emitter, const LaunchPlan& plan, const SobolStream& s
   std::optional<LandingGrid> grid;
   for (uint32_t i = 0; i < count; i += ray_block) {
     plan.cells.points(stream, cell, i, pointers(samples), index.data());
-    emitter.emit(samples, rays);
+    emit(emitter, plan.targets, samples, rays);
     plan.placement.place(rays, placed, landing);
     if (!grid) grid.emplace(plan, count, landing);
     make_keys(plan, *grid, landing, placed, &buffer.key[i]);

@@ -4,11 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/numerics/random.h"
 #include "core/transform.h"
 #include "raytrace/emitter.h"
+#include "raytrace/tracing/targets.h"
 #include "raytrace/tracing/traceable_scene_data.h"
 
 namespace photorque {
@@ -66,6 +68,7 @@ struct LaunchBuffer {
 struct LaunchPlan {
   SobolCells cells;
   RayPlacement placement;
+  std::optional<Targets> targets;  // of parallel light: where it is sent
   // Where the rays land; bounds beyond which their order does not matter.
   float x_low, x_high, y_low, y_high;
   // The rays' octants are numbered by the signs of those components of their directions in the body
@@ -76,7 +79,8 @@ struct LaunchPlan {
 
 // Plans 2^log2_rays rays, at least ray_block: one replicate of one beam.
 LaunchPlan plan_launch(const Emitter& emitter, const RigidTransform& body_from_emitter,
-                       const TraceableScene::Data& scene, int log2_rays);
+                       const TraceableScene::Data& scene, int log2_rays,
+                       std::optional<Targets> targets = std::nullopt);
 
 // Emits batch `cell` of plan.cells into `buffer`.
 //

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -188,24 +189,37 @@ struct Plan {
   uint64_t batches = 0;  // per replicate
   uint64_t rays = 0;     // over all replicates
   double emitted_W = 0.0;
+  double untraced_W = 0.0;  // of it: parallel light that meets nothing and is not sent
 };
 
-// Rays in proportion to power, rounded up to powers of two: Sobol sequences are best whole.
+// Rays in proportion to the power that is sent, rounded up to powers of two: Sobol sequences are
+// best whole.
 Plan make_plan(const TraceableScene::Data& scene, const RigidTransform& lab_from_body,
                std::span<const Beam> beams, const TraceOptions& options) {
   Plan plan;
-  for (const Beam& beam : beams) plan.emitted_W += beam.emitter->power_W();
   const RigidTransform body_from_lab = lab_from_body.inverse();
+  const double rays_per_replicate = static_cast<double>(options.rays) / options.replicates;
+  std::vector<std::optional<Targets>> targets;
+  std::vector<double> sent_W;
   for (const Beam& beam : beams) {
     const double power = beam.emitter->power_W();
-    const double wanted =
-        static_cast<double>(options.rays) / options.replicates * power / plan.emitted_W;
+    targets.push_back(Targets::of(*beam.emitter, body_from_lab * beam.lab_from_emitter, scene,
+                                  static_cast<uint64_t>(rays_per_replicate)));
+    sent_W.push_back(targets.back() ? power * targets.back()->fraction() : power);
+    plan.emitted_W += power;
+    plan.untraced_W += power - sent_W.back();
+  }
+  const double all_sent_W = plan.emitted_W - plan.untraced_W;
+  for (size_t i = 0; i < beams.size(); ++i) {
+    const Beam& beam = beams[i];
+    const double power = sent_W[i];
+    const double wanted = rays_per_replicate * power / all_sent_W;
     const uint64_t capped = static_cast<uint64_t>(std::min(wanted, 0x1p31));
     const uint32_t rays =
         std::bit_ceil(std::max<uint32_t>(static_cast<uint32_t>(capped), ray_block));
     BeamPlan planned{&beam,
                      plan_launch(*beam.emitter, body_from_lab * beam.lab_from_emitter, scene,
-                                 std::countr_zero(rays)),
+                                 std::countr_zero(rays), std::move(targets[i])),
                      plan.batches, band_fractions(beam.spectrum, scene.scene.bands), power / rays};
     double all_bands_W = 0.0;
     for (double& band : planned.power_per_ray_W) all_bands_W += band;
@@ -339,7 +353,8 @@ PowerBalance make_power_balance(const std::vector<TraceSums>& replicates, const 
   PowerBalance power_balance;
   power_balance.emitted_W = plan.emitted_W;
   power_balance.absorbed_W = estimate(absorbed);
-  power_balance.escaped_W = estimate([](const PowerBalanceSums& s) { return s.escaped_W; });
+  power_balance.escaped_W =
+      estimate([&](const PowerBalanceSums& s) { return plan.untraced_W + s.escaped_W; });
   power_balance.truncated_W = estimate([](const PowerBalanceSums& s) { return s.truncated_W; });
   for (size_t i = 0; i < replicates[0].power_balance.absorbed_lanes_W.size(); ++i) {
     power_balance.absorbed_by_instance_W.push_back(
@@ -353,7 +368,8 @@ PowerBalance make_power_balance(const std::vector<TraceSums>& replicates, const 
   }
   for (const TraceSums& replicate : replicates) {
     const PowerBalanceSums& s = replicate.power_balance;
-    const double gap = std::abs(plan.emitted_W - absorbed(s) - s.escaped_W - s.truncated_W);
+    const double gap =
+        std::abs(plan.emitted_W - plan.untraced_W - absorbed(s) - s.escaped_W - s.truncated_W);
     power_balance.closure = std::max(power_balance.closure, gap / plan.emitted_W);
   }
   return power_balance;
@@ -429,6 +445,7 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
   result.sums = sums.bins();
   result.power_balance = make_power_balance(by_replicate, plan);
   result.rays = plan.rays;
+  result.sent_W = plan.emitted_W - plan.untraced_W;
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

@@ -1,8 +1,10 @@
 // Light from beams through a scene into receivers, by forward ray tracing.
 //
 // Method: for every emitter, `replicates` independent Owen-scrambled Sobol sequences; each ray is
-// followed from surface to surface. At a hit the absorbed fraction of its power stays there and one
-// of the other lobes, drawn in proportion to its power, carries all the rest on, so that
+// followed from surface to surface. Parallel light is sent only where it can meet the scene (see
+// tracing/targets.h); the rest of it counts as escaped. At a hit the absorbed fraction of its power
+// stays there and one of the other lobes, drawn in proportion to its power, carries all the rest
+// on, so that
 //   emitted = absorbed + escaped + truncated
 // holds for every ray, not only on average. The force of a hit is the momentum that arrives minus
 // the expectation of what leaves over all lobes. Standard errors come from the spread of the
@@ -79,7 +81,8 @@ struct PowerBalance {
 struct TraceResult {
   PowerBalance power_balance;
   std::vector<BinSums> sums;  // one per receiver, in their order
-  uint64_t rays = 0;          // emitted
+  uint64_t rays = 0;          // traced from the sources
+  double sent_W = 0.0;        // their power: emitted, but for parallel light that meets nothing
   uint64_t segments = 0;      // traced, bounces included
   double wall_s = 0.0;
 };

@@ -39,8 +39,20 @@ constexpr NumberKey roughness(
     {.optional = true});
 constexpr NumberKey slope_error(
     "slope_error_mrad", {1e-6, 0.2},
-    "instead: a mirror whose normal leans by Gaussian slopes of this standard deviation "
-    "along each axis; reflected rays stray by twice that",
+    "instead: a mirror whose normal leans by random slopes of this size, as "
+    "`slope_error_shape` says; reflected rays stray by twice that. Or [along "
+    "`slope_error_axis`, across it]",
+    {.optional = true, .several = true});
+constexpr ChoiceKey slope_error_shape(
+    "slope_error_shape",
+    {{"gaussian",
+      "normal slopes (tangents) along each of two axes; the size is their standard "
+      "deviation"},
+     {"pillbox", "slopes that are even over a disc; the size is its radius"}},
+    0, "of `slope_error_mrad`");
+constexpr Vec3Key slope_error_axis(
+    "slope_error_axis",
+    "with two sizes: the first acts along this direction's projection onto the surface, body axes",
     {.optional = true});
 constexpr NumberKey refractive_index(
     "refractive_index", {1.0, 10.0},
@@ -145,6 +157,35 @@ OpticalSurface read_glass(const Settings& table, const OpticalSurface& base) {
   return behind_glass(base, index, read_alpha(table));
 }
 
+void read_slope_error(const Settings& table, Bsdf& bsdf) {
+  using namespace surface_key;
+  const NumberKey& key = surface_key::slope_error;
+  const SlopeShape shape =
+      table.get(slope_error_shape) == 0 ? SlopeShape::gaussian : SlopeShape::pillbox;
+  if (!table.raw(key).is_array()) {
+    const double slope_rad = table.get(key);
+    bsdf.specular = photorque::slope_error(slope_rad, shape);
+    bsdf.description = words("slope error in mrad", 1e3 * slope_rad);
+    return;
+  }
+  const std::vector<double> slopes_rad = table.numbers(key, key.range);
+  if (slopes_rad.size() != 2) {
+    throw table.error(key, "an array of " + std::to_string(slopes_rad.size()),
+                      "one number, or two: along slope_error_axis and across it");
+  }
+  if (!table.has(slope_error_axis)) {
+    throw table.error(key, "two numbers without slope_error_axis", "slope_error_axis beside");
+  }
+  bsdf.axis = table.get(slope_error_axis);
+  if (!(bsdf.axis.stableNorm() > 0.0)) {
+    throw table.error(slope_error_axis, "a vector without length", "a direction in body axes");
+  }
+  bsdf.axis.stableNormalize();
+  bsdf.specular = photorque::slope_error(slopes_rad[0], slopes_rad[1], shape);
+  bsdf.description =
+      words("slope error in mrad", 1e3 * slopes_rad[0]) + words(" and", 1e3 * slopes_rad[1]);
+}
+
 // The lobe of the specular fraction, if it is none of a mirror.
 void read_lobe(const Settings& table, const OpticalSurface& surface, Bsdf& bsdf) {
   for (const NumberKey& key : {surface_key::roughness, surface_key::slope_error}) {
@@ -160,9 +201,7 @@ void read_lobe(const Settings& table, const OpticalSurface& surface, Bsdf& bsdf)
     bsdf.specular = rough_mirror(alpha);
     bsdf.description = words("roughness", std::sqrt(alpha));
   } else if (table.has(surface_key::slope_error)) {
-    const double slope_rad = table.get(surface_key::slope_error);
-    bsdf.specular = slope_error(slope_rad);
-    bsdf.description = words("slope error in mrad", 1e3 * slope_rad);
+    read_slope_error(table, bsdf);
   }
 }
 
@@ -292,6 +331,8 @@ std::vector<Key> sheet_keys() {
                                  retroreflectance,
                                  roughness,
                                  surface_key::slope_error,
+                                 slope_error_shape,
+                                 slope_error_axis,
                                  refractive_index,
                                  brdf_file,
                                  brdf_scale};

@@ -29,12 +29,14 @@ using SurfaceFiles = std::function<std::optional<std::string>(const std::string&
 //   one left out                  it is what remains;
 //   more left out                 they are zero, if the others sum to 1; else an error.
 // The fractions returned sum to 1 to rounding. Further keys, all optional:
-//   roughness            (0, 1], as in glTF: the specular fraction leaves by
-//   raytrace/surfaces/mirrors.h slope_error_mrad     (0, 200]: … by slope_error() there
+//   roughness            (0, 1], as in glTF: the specular fraction leaves by rough_mirror() of
+//                        raytrace/surfaces/mirrors.h
+//   slope_error_mrad     (0, 200], or two of them: by slope_error() there, with slope_error_shape
+//                        and, for two, slope_error_axis (body axes)
 //   refractive_index     [1, 10]: glass in front, glass.h; the fractions are those behind it.
-//   Beneath
-//                        glass either diffuse, specular or transmittance is positive, roughness
-//                        goes with diffuse alone, and slope_error and retroreflectance with none
+//                        Beneath glass either diffuse, specular or transmittance is positive,
+//                        roughness goes with diffuse alone, and slope_error_mrad and
+//                        retroreflectance with none
 // Other keys are left to the caller. Throws InputError with the table's file, line and key.
 OpticalSurface read_surface(const Settings& table, int bands, std::string name);
 

@@ -40,11 +40,19 @@ struct PlaneSampler::Curve {
     return std::max(0.0, hermite(width_rad, low, slope_low, high, slope_high,
                                  (polar_rad - from_rad) / width_rad));
   }
-  double flux(double low_rad, double high_rad) const {
-    return integrate(
-        gauss_8, [this](double t) { return (*this)(t)*std::sin(t); }, low_rad, high_rad);
-  }
 };
+
+namespace {
+
+constexpr int deepest_cell = 16;
+
+template <typename Intensity>
+double flux_between(const Intensity& intensity, double low_rad, double high_rad) {
+  return integrate(
+      gauss_8, [&](double t) { return intensity(t) * std::sin(t); }, low_rad, high_rad);
+}
+
+}  // namespace
 
 PlaneSampler::PlaneSampler(const std::vector<double>& polar_rad, const double* intensity,
                            const double* slope) {
@@ -52,16 +60,32 @@ PlaneSampler::PlaneSampler(const std::vector<double>& polar_rad, const double* i
   for (size_t i = 0; i + 1 < polar_rad.size(); ++i) {
     curves.push_back({polar_rad[i], polar_rad[i + 1] - polar_rad[i], intensity[i], slope[i],
                       intensity[i + 1], slope[i + 1]});
-    flux_ += curves.back().flux(polar_rad[i], polar_rad[i + 1]);
+    flux_ += flux_between(curves.back(), polar_rad[i], polar_rad[i + 1]);
   }
   if (!(flux_ > 0.0)) return;
-  constexpr int deepest = 16;
   for (size_t i = 0; i < curves.size(); ++i) {
-    add(curves[i], polar_rad[i], polar_rad[i + 1], flux_, deepest);
+    add(curves[i], polar_rad[i], polar_rad[i + 1], flux_, deepest_cell);
   }
+  index_cells();
+}
+
+PlaneSampler::PlaneSampler(const std::vector<RadialPiece>& pieces) {
+  double rough = 0.0;
+  for (const RadialPiece& piece : pieces) {
+    rough += flux_between(piece.intensity, piece.from_rad, piece.to_rad);
+  }
+  for (const RadialPiece& piece : pieces) {
+    add(piece.intensity, piece.from_rad, piece.to_rad, rough, deepest_cell);
+  }
+  for (const Cell& cell : cells_) flux_ += cell.before;
+  if (flux_ > 0.0) index_cells();
+}
+
+// From cells that hold their own flux in place of what lies before them.
+void PlaneSampler::index_cells() {
   double before = 0.0;
   for (Cell& cell : cells_) {
-    const double fraction = cell.before / flux_;  // add() leaves the cell's own flux there
+    const double fraction = cell.before / flux_;
     cell.before = before;
     const double scale = fraction / (0.5 * (cell.low + cell.high) * cell.width);
     cell.low *= scale;
@@ -77,9 +101,11 @@ PlaneSampler::PlaneSampler(const std::vector<double>& polar_rad, const double* i
   }
 }
 
-void PlaneSampler::add(const Curve& curve, double low_rad, double high_rad, double plane_flux,
+// Leaves the cell's own flux in place of what lies before it.
+template <typename Intensity>
+void PlaneSampler::add(const Intensity& curve, double low_rad, double high_rad, double plane_flux,
                        int depth) {
-  const double flux = curve.flux(low_rad, high_rad);
+  const double flux = flux_between(curve, low_rad, high_rad);
   if (!(flux > 0.0)) return;
   const double rise = rise_at(low_rad), width = rise_at(high_rad) - rise;
   const double low = curve(low_rad), high = curve(high_rad);
@@ -90,7 +116,7 @@ void PlaneSampler::add(const Curve& curve, double low_rad, double high_rad, doub
     const double at_rad = low_rad + part * (high_rad - low_rad);
     const double t = (rise_at(at_rad) - rise) / width;
     const double linear = t * (low + 0.5 * t * (high - low)) * width * (flux / trapezium);
-    return std::abs(linear - curve.flux(low_rad, at_rad));
+    return std::abs(linear - flux_between(curve, low_rad, at_rad));
   };
   if (depth > 0 && !(std::max(error(1.0 / 3.0), error(2.0 / 3.0)) <= cell_error * plane_flux)) {
     const double middle_rad = 0.5 * (low_rad + high_rad);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "raytrace/emitter.h"
@@ -38,6 +39,12 @@ inline double rise_at(double polar_rad) {
   return 2.0 * sine * sine;
 }
 
+// Intensity between two polar angles of a plane, ≥ 0 and smooth on both ends included.
+struct RadialPiece {
+  double from_rad, to_rad;
+  std::function<double(double polar_rad)> intensity;
+};
+
 // The distribution of the polar angle in one plane, for samples of equal weight.
 class PlaneSampler {
  public:
@@ -45,6 +52,8 @@ class PlaneSampler {
 
   // Knots of the plane's cubic: angles, intensities and slopes of one length.
   PlaneSampler(const std::vector<double>& polar_rad, const double* intensity, const double* slope);
+  // A plane in pieces that join, rising.
+  explicit PlaneSampler(const std::vector<RadialPiece>& pieces);
 
   // ∫ I sin θ dθ over the plane, ≥ 0.
   double flux() const { return flux_; }
@@ -59,7 +68,10 @@ class PlaneSampler {
     double low, high;  // fraction per rise at its edges
   };
   struct Curve;
-  void add(const Curve& curve, double low_rad, double high_rad, double plane_flux, int depth);
+  template <typename Intensity>
+  void add(const Intensity& intensity, double low_rad, double high_rad, double plane_flux,
+           int depth);
+  void index_cells();
 
   double flux_ = 0.0;
   std::vector<Cell> cells_;

@@ -38,6 +38,17 @@ inline OpticalSurface with_lobe(double specular, double diffuse, std::shared_ptr
   return surface;
 }
 
+// A mirror with slope errors along a slanted axis and across it.
+inline OpticalSurface uneven_slopes(double specular, double first_rad, double second_rad,
+                                    SlopeShape shape) {
+  OpticalSurface surface = grey_surface("s", specular, 0.0);
+  Bsdf bsdf;
+  bsdf.specular = slope_error(first_rad, second_rad, shape);
+  bsdf.axis = Vec3(0.6, 0.8, 0.0);
+  surface.bsdf = std::make_shared<const Bsdf>(bsdf);
+  return surface;
+}
+
 inline OpticalSurface retroreflector(double retroreflected, double diffuse) {
   OpticalSurface surface = grey_surface("s", 0.0, diffuse);
   Bsdf bsdf;
@@ -84,20 +95,24 @@ inline OpticalSurface measured(const BrdfTable& table) {
 
 // All kinds; of what meets them (or gets through the glass) a fraction `kept` is not absorbed.
 inline std::vector<SurfaceKind> surface_kinds(double kept) {
-  return {{"mirror", grey_surface("s", kept, 0.0), false},
-          {"matt", grey_surface("s", 0.0, kept), true},
-          {"sheet", grey_surface("s", 0.2 * kept, 0.3 * kept, 0.5 * kept), true},
-          {"retroreflector", retroreflector(0.75 * kept, 0.25 * kept), true},
-          {"rough mirror 0.04", with_lobe(kept, 0.0, rough_mirror(0.04)), false},
-          {"rough mirror 0.3", with_lobe(0.7 * kept, 0.3 * kept, rough_mirror(0.3)), true},
-          {"rough mirror 1", with_lobe(kept, 0.0, rough_mirror(1.0)), true},
-          {"slope error 4 mrad", with_lobe(kept, 0.0, slope_error(0.004)), false},
-          {"slope error 50 mrad", with_lobe(kept, 0.0, slope_error(0.05)), false},
-          {"glass over matt", behind_glass(grey_surface("s", 0.0, kept), 1.5), true},
-          {"glass over cell", behind_glass(grey_surface("s", kept, 0.0), 1.5), true},
-          {"pane", behind_glass(grey_surface("s", 0.0, 0.0, kept), 1.5), true},
-          {"rough glass", behind_glass(grey_surface("s", 0.0, kept), 1.5, 0.25), true},
-          {"measured", measured(forward_scatter(kept)), true}};
+  return {
+      {"mirror", grey_surface("s", kept, 0.0), false},
+      {"matt", grey_surface("s", 0.0, kept), true},
+      {"sheet", grey_surface("s", 0.2 * kept, 0.3 * kept, 0.5 * kept), true},
+      {"retroreflector", retroreflector(0.75 * kept, 0.25 * kept), true},
+      {"rough mirror 0.04", with_lobe(kept, 0.0, rough_mirror(0.04)), false},
+      {"rough mirror 0.3", with_lobe(0.7 * kept, 0.3 * kept, rough_mirror(0.3)), true},
+      {"rough mirror 1", with_lobe(kept, 0.0, rough_mirror(1.0)), true},
+      {"slope error 4 mrad", with_lobe(kept, 0.0, slope_error(0.004)), false},
+      {"slope error 50 mrad", with_lobe(kept, 0.0, slope_error(0.05)), false},
+      {"slope error 50 mrad, pillbox", with_lobe(kept, 0.0, slope_error(0.05, SlopeShape::pillbox)),
+       false},
+      {"slope error 50 and 20 mrad", uneven_slopes(kept, 0.05, 0.02, SlopeShape::gaussian), false},
+      {"glass over matt", behind_glass(grey_surface("s", 0.0, kept), 1.5), true},
+      {"glass over cell", behind_glass(grey_surface("s", kept, 0.0), 1.5), true},
+      {"pane", behind_glass(grey_surface("s", 0.0, 0.0, kept), 1.5), true},
+      {"rough glass", behind_glass(grey_surface("s", 0.0, kept), 1.5, 0.25), true},
+      {"measured", measured(forward_scatter(kept)), true}};
 }
 
 // The light of a hit in its own frame: it comes from direction_at(cosine).

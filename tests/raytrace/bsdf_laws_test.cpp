@@ -64,6 +64,8 @@ constexpr double white_chi2 = 45.0;
 
 TEST(SurfaceLaws, NothingShowsInAWhiteFurnace) {
   for (const SurfaceKind& kind : surface_kinds(1.0)) {
+    // Light of one azimuth is no furnace for a surface with an axis: slope_error_test.cpp.
+    if (kind.surface.bsdf && !kind.surface.bsdf->axis.isZero()) continue;
     EXPECT_LT(furnace_chi2([&](double cosine, const Draw& draw) {
                 return send_ray(kind.surface, cosine, draw);
               }),
@@ -99,6 +101,8 @@ TEST(SurfaceLaws, TheFurnaceFindsMutants) {
 
 TEST(SurfaceLaws, ScatteringIsReciprocal) {
   for (const SurfaceKind& kind : surface_kinds(0.6)) {
+    // Turned directions would need a turned axis: tests/raytrace/slope_error_test.cpp.
+    if (kind.surface.bsdf && !kind.surface.bsdf->axis.isZero()) continue;
     // Slope errors are reciprocal where no part of the surface is seen from behind.
     const double lowest = kind.name.starts_with("slope") ? 0.35 : 0.03;
     double largest = 0.0;

@@ -20,9 +20,9 @@ inline SettingsNode vector(const Vec3& v) {
   return {SettingsNode::Array{number(v.x()), number(v.y()), number(v.z())}, {}};
 }
 
-// One source of the given kind at `at_m`, looking along `direction`.
+// One source of the given kind at `at_m`, looking along `direction` at a scene of this radius.
 inline Beam source(const char* which, SettingsNode::Table keys, const Vec3& at_m = {0, 0, 1.5},
-                   const Vec3& direction = {0, 0, -1}) {
+                   const Vec3& direction = {0, 0, -1}, double scene_radius_m = 1.0) {
   keys["direction"] = vector(direction);
   if (std::string(which) == "led") {
     keys["position_m"] = vector(at_m);
@@ -30,7 +30,8 @@ inline Beam source(const char* which, SettingsNode::Table keys, const Vec3& at_m
   }
   const Settings settings(std::make_shared<const SettingsNode>(SettingsNode{std::move(keys), {}}));
   for (const SourceKind& kind : all_source_kinds()) {
-    if (kind.name == which) return kind.make(settings, {.scene_radius_m = 1.0, .notice = {}})[0];
+    if (kind.name == which)
+      return kind.make(settings, {.scene_radius_m = scene_radius_m, .notice = {}})[0];
   }
   throw std::logic_error("no such source");
 }

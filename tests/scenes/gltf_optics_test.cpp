@@ -156,6 +156,36 @@ TEST(SurfaceSettings, GlassRoughnessAndSlopesReachTheSurface) {
   EXPECT_NEAR(1 - wavy.bsdf->specular->mean_direction(1.0).z(), 4 * 4e-6, 1e-7);
 }
 
+TEST(SurfaceSettings, SlopeErrorsHaveAShapeAndTwoSizes) {
+  const SettingsNode two{SettingsNode::Array{node_of(6.0), node_of(2.0)}, written_at};
+  const SettingsNode axis{SettingsNode::Array{node_of(0.0), node_of(2.0), node_of(0.0)},
+                          written_at};
+  const SettingsNode pillbox{std::string("pillbox"), written_at};
+  const Settings settings = settings_of({{"specular", node_of(1.0)},
+                                         {"slope_error_mrad", two},
+                                         {"slope_error_shape", pillbox},
+                                         {"slope_error_axis", axis}});
+  const OpticalSurface surface = read_surface(settings, 1, "x");
+  settings.finish();
+  ASSERT_TRUE(surface.bsdf && surface.bsdf->specular);
+  EXPECT_EQ(surface.bsdf->axis, Vec3::UnitY());
+  // 1 − <o_z> = 2 (<s₁²> + <s₂²>), of an even ellipse a quarter of the squares of its semi-axes.
+  EXPECT_NEAR(1 - surface.bsdf->specular->mean_direction(1.0).z(), 0.5 * 40e-6, 1e-8);
+  const auto error = [](SettingsNode::Table table) {
+    table.insert({"specular", node_of(1.0)});
+    return error_of([&] { read_sheet(settings_of(table), 1, "x"); });
+  };
+  EXPECT_THAT(error({{"slope_error_mrad", two}}), HasSubstr("slope_error_axis beside"));
+  const SettingsNode three{SettingsNode::Array{node_of(6.0), node_of(2.0), node_of(1.0)},
+                           written_at};
+  EXPECT_THAT(error({{"slope_error_mrad", three}, {"slope_error_axis", axis}}),
+              HasSubstr("found an array of 3, expected one number, or two"));
+  const SettingsNode nowhere{SettingsNode::Array{node_of(0.0), node_of(0.0), node_of(0.0)},
+                             written_at};
+  EXPECT_THAT(error({{"slope_error_mrad", two}, {"slope_error_axis", nowhere}}),
+              HasSubstr("found a vector without length"));
+}
+
 TEST(SurfaceSettings, HeatIsOfTheWholeSheet) {
   const SettingsNode back{SettingsNode::Table{{"absorptance", node_of(1.0)}}, written_at};
   const Settings settings = settings_of({{"absorptance", node_of(1.0)},

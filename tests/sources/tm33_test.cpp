@@ -104,6 +104,46 @@ TEST(Tm33File, ReadsTypeBAsLm63Does) {
   expect_same_table(read_photometric(text, "lamp.xml"), read_ies(ies, ""));
 }
 
+// TM-33-22 takes the coordinates of its types from the goniometers of LM-75: types A and B count h
+// clockwise seen from above (so that h = 30, v = 30 and the beam are left-handed), type C counts it
+// against the clock, from C0 towards C90, with v from the nadir. Directions in the emitter's frame,
+// which looks along the beam (z) with C0 along x and C90, seen from above on the left of C0, along
+// −y.
+TEST(Tm33File, ShinesWhereTheStandardsAnglesSay) {
+  constexpr double sine = 0.5, cosine = 0.86602540378443865;
+  struct Lamp {
+    const char* type;
+    double h_deg, v_deg;
+    Vec3 expected;
+  };
+  const Lamp lamps[] = {{"CIE_A", 30, 0, {0, sine, cosine}},  {"IES_A", 0, 30, {sine, 0, cosine}},
+                        {"CIE_B", 30, 0, {0, sine, cosine}},  {"IES_B", 0, 30, {sine, 0, cosine}},
+                        {"CIE_C", 0, 30, {sine, 0, cosine}},  {"IES_C", 90, 30, {0, -sine, cosine}},
+                        {"IES_C", 270, 30, {0, sine, cosine}}};
+  for (const Lamp& lamp : lamps) {
+    const bool along_beam = lamp.type[4] == 'C';
+    std::vector<Direction> directions;
+    for (const double h_deg : along_beam ? std::vector<double>{0, 90, 180, 270}
+                                         : std::vector<double>{-60, -30, 0, 30, 60}) {
+      for (const double v_deg :
+           along_beam ? std::vector<double>{0, 30, 60} : std::vector<double>{-60, -30, 0, 30, 60}) {
+        const bool lit = h_deg == lamp.h_deg && v_deg == lamp.v_deg;
+        directions.push_back({h_deg, v_deg, lit ? 1000.0 : 0.0});
+      }
+    }
+    const PhotometricFile file =
+        read_photometric(document(emitter(int_data(directions)), lamp.type), "lamp.xml");
+    const TabulatedIntensity intensity(file.table);
+    const auto at = [&](const Vec3& direction) {
+      const GoniometerAngles angle = table_angles(file.table.pole, direction);
+      return intensity.at(angle.polar_rad, angle.azimuth_rad);
+    };
+    const std::string which = lamp.type + std::string(" h ") + std::to_string(lamp.h_deg);
+    EXPECT_NEAR(at(lamp.expected), 1000.0, 1e-6) << which;
+    EXPECT_NEAR(at({-lamp.expected.x(), -lamp.expected.y(), cosine}), 0.0, 1e-6) << which;
+  }
+}
+
 TEST(Tm33File, TakesTheIntensityNearestToWatts) {
   std::string luminous = emitter(int_data({{0, 0, 3}, {0, 90, 2}}), "Luminous");
   const std::string flux = "<LuminousFlux>55</LuminousFlux>\n    </LuminousData>";

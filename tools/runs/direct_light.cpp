@@ -224,7 +224,7 @@ DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scen
                       effort.direct == TraceEffort::Direct::automatic && !effort.target_error,
                       result.rays,
                       result.power_balance.emitted_W,
-                      result.power_balance.emitted_W / static_cast<double>(result.rays),
+                      result.sent_W / static_cast<double>(result.rays),
                       route};
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {
     const NamedReceiver& receiver = experiment.receivers[i];

@@ -1,0 +1,318 @@
+#include "raytrace/tracing/targets.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "core/constants.h"
+#include "core/numerics/vector_math.h"
+
+namespace photorque {
+namespace {
+
+// A vertex as the light sees it, and how far directions move it.
+struct Seen {
+  double x_m, y_m;
+  double height_m, across_m;  // |z| and ρ
+};
+struct SeenTriangle {
+  std::array<Seen, 3> corner;
+
+  double margin_m(double sine) const {
+    const double rise = sine * sine / (1.0 + std::sqrt(1.0 - sine * sine));
+    double margin_m = 0.0;
+    for (const Seen& seen : corner) {
+      margin_m = std::max(margin_m, seen.height_m * sine + seen.across_m * rise);
+    }
+    return margin_m;
+  }
+};
+
+// The triangles of all parts; of many, the boxes about the parts' meshes.
+std::vector<SeenTriangle> triangles_of(const Scene& scene, const RigidTransform& emitter_from_body,
+                                       double disc_height_m, uint64_t most) {
+  const auto seen_at = [&](const Vec3& body_m) {
+    const Vec3 at_m = emitter_from_body.point(body_m);
+    return Seen{at_m.x(), at_m.y(), std::abs(at_m.z() - disc_height_m),
+                std::hypot(at_m.x(), at_m.y())};
+  };
+  size_t count = 0;
+  for (const Instance& part : scene.instances) count += scene.meshes[part.mesh].triangles.size();
+  std::vector<SeenTriangle> triangles;
+  for (const Instance& part : scene.instances) {
+    const Mesh& mesh = scene.meshes[part.mesh];
+    std::vector<Seen> corners;
+    if (count <= most) {
+      for (const Vec3& at_m : mesh.vertices_m)
+        corners.push_back(seen_at(part.body_from_mesh * at_m));
+      for (const auto& [a, b, c] : mesh.triangles) {
+        triangles.push_back({corners[a], corners[b], corners[c]});
+      }
+      continue;
+    }
+    Eigen::AlignedBox3d box;
+    for (const Vec3& at_m : mesh.vertices_m) box.extend(at_m);
+    for (int i = 0; i < 8; ++i) {
+      const auto corner = static_cast<Eigen::AlignedBox3d::CornerType>(i);
+      corners.push_back(seen_at(part.body_from_mesh * box.corner(corner)));
+    }
+    // Two for each face: corners that differ in two of the three axes.
+    for (const auto& [a, b, c, d] : {std::array{0, 1, 3, 2},
+                                     {4, 5, 7, 6},
+                                     {0, 1, 5, 4},
+                                     {2, 3, 7, 6},
+                                     {0, 2, 6, 4},
+                                     {1, 3, 7, 5}}) {
+      const auto at = [&](int k) { return corners[static_cast<size_t>(k)]; };
+      triangles.push_back({at(a), at(b), at(c)});
+      triangles.push_back({at(a), at(c), at(d)});
+    }
+  }
+  return triangles;
+}
+
+// Bits on a square grid.
+class BitGrid {
+ public:
+  // Holds [low, high], `side` (a power of two ≥ 64) cells along the longer edge.
+  BitGrid(const Vec2& low_m, const Vec2& high_m, size_t side)
+      : low_m_(low_m),
+        size_m_((high_m - low_m).maxCoeff() * (1.0 + 1e-9) / static_cast<double>(side)),
+        side_(side),
+        bits_(side * side / 64, 0) {}
+
+  void mark(const SeenTriangle& triangle, double margin_m);
+  size_t count() const;
+  // Joins 2 × 2 cells.
+  void halve();
+  Targets::Cells cells() const;
+
+ private:
+  size_t words() const { return side_ / 64; }
+  size_t place(double at_m, double from_m) const {
+    const double cell = std::floor((at_m - from_m) / size_m_);
+    return static_cast<size_t>(std::clamp(cell, 0.0, static_cast<double>(side_ - 1)));
+  }
+  void mark_row(size_t row, double from_m, double to_m);
+
+  Vec2 low_m_;
+  double size_m_;
+  size_t side_;
+  std::vector<uint64_t> bits_;  // row by row
+};
+
+void BitGrid::mark_row(size_t row, double from_m, double to_m) {
+  const size_t first = place(from_m, low_m_.x()), last = place(to_m, low_m_.x());
+  uint64_t* bits = &bits_[row * words()];
+  for (size_t word = first / 64; word <= last / 64; ++word) {
+    uint64_t mask = ~uint64_t{0};
+    if (word == first / 64) mask &= ~uint64_t{0} << (first % 64);
+    if (word == last / 64) mask &= ~uint64_t{0} >> (63 - last % 64);
+    bits[word] |= mask;
+  }
+}
+
+void BitGrid::mark(const SeenTriangle& triangle, double margin_m) {
+  const auto& [a, b, c] = triangle.corner;
+  const auto [y_low, y_high] = std::minmax({a.y_m, b.y_m, c.y_m});
+  const auto [x_low, x_high] = std::minmax({a.x_m, b.x_m, c.x_m});
+  const size_t first = place(y_low - margin_m, low_m_.y()),
+               last = place(y_high + margin_m, low_m_.y());
+  if (last - first < 2) {
+    for (size_t row = first; row <= last; ++row) mark_row(row, x_low - margin_m, x_high + margin_m);
+    return;
+  }
+  for (size_t row = first; row <= last; ++row) {
+    // Where the triangle lies beside the row, which is as much higher and lower as the margin.
+    const double bottom_m = low_m_.y() + static_cast<double>(row) * size_m_ - margin_m;
+    const double top_m = bottom_m + size_m_ + 2.0 * margin_m;
+    double from_m = std::numeric_limits<double>::max(), to_m = -from_m;
+    const auto reach = [&](double x_m) {
+      from_m = std::min(from_m, x_m);
+      to_m = std::max(to_m, x_m);
+    };
+    for (const auto& [from, to] : {std::pair(&a, &b), {&b, &c}, {&c, &a}}) {
+      const double rise_m = to->y_m - from->y_m;
+      if (std::max(from->y_m, to->y_m) < bottom_m || std::min(from->y_m, to->y_m) > top_m) continue;
+      const auto at = [&](double y_m) {
+        const double part = rise_m == 0.0 ? 0.0 : std::clamp((y_m - from->y_m) / rise_m, 0.0, 1.0);
+        return from->x_m + part * (to->x_m - from->x_m);
+      };
+      if (rise_m == 0.0) reach(to->x_m);
+      reach(at(bottom_m));
+      reach(at(top_m));
+    }
+    if (from_m <= to_m) mark_row(row, from_m - margin_m, to_m + margin_m);
+  }
+}
+
+size_t BitGrid::count() const {
+  size_t sum = 0;
+  for (const uint64_t word : bits_) sum += static_cast<size_t>(std::popcount(word));
+  return sum;
+}
+
+// Every second bit of a word, together in its lower half.
+uint64_t even_bits(uint64_t x) {
+  x &= 0x5555555555555555u;
+  x = (x | (x >> 1)) & 0x3333333333333333u;
+  x = (x | (x >> 2)) & 0x0f0f0f0f0f0f0f0fu;
+  x = (x | (x >> 4)) & 0x00ff00ff00ff00ffu;
+  x = (x | (x >> 8)) & 0x0000ffff0000ffffu;
+  return (x | (x >> 16)) & 0x00000000ffffffffu;
+}
+
+void BitGrid::halve() {
+  BitGrid half = *this;
+  half.side_ = side_ / 2;
+  half.size_m_ = 2.0 * size_m_;
+  half.bits_.assign(half.side_ * half.side_ / 64, 0);
+  for (size_t row = 0; row < half.side_; ++row) {
+    for (size_t word = 0; word < words(); ++word) {
+      const uint64_t both = bits_[2 * row * words() + word] | bits_[(2 * row + 1) * words() + word];
+      half.bits_[row * half.words() + word / 2] |= even_bits(both | (both >> 1))
+                                                   << (32 * (word % 2));
+    }
+  }
+  *this = std::move(half);
+}
+
+// Interleaves the bits of a 16-bit number with zeros, and takes them out again.
+uint32_t with_gaps(uint32_t x) {
+  x = (x | (x << 8)) & 0x00ff00ffu;
+  x = (x | (x << 4)) & 0x0f0f0f0fu;
+  x = (x | (x << 2)) & 0x33333333u;
+  return (x | (x << 1)) & 0x55555555u;
+}
+uint16_t without_gaps(uint32_t x) {
+  return static_cast<uint16_t>(even_bits(x));
+}
+
+Targets::Cells BitGrid::cells() const {
+  std::vector<uint32_t> curve;
+  for (size_t row = 0; row < side_; ++row) {
+    for (size_t word = 0; word < words(); ++word) {
+      for (uint64_t left = bits_[row * words() + word]; left != 0; left &= left - 1) {
+        const auto column = 64 * word + static_cast<size_t>(std::countr_zero(left));
+        curve.push_back(with_gaps(static_cast<uint32_t>(column)) |
+                        (with_gaps(static_cast<uint32_t>(row)) << 1));
+      }
+    }
+  }
+  std::sort(curve.begin(), curve.end());
+  Targets::Cells cells{low_m_.x(), low_m_.y(), size_m_, {}};
+  for (const uint32_t place : curve) {
+    cells.cells.push_back({without_gaps(place), without_gaps(place >> 1)});
+  }
+  return cells;
+}
+
+// The cells for all directions up to a sine of the angle from the axis.
+Targets::Cells cells_within(const std::vector<SeenTriangle>& triangles, double sine,
+                            double rounding_m, uint64_t rays) {
+  Vec2 low_m = Vec2::Constant(std::numeric_limits<double>::max()), high_m = -low_m;
+  for (const SeenTriangle& triangle : triangles) {
+    const Vec2 margin_m = Vec2::Constant(triangle.margin_m(sine) + rounding_m);
+    for (const Seen& seen : triangle.corner) {
+      low_m = low_m.cwiseMin(Vec2(seen.x_m, seen.y_m) - margin_m);
+      high_m = high_m.cwiseMax(Vec2(seen.x_m, seen.y_m) + margin_m);
+    }
+  }
+  // As fine as the rays are worth.
+  const uint64_t side = std::clamp<uint64_t>(
+      std::bit_ceil(static_cast<uint64_t>(4.0 * std::sqrt(static_cast<double>(rays)))), 64, 4096);
+  const uint64_t most_cells = std::clamp<uint64_t>(rays / 16, 256, 65536);
+  BitGrid grid(low_m, high_m, side);
+  for (const SeenTriangle& triangle : triangles) {
+    grid.mark(triangle, triangle.margin_m(sine) + rounding_m);
+  }
+  for (size_t size = side; size > 64 && grid.count() > most_cells; size /= 2) grid.halve();
+  return grid.cells();
+}
+
+// The sine of the angle within which a fraction of the light lies.
+double sine_within(const ParallelLight& light, double fraction) {
+  SampleBlock samples{};
+  RayBlock rays;
+  samples.bits[2].fill(static_cast<uint32_t>(std::min(fraction * 0x1p32, 0x1p32 - 1.0)));
+  light.fill_directions(samples, rays);
+  return std::hypot(rays.direction[0][0], rays.direction[1][0]);
+}
+
+}  // namespace
+
+std::optional<Targets> Targets::of(const Emitter& emitter, const RigidTransform& body_from_emitter,
+                                   const TraceableScene::Data& scene, uint64_t rays) {
+  const auto* light = dynamic_cast<const ParallelLight*>(&emitter);
+  if (light == nullptr) return std::nullopt;
+  const std::vector<SeenTriangle> triangles =
+      triangles_of(scene.scene, body_from_emitter.inverse(), light->radius_m(), rays / 8);
+  if (triangles.empty()) return std::nullopt;
+  // Of coordinates in single precision, a few operations after each other.
+  const double rounding_m = 1e-6 * light->radius_m();
+  // A range ends where the angle has grown by this factor, from the outside inwards.
+  constexpr double worth = 1.5, rounding_of_sine = 1.0 + 1e-6;
+  std::vector<AngleRange> ranges = {{0.0, 1.0, 0.0, 0.0, {}}};
+  std::vector<double> sines = {sine_within(*light, 1.0) * rounding_of_sine};
+  for (const double inner : {0.997, 0.99, 0.98, 0.95, 0.9, 0.8, 0.5}) {
+    const double sine = sine_within(*light, inner) * rounding_of_sine;
+    if (sines.back() == 0.0 || sine * worth > sines.back()) continue;
+    ranges.back().from = inner;
+    ranges.push_back({0.0, inner, 0.0, 0.0, {}});
+    sines.push_back(sine);
+  }
+  for (size_t i = 0; i < ranges.size(); ++i) {
+    ranges[i].cells = cells_within(triangles, sines[i], rounding_m, rays);
+  }
+  std::reverse(ranges.begin(), ranges.end());
+  Targets targets(*light, std::move(ranges));
+  constexpr double nearly_all = 0.9;
+  if (!(targets.fraction_ < nearly_all)) return std::nullopt;
+  return targets;
+}
+
+Targets::Targets(const ParallelLight& light, std::vector<AngleRange> ranges)
+    : light_(&light), ranges_(std::move(ranges)) {
+  double sum_m2 = 0.0;
+  for (const AngleRange& range : ranges_) sum_m2 += (range.to - range.from) * range.cells.area_m2();
+  double before = 0.0;
+  for (AngleRange& range : ranges_) {
+    const double part = (range.to - range.from) * range.cells.area_m2() / sum_m2;
+    range.begin = before;
+    range.stretch = (range.to - range.from) / part;
+    before += part;
+  }
+  fraction_ = sum_m2 / (pi * light.radius_m() * light.radius_m());
+}
+
+void Targets::emit(SampleBlock& samples, RayBlock& rays) const {
+  std::array<const AngleRange*, ray_block> range;
+  range.fill(&ranges_.front());
+  if (ranges_.size() > 1) {
+    for (int i = 0; i < ray_block; ++i) {
+      const double draw = fraction_of(samples.bits[2][i]);
+      size_t k = ranges_.size() - 1;
+      while (k > 0 && draw < ranges_[k].begin) --k;
+      range[i] = &ranges_[k];
+      const double fraction = std::clamp(
+          ranges_[k].from + (draw - ranges_[k].begin) * ranges_[k].stretch, 0.0, ranges_[k].to);
+      samples.bits[2][i] = static_cast<uint32_t>(std::min(fraction * 0x1p32, 0x1p32 - 1.0));
+    }
+  }
+  light_->fill_directions(samples, rays);
+  for (int i = 0; i < ray_block; ++i) {
+    const Cells& all = range[i]->cells;
+    // The cell, and in the lower half of the word the place along it.
+    const uint64_t count = all.cells.size();
+    const uint64_t place = samples.bits[0][i] * count + count / 2;
+    const Cell cell = all.cells[place >> 32];
+    const double x = cell.x + fraction_of(static_cast<uint32_t>(place));
+    const double y = cell.y + fraction_of(samples.bits[1][i]);
+    rays.origin_m[0][i] = static_cast<float>(all.x_m + all.size_m * x);
+    rays.origin_m[1][i] = static_cast<float>(all.y_m + all.size_m * y);
+  }
+  light_->place_on_discs(rays);
+}
+
+}  // namespace photorque

@@ -1,0 +1,61 @@
+// Where parallel light has to be sent so that it meets a scene.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "raytrace/parallel_light.h"
+#include "raytrace/tracing/traceable_scene_data.h"
+
+namespace photorque {
+
+// The cells of a ParallelLight's disc from which rays can meet a triangle.
+//
+// Seen along a direction at the angle θ from the axis a point at height z over the disc's middle
+// lies within |z| sin θ + ρ (1 − cos θ) of its place (ρ from the axis) along the axis. Triangles
+// with this margin are drawn onto a grid of bits, which is halved in both directions until few
+// cells are left. Light far from the axis has wide margins and little power, so directions are cut
+// into a few ranges of angles, each with cells of its own. Points and directions are drawn in
+// proportion to the cells' area times the range's power: every ray carries the same power, and the
+// light left out meets nothing. Exact: no result is biased.
+class Targets {
+ public:
+  // Nothing if the light is not parallel, or if nearly all of the disc is needed. `rays` of the
+  // emitter bound the work.
+  static std::optional<Targets> of(const Emitter& emitter, const RigidTransform& body_from_emitter,
+                                   const TraceableScene::Data& scene, uint64_t rays);
+
+  // Of the emitter's power: what is sent; the rest would meet nothing. In (0, 1).
+  double fraction() const { return fraction_; }
+
+  // As Emitter::emit(), onto the cells alone. Changes dimension 2 of the samples.
+  void emit(SampleBlock& samples, RayBlock& rays) const;
+
+  struct Cell {
+    uint16_t x, y;
+  };
+  // Square cells from a corner on, along a Morton curve.
+  struct Cells {
+    double x_m = 0.0, y_m = 0.0, size_m = 0.0;
+    std::vector<Cell> cells;
+
+    double area_m2() const { return size_m * size_m * static_cast<double>(cells.size()); }
+  };
+
+ private:
+  // Directions between two fractions of the light, counted from the axis.
+  struct AngleRange {
+    double from, to;        // fractions of the light
+    double begin, stretch;  // fraction = from + (draw − begin) · stretch
+    Cells cells;
+  };
+
+  Targets(const ParallelLight& light, std::vector<AngleRange> ranges);
+
+  const ParallelLight* light_;
+  std::vector<AngleRange> ranges_;
+  double fraction_ = 0.0;
+};
+
+}  // namespace photorque
