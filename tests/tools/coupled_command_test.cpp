@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <sstream>
 
 #include "core/constants.h"
@@ -315,6 +316,48 @@ on = true
   EXPECT_LE(found.at("energy_closure").at("value").get<double>(), 1e-9);
   EXPECT_NEAR(found.at("load_unserved_J").at("value").get<double>(),
               6.0 * (300.5 - 100.25 - capacity_J * 0.9 / 6.0), 1e-6);
+}
+
+// Whatever the platform and its start: a run in light ends at its time, or at the platform's own
+// stop, never at the edge of a table.
+TEST_F(CoupledCommand, NoRunEndsAtTheEdgeOfATable) {
+  std::mt19937_64 random(20261127);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  std::filesystem::rename(experiment(sun), at("sunny.toml"));
+  const std::string lit = experiment(lamp);
+  size_t wider = 0;
+  constexpr int runs = 24;
+  for (int i = 0; i < runs; ++i) {
+    const bool has_stop = i % 3 == 0;
+    const double stop_deg = has_stop ? between(8.0, 40.0) : 90.0;
+    const std::vector<std::pair<std::string, double>> numbers = {
+        {"platform.mass_kg", between(1.0, 10.0)},
+        {"platform.tilt_limit_deg", stop_deg},
+        {"propagate.initial_tilt_deg", between(0.5, 7.0)},
+        {"propagate.initial_heading_deg", between(0.0, 360.0)},
+        {"propagate.tolerance", std::pow(10.0, between(-9.0, -4.0))},
+        {"propagate.duration_s", 120.0},
+        {"propagate.output_rate_Hz", 0.5},
+        {"light.step_s", between(0.2, 20.0)},
+        {"light.tolerance", 0.05},
+        {"light.rays", 1024.0},
+        {"light.max_traces", 300.0}};
+    std::string words = "propagate " + (i % 2 == 0 ? lit : at("sunny.toml"));
+    for (const auto& [key, value] : numbers) words += " --set " + key + "=" + std::to_string(value);
+    words += " --set 'propagate.initial_rate_rad_s=[" + std::to_string(between(-0.03, 0.03)) + "," +
+             std::to_string(between(-0.03, 0.03)) + "," + std::to_string(between(-0.2, 0.2)) + "]'";
+    if (i % 4 == 0) words += " --set light.max_tilt_deg=" + std::to_string(between(1.0, 20.0));
+    const Outcome got = run(words + " --out " + at("o"));
+    ASSERT_EQ(got.status, 0) << words << got.err;
+    wider += got.out.find("again with a wider table") != std::string::npos ? 1 : 0;
+    const double end_s = table("o/time_history.csv").at("t_s").back();
+    if (end_s > 119.0) continue;
+    ASSERT_TRUE(std::filesystem::exists(at("o/events.csv"))) << words;
+    EXPECT_THAT(file_text(at("o/events.csv")), HasSubstr("tilt_stop")) << words;
+  }
+  EXPECT_GE(wider, 3u);  // so that the edge was met
 }
 
 TEST_F(CoupledCommand, ATableIsKeptByTheContentOfItsInputs) {
