@@ -11,7 +11,7 @@
 namespace photorque {
 namespace {
 
-using Table = SettingsNode::Table;
+using TomlTable = SettingsNode::Table;
 
 std::string print(const char* format, double value) {
   char text[64];
@@ -49,15 +49,15 @@ bool has_sigma(const FittedParameter& p) {
 SettingsNode value_of(const FittedParameter& p) {
   SettingsNode value = numbers(p.value, "%.9g");
   if (!has_sigma(p)) return value;
-  return {Table{{"value", std::move(value)}, {"sigma", numbers(p.sigma, "%.3g")}}};
+  return {TomlTable{{"value", std::move(value)}, {"sigma", numbers(p.sigma, "%.3g")}}};
 }
 
-void add_values(TomlDocument& document, Table& table,
+void add_values(TomlDocument& document, TomlTable& table,
                 const std::vector<FittedParameter>& parameters) {
   for (const FittedParameter& p : parameters) document.set(table, p.key, value_of(p));
 }
 
-void add_kind(TomlDocument& document, Table& table, const std::string& kind) {
+void add_kind(TomlDocument& document, TomlTable& table, const std::string& kind) {
   document.set(table, "kind", {kind});
 }
 
@@ -68,7 +68,7 @@ void add_effect(TomlDocument& document, const FoundEffect& effect, const std::st
   for (const std::string& other : effect.indistinguishable_from) {
     document.comment("The recordings cannot tell it from " + other + ".");
   }
-  Table& table = document.append(table_name);
+  TomlTable& table = document.append(table_name);
   add_kind(document, table, effect.kind);
   for (const auto& [key, value] : effect.texts) document.set(table, key, {value});
   if (table_name == "effect") {
@@ -85,7 +85,7 @@ void add_effect(TomlDocument& document, const FoundEffect& effect, const std::st
 
 void add_unnamed(TomlDocument& document, const FoundEffect& effect, bool with_begin) {
   document.comment("Fitted beside, without being proved: " + effect.kind + ".");
-  Table& table = document.append("disturbance");
+  TomlTable& table = document.append("disturbance");
   add_kind(document, table, effect.kind);
   add_values(document, table, effect.parameters);
   if (with_begin) add_values(document, table, effect.begins);
@@ -97,11 +97,11 @@ void add_empirical(TomlDocument& document, const EmpiricalTorque& torque) {
   if (!torque.formula.empty()) document.comment(torque.formula);
   if (!torque.looks_like.empty()) document.comment("Looks like " + torque.looks_like + ".");
   if (torque.parameters.empty()) return;
-  Table& table = document.append("disturbance");
+  TomlTable& table = document.append("disturbance");
   add_kind(document, table, "empirical_torque");
   for (const auto& [key, value] : torque.shape) {
     SettingsNode shape = parse_toml("value = " + value, "shape");
-    document.set(table, key, std::move(std::get<Table>(shape.value).at("value")));
+    document.set(table, key, std::move(std::get<TomlTable>(shape.value).at("value")));
   }
   add_values(document, table, torque.parameters);
 }
@@ -110,7 +110,7 @@ void add_replay(TomlDocument& document, const Replay& replay, const std::filesys
   const auto& q = replay.initial_attitude;
   const Vec3& w = replay.initial_rate_rad_s;
   document.comment("Flies the first recording again, from its fitted start.");
-  Table& run = document.table("propagate");
+  TomlTable& run = document.table("propagate");
   const auto set = [&](const char* key, const std::vector<double>& values, const char* format) {
     document.set(run, key, numbers(values, format));
   };
@@ -138,7 +138,7 @@ bool refine(TomlDocument& document, const FittedParameter& p) {
   const size_t dot = p.key.rfind('.');
   if (dot == std::string::npos) return false;
   auto* holder = const_cast<SettingsNode*>(find_setting(document.root, p.key.substr(0, dot)));
-  auto* table = holder == nullptr ? nullptr : std::get_if<Table>(&holder->value);
+  auto* table = holder == nullptr ? nullptr : std::get_if<TomlTable>(&holder->value);
   if (table == nullptr) return false;
   const std::string key = p.key.substr(dot + 1);
   const KeyUnit wanted = unit_of_key(key);
@@ -158,7 +158,8 @@ std::string improved_experiment(TomlDocument document, const Diagnosis& diagnosi
                                 const std::filesystem::path& folder) {
   // An experiment that propagates has a start of its own.
   const std::optional<Replay> replay =
-      std::get<Table>(document.root.value).contains("propagate") ? std::nullopt : diagnosis.replay;
+      std::get<TomlTable>(document.root.value).contains("propagate") ? std::nullopt
+                                                                     : diagnosis.replay;
   document.add_to_head("Written by photorque diagnose: " + diagnosis.sentence);
   document.add_to_head(
       "The experiment with its values and comments, blank lines and line breaks apart; what was "

@@ -88,14 +88,15 @@ bool is_inline(const SettingsNode& node) {
   return lines.first >= lines.last;
 }
 
-// The entries of a table in the order of their lines; those without a line last, by name.
+// The entries of a table in the order of their lines; those without a line last, by name. Of a line
+// `value` comes first: { value = 1, sigma = 0.1 }.
 std::vector<const SettingsNode::Table::value_type*> in_order(const SettingsNode::Table& table) {
   std::vector<const SettingsNode::Table::value_type*> entries;
   for (const auto& entry : table) entries.push_back(&entry);
   const auto place = [](const SettingsNode::Table::value_type* entry) {
     LineRange lines;
     lines.add(entry->second);
-    return lines.first;
+    return std::pair(lines.first, entry->first != "value");
   };
   std::ranges::stable_sort(entries, {}, place);
   return entries;

@@ -113,7 +113,7 @@ TEST(Improved, PutsFittedNominalValuesInTheirPlaces) {
   EXPECT_THAT(text,
               HasSubstr("# before the fit: offset_m = { value = [-8.7e-07, -2.7e-06, -4.3e-05]"));
   for (const char* kept :
-       {"mass_kg = 8.7  # weighed twice", "[sensors.gyro]\nnoise_rad_s = 0.0002"}) {
+       {"mass_kg = 8.7  # weighed twice", "[sensors.gyro]\nnoise_rad_s = 2e-04"}) {
     EXPECT_THAT(text, HasSubstr(kept));
   }
 }
