@@ -286,6 +286,12 @@ class RecordingReader {
           std::to_string(report.rows_kept) + " usable rows of " + std::to_string(report.rows_read),
           "at least two");
     }
+    constexpr double longest_s = 1e10;  // 300 years: such a column holds another unit
+    const double first_s = recording_.time_s.front(), last_s = recording_.time_s.back();
+    if (!(last_s - first_s <= longest_s)) {
+      throw error("t_s", "times from " + shortest(first_s) + " to " + shortest(last_s) + " s",
+                  "a recording of at most " + shortest(longest_s) + " s, times in seconds");
+    }
     const bool any = std::any_of(recording_.channels.begin(), recording_.channels.end(),
                                  [](const Channel& channel) {
                                    return std::any_of(channel.values.begin(), channel.values.end(),

@@ -80,7 +80,9 @@ struct RotationTableError {
 // An attitude that a table does not hold.
 class BeyondTable : public NumericalError {
  public:
-  BeyondTable() : NumericalError("an attitude beyond the table of light over attitude") {}
+  explicit BeyondTable(
+      const std::string& what = "an attitude beyond the table of light over attitude")
+      : NumericalError(what) {}
 };
 
 class RotationTable {
