@@ -1,6 +1,7 @@
 // `propagate` with light: against closed forms of a plate in sunlight, and tables against tracing.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -345,7 +346,11 @@ TEST_F(CoupledCommand, NoRunEndsAtTheEdgeOfATable) {
         {"light.rays", 1024.0},
         {"light.max_traces", 300.0}};
     std::string words = "propagate " + (i % 2 == 0 ? lit : at("sunny.toml"));
-    for (const auto& [key, value] : numbers) words += " --set " + key + "=" + std::to_string(value);
+    for (const auto& [key, value] : numbers) {
+      char text[40];
+      std::snprintf(text, sizeof text, "%.9g", value);
+      words += " --set " + key + "=" + text;
+    }
     words += " --set 'propagate.initial_rate_rad_s=[" + std::to_string(between(-0.03, 0.03)) + "," +
              std::to_string(between(-0.03, 0.03)) + "," + std::to_string(between(-0.2, 0.2)) + "]'";
     if (i % 4 == 0) words += " --set light.max_tilt_deg=" + std::to_string(between(1.0, 20.0));
