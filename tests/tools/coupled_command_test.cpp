@@ -329,7 +329,7 @@ TEST_F(CoupledCommand, NoRunEndsAtTheEdgeOfATable) {
   std::filesystem::rename(experiment(sun), at("sunny.toml"));
   const std::string lit = experiment(lamp);
   size_t wider = 0;
-  constexpr int runs = 24;
+  constexpr int runs = 8;
   for (int i = 0; i < runs; ++i) {
     const bool has_stop = i % 3 == 0;
     const double stop_deg = has_stop ? between(8.0, 40.0) : 90.0;
@@ -343,8 +343,8 @@ TEST_F(CoupledCommand, NoRunEndsAtTheEdgeOfATable) {
         {"propagate.output_rate_Hz", 0.5},
         {"light.step_s", between(0.2, 20.0)},
         {"light.tolerance", 0.05},
-        {"light.rays", 1024.0},
-        {"light.max_traces", 300.0}};
+        {"light.rays", 256.0},
+        {"light.max_traces", 100.0}};
     std::string words = "propagate " + (i % 2 == 0 ? lit : at("sunny.toml"));
     for (const auto& [key, value] : numbers) {
       char text[40];
@@ -353,6 +353,8 @@ TEST_F(CoupledCommand, NoRunEndsAtTheEdgeOfATable) {
     }
     words += " --set 'propagate.initial_rate_rad_s=[" + std::to_string(between(-0.03, 0.03)) + "," +
              std::to_string(between(-0.03, 0.03)) + "," + std::to_string(between(-0.2, 0.2)) + "]'";
+    // Top-heavy under the lamp: it falls over, through every table.
+    if (i % 2 == 0) words += " --set 'disturbance[0].offset_m=[0,0,1e-4]'";
     if (i % 4 == 0) words += " --set light.max_tilt_deg=" + std::to_string(between(1.0, 20.0));
     const Outcome got = run(words + " --out " + at("o"));
     ASSERT_EQ(got.status, 0) << words << got.err;
@@ -362,7 +364,7 @@ TEST_F(CoupledCommand, NoRunEndsAtTheEdgeOfATable) {
     ASSERT_TRUE(std::filesystem::exists(at("o/events.csv"))) << words;
     EXPECT_THAT(file_text(at("o/events.csv")), HasSubstr("tilt_stop")) << words;
   }
-  EXPECT_GE(wider, 3u);  // so that the edge was met
+  EXPECT_GE(wider, 2u);  // so that the edge was met
 }
 
 TEST_F(CoupledCommand, ATableIsKeptByTheContentOfItsInputs) {
