@@ -1,15 +1,17 @@
 #include "diagnosis/improved.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <optional>
-#include <regex>
 
 #include "core/settings/settings.h"
+#include "scenes/experiment/toml.h"
 
 namespace photorque {
 namespace {
+
+using TomlTable = SettingsNode::Table;
 
 std::string print(const char* format, double value) {
   char text[64];
@@ -17,10 +19,21 @@ std::string print(const char* format, double value) {
   return text;
 }
 
-std::string array_text(const std::vector<double>& values, const char* format) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ", ") + print(format, value);
-  return values.size() == 1 ? text : "[" + text + "]";
+// The number with the digits of a format; a whole one as an integer.
+SettingsNode number(double value, const char* format) {
+  const double rounded = std::strtod(print(format, value).c_str(), nullptr);
+  constexpr double largest_written_whole = 1e6;
+  if (std::trunc(rounded) == rounded && std::abs(rounded) < largest_written_whole) {
+    return {static_cast<int64_t>(rounded)};
+  }
+  return {rounded};
+}
+
+SettingsNode numbers(const std::vector<double>& values, const char* format) {
+  if (values.size() == 1) return number(values.front(), format);
+  SettingsNode::Array all;
+  for (const double value : values) all.push_back(number(value, format));
+  return {std::move(all)};
 }
 
 // A sigma of 0 or an unknown one cannot stand beside fitted numbers: the value is then exact.
@@ -33,224 +46,144 @@ bool has_sigma(const FittedParameter& p) {
   return any && p.sigma.size() == p.value.size();
 }
 
-std::string value_text(const FittedParameter& p) {
-  std::string value = array_text(p.value, "%.9g");
+SettingsNode value_of(const FittedParameter& p) {
+  SettingsNode value = numbers(p.value, "%.9g");
   if (!has_sigma(p)) return value;
-  return "{ value = " + value + ", sigma = " + array_text(p.sigma, "%.3g") + " }";
+  return {TomlTable{{"value", std::move(value)}, {"sigma", numbers(p.sigma, "%.3g")}}};
 }
 
-std::string comment(const std::string& text) {
-  std::string line = "# " + text;
-  for (char& c : line) {
-    if (c == '\n' || c == '\r') c = ' ';
-  }
-  return line + "\n";
+void add_values(TomlDocument& document, TomlTable& table,
+                const std::vector<FittedParameter>& parameters) {
+  for (const FittedParameter& p : parameters) document.set(table, p.key, value_of(p));
 }
 
-// Exact numbers, with their errors as a comment: of what acts on light there is no prior.
-std::string plain_text(const FittedParameter& p) {
-  std::string text = p.key + " = " + array_text(p.value, "%.9g");
-  if (has_sigma(p)) text += "  # ± " + array_text(p.sigma, "%.3g");
-  return text + "\n";
+void add_kind(TomlDocument& document, TomlTable& table, const std::string& kind) {
+  document.set(table, "kind", {kind});
 }
 
-std::string begins_text(const FoundEffect& effect) {
-  std::string text;
-  for (const FittedParameter& p : effect.begins) text += p.key + " = " + value_text(p) + "\n";
-  return text;
-}
-
-std::string effect_text(const FoundEffect& effect, const std::string& table) {
-  std::string text = "\n";
-  if (!effect.explanation.empty()) text += comment(effect.explanation);
-  text += comment("Probability " + print("%.3f", effect.probability) + ".");
+void add_effect(TomlDocument& document, const FoundEffect& effect, const std::string& table_name,
+                bool with_begin) {
+  if (!effect.explanation.empty()) document.comment(effect.explanation);
+  document.comment("Probability " + print("%.3f", effect.probability) + ".");
   for (const std::string& other : effect.indistinguishable_from) {
-    text += comment("The recordings cannot tell it from " + other + ".");
+    document.comment("The recordings cannot tell it from " + other + ".");
   }
-  text += "[[" + table + "]]\nkind = \"" + effect.kind + "\"\n";
-  for (const auto& [key, value] : effect.texts) text += key + " = \"" + value + "\"\n";
-  for (const FittedParameter& p : effect.parameters) {
-    text += table == "effect" ? plain_text(p) : p.key + " = " + value_text(p) + "\n";
+  TomlTable& table = document.append(table_name);
+  add_kind(document, table, effect.kind);
+  for (const auto& [key, value] : effect.texts) document.set(table, key, {value});
+  if (table_name == "effect") {
+    // Exact numbers, with their errors as a comment: of what acts on light there is no prior.
+    for (const FittedParameter& p : effect.parameters) {
+      document.set(table, p.key, numbers(p.value, "%.9g"),
+                   has_sigma(p) ? "± " + toml_value(numbers(p.sigma, "%.3g")) : "");
+    }
+  } else {
+    add_values(document, table, effect.parameters);
   }
-  return text;
+  if (with_begin) add_values(document, table, effect.begins);
 }
 
-std::string unnamed_text(const FoundEffect& effect) {
-  std::string text = "\n" + comment("Fitted beside, without being proved: " + effect.kind + ".");
-  text += "[[disturbance]]\nkind = \"" + effect.kind + "\"\n";
-  for (const FittedParameter& p : effect.parameters) text += p.key + " = " + value_text(p) + "\n";
-  return text;
+void add_unnamed(TomlDocument& document, const FoundEffect& effect, bool with_begin) {
+  document.comment("Fitted beside, without being proved: " + effect.kind + ".");
+  TomlTable& table = document.append("disturbance");
+  add_kind(document, table, effect.kind);
+  add_values(document, table, effect.parameters);
+  if (with_begin) add_values(document, table, effect.begins);
 }
 
-std::string empirical_text(const EmpiricalTorque& torque) {
-  std::string text = "\n" + comment("A torque that depends on " + torque.variable +
-                                    " and follows no law of the catalogue, fitted without one.");
-  if (!torque.formula.empty()) text += comment(torque.formula);
-  if (!torque.looks_like.empty()) text += comment("Looks like " + torque.looks_like + ".");
-  if (torque.parameters.empty()) return text;
-  text += "[[disturbance]]\nkind = \"empirical_torque\"\n";
-  for (const auto& [key, value] : torque.shape) text += key + " = " + value + "\n";
-  for (const FittedParameter& p : torque.parameters) text += p.key + " = " + value_text(p) + "\n";
-  return text;
+void add_empirical(TomlDocument& document, const EmpiricalTorque& torque) {
+  document.comment("A torque that depends on " + torque.variable +
+                   " and follows no law of the catalogue, fitted without one.");
+  if (!torque.formula.empty()) document.comment(torque.formula);
+  if (!torque.looks_like.empty()) document.comment("Looks like " + torque.looks_like + ".");
+  if (torque.parameters.empty()) return;
+  TomlTable& table = document.append("disturbance");
+  add_kind(document, table, "empirical_torque");
+  for (const auto& [key, value] : torque.shape) {
+    SettingsNode shape = parse_toml("value = " + value, "shape");
+    document.set(table, key, std::move(std::get<TomlTable>(shape.value).at("value")));
+  }
+  add_values(document, table, torque.parameters);
 }
 
-std::string replay_text(const Replay& replay, const std::filesystem::path& folder) {
+void add_replay(TomlDocument& document, const Replay& replay, const std::filesystem::path& folder) {
   const auto& q = replay.initial_attitude;
   const Vec3& w = replay.initial_rate_rad_s;
-  std::string text =
-      "\n" + comment("Propagates the first recording from its fitted initial state.");
-  text += "[propagate]\nduration_s = " + print("%.9g", replay.duration_s) + "\n";
-  text += "output_rate_Hz = " + print("%.6g", replay.output_rate_Hz) + "\n";
-  text += "initial_attitude = " + array_text({q[0], q[1], q[2], q[3]}, "%.12g") + "\n";
-  text += "initial_rate_rad_s = " + array_text({w.x(), w.y(), w.z()}, "%.12g") + "\n";
-  if (replay.initial_time_s != 0.0) {
-    text += "initial_time_s = " + print("%.12g", replay.initial_time_s) + "\n";
-  }
+  document.comment("Propagates the first recording from its fitted initial state.");
+  TomlTable& run = document.table("propagate");
+  const auto set = [&](const char* key, const std::vector<double>& values, const char* format) {
+    document.set(run, key, numbers(values, format));
+  };
+  set("duration_s", {replay.duration_s}, "%.9g");
+  set("output_rate_Hz", {replay.output_rate_Hz}, "%.6g");
+  set("initial_attitude", {q[0], q[1], q[2], q[3]}, "%.12g");
+  set("initial_rate_rad_s", {w.x(), w.y(), w.z()}, "%.12g");
+  if (replay.initial_time_s != 0.0) set("initial_time_s", {replay.initial_time_s}, "%.12g");
   if (const auto& place = replay.initial_place_m_m_s) {
-    text += "initial_position_m = " + array_text({(*place)[0], (*place)[1]}, "%.12g") + "\n" +
-            "initial_velocity_m_s = " + array_text({(*place)[2], (*place)[3]}, "%.12g") + "\n";
+    set("initial_position_m", {(*place)[0], (*place)[1]}, "%.12g");
+    set("initial_velocity_m_s", {(*place)[2], (*place)[3]}, "%.12g");
   }
   if (replay.initial_charge_C != 0.0) {
-    text += "initial_charge_Ah = " + print("%.9g", replay.initial_charge_C / 3600.0) + "\n";
+    set("initial_charge_Ah", {replay.initial_charge_C / 3600.0}, "%.9g");
   }
-  if (!replay.has_commands) return text;
+  if (!replay.has_commands) return;
   const auto path = std::filesystem::absolute(replay.recording);
   const auto relative = path.lexically_proximate(std::filesystem::absolute(folder));
-  return text + "commands = '" + relative.generic_string() + "'\n";
+  document.set(run, "commands", {relative.generic_string()});
 }
 
-// Where the value that begins at `from` ends: the end of its line, a comment, or, of an array or a
-// table, its last bracket.
-size_t end_of_value(const std::string& text, size_t from) {
-  int depth = 0;
-  for (size_t i = from; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '"' || c == '\'') {
-      i = std::min(text.find(c, i + 1), text.size());
-    } else if (c == '[' || c == '{') {
-      ++depth;
-    } else if (c == ']' || c == '}') {
-      if (--depth == 0) return i + 1;
-    } else if (depth == 0 && (c == '\n' || c == '#')) {
-      return i;
-    } else if (c == '#') {
-      i = std::min(text.find('\n', i), text.size());
-    }
+// Puts a fitted number in the place of the uncertain one of the nominal model, which may be written
+// in another unit and stays as a comment. False where the document has no such key.
+bool refine(TomlDocument& document, const FittedParameter& p) {
+  const size_t dot = p.key.rfind('.');
+  if (dot == std::string::npos) return false;
+  auto* holder = const_cast<SettingsNode*>(find_setting(document.root, p.key.substr(0, dot)));
+  auto* table = holder == nullptr ? nullptr : std::get_if<TomlTable>(&holder->value);
+  if (table == nullptr) return false;
+  const std::string key = p.key.substr(dot + 1);
+  const KeyUnit wanted = unit_of_key(key);
+  for (const auto& [written, value] : *table) {
+    const KeyUnit unit = unit_of_key(written);
+    if (unit.stem != wanted.stem || unit.dimension != wanted.dimension) continue;
+    document.comment("before the fit: " + written + " = " + toml_value(value));
+    document.replace(*table, std::string(written), key, value_of(p));
+    return true;
   }
-  return text.size();
-}
-
-// A key by the table that it stands in: "source[1].power_W", "attitude.tilt_deg".
-struct KeyPlace {
-  std::string table;  // "array.cell_override"
-  std::optional<size_t> number;
-  std::string key;
-};
-std::optional<KeyPlace> place_of(const std::string& path) {
-  static const std::regex place(R"(([A-Za-z0-9_.-]+?)(?:\[([0-9]+)\])?\.([A-Za-z0-9_-]+))");
-  std::smatch name;
-  if (!std::regex_match(path, name, place)) return std::nullopt;
-  KeyPlace at{name[1].str(), std::nullopt, name[3].str()};
-  if (name[2].matched) at.number = std::stoul(name[2].str());
-  return at;
-}
-
-// Where a table begins.
-std::regex header_of(const KeyPlace& place) {
-  const std::string name =
-      std::regex_replace(place.table, std::regex(R"(\.)"), R"([ \t]*\.[ \t]*)");
-  const std::string open = place.number ? R"(\[\[)" : R"(\[)",
-                    close = place.number ? R"(\]\])" : R"(\])";
-  return std::regex(R"((?:^|\n)[ \t]*)" + open + R"([ \t]*)" + name + R"([ \t]*)" + close);
-}
-
-// The assignment of a key, perhaps in another unit, within its table; none where the file says it
-// in another way.
-struct Assignment {
-  size_t begin = 0, value = 0, end = 0;
-};
-std::optional<Assignment> find_assignment(const std::string& text, const KeyPlace& place) {
-  static const std::regex begin_of_line(R"([ \t]*(\[|([A-Za-z0-9_-]+)[ \t]*=))");
-  const std::regex header = header_of(place);
-  auto table = std::sregex_iterator(text.begin(), text.end(), header);
-  for (size_t i = 0; i < place.number.value_or(0) && table != std::sregex_iterator(); ++i) ++table;
-  if (table == std::sregex_iterator()) return std::nullopt;
-  const KeyUnit wanted = unit_of_key(place.key);
-  auto line = static_cast<size_t>(table->position() + table->length());
-  while ((line = text.find('\n', line)) != std::string::npos) {
-    ++line;
-    std::smatch found;
-    const auto from = text.begin() + static_cast<std::ptrdiff_t>(line);
-    if (!std::regex_search(from, text.end(), found, begin_of_line,
-                           std::regex_constants::match_continuous)) {
-      continue;
-    }
-    if (found[1].str() == "[") return std::nullopt;
-    const size_t value = line + static_cast<size_t>(found.length());
-    const size_t end = end_of_value(text, value);
-    const KeyUnit unit = unit_of_key(found[2].str());
-    if (unit.stem == wanted.stem && unit.dimension == wanted.dimension) {
-      return Assignment{line, value, end};
-    }
-    line = end;
-  }
-  return std::nullopt;
-}
-
-// What the fit says about uncertain numbers of the nominal model, in their places; as they were
-// written they stay as comments. What is not found goes to `others`.
-std::string with_refined(std::string text, const std::vector<FittedParameter>& refined,
-                         std::vector<FittedParameter>& others) {
-  for (const FittedParameter& p : refined) {
-    const std::optional<KeyPlace> place = place_of(p.key);
-    std::optional<Assignment> at;
-    if (place) at = find_assignment(text, *place);
-    if (!at) {
-      others.push_back(p);
-      continue;
-    }
-    const std::string before = text.substr(at->begin, at->end - at->begin);
-    text.replace(at->begin, at->end - at->begin,
-                 comment("before the fit: " + before) + place->key + " = " + value_text(p));
-  }
-  return text;
-}
-
-// Where the schema lies is said relative to the experiment, and this one lies elsewhere.
-std::string without_schema(const std::string& text) {
-  return text.starts_with("#:schema ") ? text.substr(text.find('\n') + 1) : text;
+  return false;
 }
 
 }  // namespace
 
-std::string improved_experiment(const std::string& text, const Diagnosis& diagnosis,
+std::string improved_experiment(TomlDocument document, const Diagnosis& diagnosis,
                                 const std::filesystem::path& folder) {
   // An experiment that propagates has a start of its own.
-  static const std::regex propagates(R"((^|\n)\s*\[\s*propagate\s*[\].])");
   const std::optional<Replay> replay =
-      std::regex_search(text, propagates) ? std::nullopt : diagnosis.replay;
+      std::get<TomlTable>(document.root.value).contains("propagate") ? std::nullopt
+                                                                     : diagnosis.replay;
+  document.add_to_head("Written by photorque diagnose: " + diagnosis.sentence);
+  document.add_to_head(
+      "The experiment with its values and comments, blank lines and line breaks apart; what was "
+      "found comes last in each table.");
   std::vector<FittedParameter> others;
-  std::string improved = with_refined(without_schema(text), diagnosis.priors_refined, others);
-  if (!improved.empty() && improved.back() != '\n') improved += '\n';
-  improved += "\n" + comment("---- Added by the diagnosis: " + diagnosis.sentence);
+  for (const FittedParameter& p : diagnosis.priors_refined) {
+    if (!refine(document, p)) others.push_back(p);
+  }
   for (const FoundEffect& effect : diagnosis.effects) {
-    improved += effect_text(effect, effect.table.empty() ? diagnosis.effect_table : effect.table);
-    if (replay) improved += begins_text(effect);
+    add_effect(document, effect, effect.table.empty() ? diagnosis.effect_table : effect.table,
+               replay.has_value());
   }
   for (const FoundEffect& effect : diagnosis.unnamed) {
-    improved += unnamed_text(effect);
-    if (replay) improved += begins_text(effect);
+    add_unnamed(document, effect, replay.has_value());
   }
-  for (const EmpiricalTorque& torque : diagnosis.empirical) improved += empirical_text(torque);
+  for (const EmpiricalTorque& torque : diagnosis.empirical) add_empirical(document, torque);
+  if (replay) add_replay(document, *replay, folder);
   if (!others.empty()) {
-    improved +=
-        "\n" + comment("The same recordings narrow the uncertain numbers of the nominal model to:");
+    document.comment("The same recordings narrow the uncertain numbers of the nominal model to:");
   }
   for (const FittedParameter& p : others) {
-    improved += comment("  " + p.key + " = " + value_text(p));
+    document.comment("  " + p.key + " = " + toml_value(value_of(p)));
   }
-  if (replay) improved += replay_text(*replay, folder);
-  return improved;
+  return document.text();
 }
 
 }  // namespace photorque

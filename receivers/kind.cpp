@@ -1,4 +1,5 @@
 #include "receivers/kind.h"
+#include "core/text/names.h"
 
 #include <cmath>
 #include <numeric>
@@ -39,13 +40,7 @@ std::set<std::string> node_names(const Scene& scene) {
 }
 
 std::string known_nodes(const Scene& scene, const std::string& wanted) {
-  const std::set<std::string> names = node_names(scene);
-  const std::string nearest_name = nearest(wanted, names);
-  std::string text = "a node of the scene that holds a mesh";
-  if (!nearest_name.empty()) text += ", perhaps \"" + nearest_name + "\"";
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return text + " (known: " + list + ")";
+  return "a node of the scene that holds a mesh: " + listed_names(node_names(scene), wanted);
 }
 
 // A name that every file system takes.

@@ -8,6 +8,7 @@
 
 #include "attitude/propagation/sampling.h"
 #include "core/errors.h"
+#include "core/numerics/table.h"
 #include "core/snapshot.h"
 
 namespace photorque {
@@ -206,8 +207,16 @@ void Propagator::take_step() {
                            " s at t = " + shown(start_s) + " s" +
                            infinite_torques(dynamics_, start_s, step_.start()));
     }
-    const CollocationStep::Outcome outcome =
-        is_stiff_ ? step_.attempt_stiff(h_s, held_, settled) : step_.attempt(h_s, held_, settled);
+    CollocationStep::Outcome outcome{};
+    try {
+      outcome =
+          is_stiff_ ? step_.attempt_stiff(h_s, held_, settled) : step_.attempt(h_s, held_, settled);
+    } catch (const BeyondTable&) {
+      // A shorter step stays within the table, and ends where an event ends the run; without such
+      // an event the motion comes to the table's edge.
+      if (start_s + 1e-9 * (1.0 + std::abs(start_s)) >= start_s + h_s) throw;
+      outcome = {};
+    }
     statistics_.iterations += outcome.iterations;
     if (!outcome.converged) {
       h_s_ = 0.5 * h_s;

@@ -260,7 +260,8 @@ class AemReader {
         throw error(item, in_quotes(item.key), "rows of an epoch and numbers");
       }
       const std::vector<std::string_view> words = words_of(item.value);
-      segment.rows.push_back({std::string(words.front()), kvn_numbers(words, 1, path_, item.line)});
+      segment.rows.push_back(
+          {std::string(words.front()), kvn_numbers(words, 1, path_, item.line), item.line});
       const size_t now = segment.rows.back().values.size();
       if (length == 0) length = expected_length(segment, now);
       if (now != length) {
@@ -335,6 +336,59 @@ std::vector<Segment::Sample> Segment::attitudes() const {
         {epoch->seconds_since(*first), attitude_dir == "A2B" ? q : Quat(q.conjugate())});
   }
   return samples;
+}
+
+bool is_aem(const std::filesystem::path& path) {
+  constexpr int first_lines = 100;
+  try {
+    TextLines lines(path);
+    std::string_view line;
+    for (int i = 0; i < first_lines && lines.next(line); ++i) {
+      if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
+      const std::string_view words = trimmed(line);
+      if (!words.empty() && !words.starts_with(comment)) return words.starts_with("CCSDS_AEM_VERS");
+    }
+  } catch (const InputError&) {
+    // Its reader says what is wrong with it.
+  }
+  return false;
+}
+
+namespace {
+
+bool is_of_body(const std::string& frame) {
+  return frame.starts_with("SC_BODY") || frame.starts_with("ACTUATOR") ||
+         frame.starts_with("INSTRUMENT") || frame.starts_with("SENSOR");
+}
+
+}  // namespace
+
+std::vector<AemAttitude> aem_attitudes(const std::filesystem::path& path) {
+  const AttitudeEphemeris aem = read_aem(path);
+  const Segment& first = aem.segments.front();
+  std::vector<AemAttitude> all;
+  std::optional<Epoch> begin;
+  for (const Segment& segment : aem.segments) {
+    if (segment.object_name != first.object_name) {
+      throw InputError({path.string()}, "OBJECT_NAME",
+                       in_quotes(segment.object_name) + " after " + in_quotes(first.object_name),
+                       "segments of one object");
+    }
+    const bool is_from_lab = is_of_body(segment.ref_frame_a) && !is_of_body(segment.ref_frame_b);
+    try {
+      const std::vector<Segment::Sample> samples = segment.attitudes();
+      for (size_t i = 0; i < samples.size(); ++i) {
+        const std::optional<Epoch> epoch = parse_epoch(segment.rows[i].epoch);
+        if (!begin) begin = epoch;
+        const Quat& q = samples[i].a_from_b;
+        all.push_back({epoch->seconds_since(*begin), is_from_lab ? Quat(q.conjugate()) : q,
+                       segment.rows[i].line});
+      }
+    } catch (const InputError& error) {
+      throw InputError({path.string()}, error.what(), "", "");
+    }
+  }
+  return all;
 }
 
 AttitudeEphemeris read_aem(const std::filesystem::path& path) {

@@ -55,7 +55,10 @@ struct AttitudeEphemeris {
   struct Row {
     std::string epoch;           // as written
     std::vector<double> values;  // in the order of the file
-    bool operator==(const Row&) const = default;
+    int line = 0;                // in the file; not compared
+    bool operator==(const Row& other) const {
+      return epoch == other.epoch && values == other.values;
+    }
   };
   struct Segment {
     std::string object_name, object_id, center_name;
@@ -87,6 +90,20 @@ struct AttitudeEphemeris {
   std::vector<Segment> segments;
   bool operator==(const AttitudeEphemeris&) const = default;
 };
+
+// Whether the first line that says something is that of an AEM in KVN. False for a file that cannot
+// be read.
+bool is_aem(const std::filesystem::path& path);
+
+// The attitude of the body of a message over the time since its first row.
+struct AemAttitude {
+  double time_s;
+  Quat lab_from_body;  // the lab is the frame that is no body's (REF_FRAME_A where both are alike)
+  int line;            // in the file
+};
+// The rows of all segments in their order. InputError as of read_aem() and Segment::attitudes(),
+// and for segments of several objects.
+std::vector<AemAttitude> aem_attitudes(const std::filesystem::path& path);
 
 // InputError for files that are no AEM, lack a keyword that the book requires, or hold rows of the
 // wrong length.

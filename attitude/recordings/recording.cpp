@@ -5,6 +5,7 @@
 #include <optional>
 #include <sstream>
 
+#include "attitude/recordings/aem.h"
 #include "attitude/recordings/cleaning.h"
 #include "attitude/recordings/keys.h"
 #include "attitude/recordings/text_lines.h"
@@ -111,6 +112,11 @@ class RecordingReader {
       : path_(path), options_(options), lines_(path) {}
 
   Recording read() {
+    if (is_aem(path_)) {
+      take_attitudes();
+      finish();
+      return std::move(recording_);
+    }
     read_header();
     std::string_view line;
     while (lines_.next(line)) {
@@ -128,6 +134,42 @@ class RecordingReader {
   InputError error(const std::string& key, const std::string& found,
                    const std::string& expected) const {
     return {{path_.string(), static_cast<int>(lines_.number())}, key, found, expected};
+  }
+
+  // An AEM: attitudes alone.
+  void take_attitudes() {
+    const std::vector<AemAttitude> attitudes = aem_attitudes(path_);
+    for (const auto& [channel, written] : options_.columns) {
+      recording_.report.absent_columns.insert(written);
+    }
+    for (const char* name : {"q_w", "q_x", "q_y", "q_z"}) recording_.channels.push_back({name, {}});
+    for (const AemAttitude& row : attitudes) {
+      ++recording_.report.rows_read;
+      if (!take_time(row.time_s, row.line)) continue;
+      const Quat& q = row.lab_from_body;
+      const double values[] = {q.w(), q.x(), q.y(), q.z()};
+      for (size_t k = 0; k < 4; ++k) recording_.channels[k].values.push_back(values[k]);
+    }
+  }
+
+  // False for a row whose time does not rise.
+  bool take_time(double time_s, int64_t line) {
+    RecordingReport& report = recording_.report;
+    if (!recording_.time_s.empty() && time_s <= recording_.time_s.back()) {
+      if (time_s == recording_.time_s.back()) {
+        if (++report.repeated_times == 1) report.first_repeated_line = line;
+      } else if (++report.backward_times == 1) {
+        report.first_backward_line = line;
+      }
+      return false;
+    }
+    kept_cells_ += static_cast<int64_t>(recording_.channels.size()) + 1;
+    if (kept_cells_ > options_.max_cells) {
+      throw error("", "more than " + std::to_string(options_.max_cells) + " numbers",
+                  "a recording that is shorter or has fewer channels");
+    }
+    recording_.time_s.push_back(time_s);
+    return true;
   }
 
   // The header is the first line that names the time; whatever stands before it is preamble.
@@ -192,20 +234,7 @@ class RecordingReader {
       }
       return;
     }
-    if (!recording_.time_s.empty() && time_s <= recording_.time_s.back()) {
-      if (time_s == recording_.time_s.back()) {
-        if (++report.repeated_times == 1) report.first_repeated_line = lines_.number();
-      } else if (++report.backward_times == 1) {
-        report.first_backward_line = lines_.number();
-      }
-      return;
-    }
-    kept_cells_ += static_cast<int64_t>(columns_.size());
-    if (kept_cells_ > options_.max_cells) {
-      throw error("", "more than " + std::to_string(options_.max_cells) + " numbers",
-                  "a recording that is shorter or has fewer channels");
-    }
-    recording_.time_s.push_back(time_s);
+    if (!take_time(time_s, lines_.number())) return;
     size_t channel = 0;
     for (size_t i = 0; i < cells_.size(); ++i) {
       if (i == time_column_) continue;
@@ -256,6 +285,12 @@ class RecordingReader {
           "",
           std::to_string(report.rows_kept) + " usable rows of " + std::to_string(report.rows_read),
           "at least two");
+    }
+    constexpr double longest_s = 1e10;  // 300 years: such a column holds another unit
+    const double first_s = recording_.time_s.front(), last_s = recording_.time_s.back();
+    if (!(last_s - first_s <= longest_s)) {
+      throw error("t_s", "times from " + shortest(first_s) + " to " + shortest(last_s) + " s",
+                  "a recording of at most " + shortest(longest_s) + " s, times in seconds");
     }
     const bool any = std::any_of(recording_.channels.begin(), recording_.channels.end(),
                                  [](const Channel& channel) {

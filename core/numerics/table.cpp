@@ -146,7 +146,7 @@ RotationTable::Place RotationTable::place(const Quat& lab_from_body, RotationSlo
   const int32_t root = roots_[static_cast<size_t>(point.half)];
   const double reach = (1.0 + margin) * half_width_;
   if (root < 0 || !(std::abs(point.x) <= reach && std::abs(point.y) <= reach)) {
-    throw NumericalError("an attitude beyond the table of light over attitude");
+    throw BeyondTable();
   }
   const Box* box = &boxes_[static_cast<size_t>(root)];
   while (box->children >= 0) {

@@ -22,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include "core/errors.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -76,13 +77,21 @@ struct RotationTableError {
   size_t points = 0;
 };
 
+// An attitude that a table does not hold.
+class BeyondTable : public NumericalError {
+ public:
+  explicit BeyondTable(
+      const std::string& what = "an attitude beyond the table of light over attitude")
+      : NumericalError(what) {}
+};
+
 class RotationTable {
  public:
   static constexpr int degree = 4, side = degree + 1, nodes = side * side;
 
   RotationTable() = default;
 
-  // All channels from `first` on, as many as `values` holds. NumericalError for an attitude more
+  // All channels from `first` on, as many as `values` holds. BeyondTable for an attitude more
   // than a twentieth beyond max_angle_rad.
   void at(const Quat& lab_from_body, size_t first, std::span<double> values) const;
   // Values and their derivatives by w, x, y, z of the quaternion: slopes[4 · channel + component].

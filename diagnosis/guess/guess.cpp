@@ -6,10 +6,8 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/text/format.h"
-#include "core/text/parse.h"
 #include "diagnosis/light/model/recording.h"
 #include "photovoltaics/fit/fit.h"
-#include "scenes/experiment/toml.h"
 
 namespace photorque {
 namespace {
@@ -65,7 +63,8 @@ int cells_in_series(double open_V) {
 
 }  // namespace
 
-std::string guess_module(const std::vector<fs::path>& recordings, const fs::path& folder) {
+void guess_module(TomlDocument& document, const std::vector<fs::path>& recordings,
+                  const fs::path& folder) {
   std::vector<MeasuredCurve> curves;
   for (const fs::path& file : recordings) curves.push_back(measured_curve(file));
   const MeasuredCurve& clearest = *std::min_element(
@@ -73,13 +72,13 @@ std::string guess_module(const std::vector<fs::path>& recordings, const fs::path
       [](const MeasuredCurve& a, const MeasuredCurve& b) { return a.misfit < b.misfit; });
   const int cells = cells_in_series(clearest.open_V);
   const fs::path reference = fs::absolute(clearest.file).lexically_proximate(fs::absolute(folder));
-  std::string text = "[module]\n";
-  text += comment_lines("CONFIRM: " + std::to_string(cells) + " cells of silicon give " +
-                        readable_number(clearest.open_V, 3) + " V at " +
-                        readable_number(clearest.open_V / cells, 3) +
-                        " V each; the label says how many there are.");
-  text += "cells_in_series = " + std::to_string(cells) + "\n";
-  text += comment_lines(
+  SettingsNode::Table& module = document.table("module");
+  document.comment("CONFIRM: " + std::to_string(cells) + " cells of silicon give " +
+                   readable_number(clearest.open_V, 3) + " V at " +
+                   readable_number(clearest.open_V / cells, 3) +
+                   " V each; the label says how many there are.");
+  document.set(module, "cells_in_series", {int64_t{cells}});
+  document.comment(
       recordings.size() > 1
           ? "CONFIRM: of these curves one diode describes this one best (to " +
                 readable_number(100.0 * clearest.misfit, 2) +
@@ -87,23 +86,11 @@ std::string guess_module(const std::vector<fs::path>& recordings, const fs::path
           : "CONFIRM: no curve of the module as it was is at hand, so this one stands for it, and "
             "what one diode cannot describe is all that can be found. A curve from before, or "
             "[[module.datasheet]] (docs/light_diagnosis.md), says more.");
-  text += "reference_curve = " + toml_value({reference.generic_string()}) + "\n";
-  text += comment_lines("CONFIRM: the temperature of the cells, and how well it is known.");
-  text += "temperature_K = 298.15\ntemperature_sigma_K = 20\n";
-  text += comment_lines("CONFIRM: no bypass diodes are stated (bypass_every = cells under one).");
-  return text;
-}
-
-std::string comment_lines(const std::string& text, size_t width) {
-  std::string result, line = "#";
-  for (const std::string_view word : words_of(text)) {
-    if (line.size() + 1 + word.size() > width && line.size() > 1) {
-      result += line + "\n";
-      line = "#";
-    }
-    line += " " + std::string(word);
-  }
-  return result + line + "\n";
+  document.set(module, "reference_curve", {reference.generic_string()});
+  document.comment("CONFIRM: the temperature of the cells, and how well it is known.");
+  document.set(module, "temperature_K", {298.15});
+  document.set(module, "temperature_sigma_K", {int64_t{20}});
+  document.comment("CONFIRM: no bypass diodes are stated (bypass_every = cells under one).");
 }
 
 std::string guess_experiment(const std::vector<std::filesystem::path>& recordings,
@@ -115,19 +102,22 @@ std::string guess_experiment(const std::vector<std::filesystem::path>& recording
   for (const std::filesystem::path& path : recordings) {
     names += (names.empty() ? "" : ", ") + path.filename().string();
   }
-  const std::string head =
-      comment_lines("Made by photorque diagnose --guess from " + names +
-                    ". Numbers were read from there; what is assumed says CONFIRM and waits for "
-                    "somebody who knows the machine.") +
-      "\n";
-  if (!is_light_recording(recordings.front())) return head + guess_motion(recordings);
+  TomlDocument document;
+  document.add_to_head("Made by photorque diagnose --guess from " + names +
+                       ". Numbers were read from there; what is assumed says CONFIRM and waits for "
+                       "somebody who knows the machine.");
+  if (!is_light_recording(recordings.front())) {
+    guess_motion(document, recordings);
+    return document.text();
+  }
   const LightRecording first = read_light_recording(recordings.front(), {});
   if (first.kind != LightRecording::Kind::sweep) {
     throw InputError({recordings.front().string()}, "header", "a recording of light on a scene",
                      "motion, or current over voltage: a scan or a run needs its scene, which "
                      "photorque new --scene MODEL begins");
   }
-  return head + guess_module(recordings, folder);
+  guess_module(document, recordings, folder);
+  return document.text();
 }
 
 }  // namespace photorque

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "scenes/experiment/document.h"
+
 namespace photorque {
 
 // The text of an experiment file for `diagnose` that is to stand in `folder`. Lines that hold an
@@ -16,13 +18,10 @@ namespace photorque {
 std::string guess_experiment(const std::vector<std::filesystem::path>& recordings,
                              const std::filesystem::path& folder);
 
-// The same by what is recorded.
-std::string guess_motion(const std::vector<std::filesystem::path>& recordings);
-std::string guess_module(const std::vector<std::filesystem::path>& recordings,
-                         const std::filesystem::path& folder);
-
-// "# " before every line, broken after `width` letters.
-std::string comment_lines(const std::string& text, size_t width = 100);
+// Adds to the experiment what the recordings tell, by what is recorded.
+void guess_motion(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings);
+void guess_module(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings,
+                  const std::filesystem::path& folder);
 
 struct GuessedColumn {
   std::string in_file;  // as the header has it
@@ -32,8 +31,8 @@ struct GuessedColumn {
 };
 
 // The header of a CSV file: the last line before the first row of numbers that has as many cells.
-// A clock whose name states no unit is told by its steps. InputError,
-// naming the cure, for a file without such a header, with decimal commas, or in UTF-16.
+// A clock whose name states no unit is told by its steps. Of a CCSDS AEM: its quaternion.
+// InputError, naming the cure, for a file without such a header, with decimal commas, or in UTF-16.
 std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path);
 
 }  // namespace photorque

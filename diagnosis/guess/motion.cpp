@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 #include "attitude/estimation/free_inertia.h"
 #include "attitude/estimation/segments.h"
@@ -9,7 +10,6 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "diagnosis/guess/guess.h"
-#include "scenes/experiment/toml.h"
 
 namespace photorque {
 namespace {
@@ -20,6 +20,11 @@ std::string digits(double value, int significant = 3) {
   char text[40];
   std::snprintf(text, sizeof text, "%.*g", significant, value);
   return text;
+}
+
+// With three digits.
+SettingsNode number(double value) {
+  return {std::strtod(digits(value).c_str(), nullptr)};
 }
 
 // What the columns and readings of some recordings tell of their machine.
@@ -57,45 +62,54 @@ struct Machine {
   }
 };
 
-std::string machine_text(const Machine& m) {
-  std::string text = "[platform]\n" + comment_lines("CONFIRM: " + m.why);
+SettingsNode matrix(const Mat3& m) {
+  SettingsNode::Array rows;
+  for (int i = 0; i < 3; ++i) {
+    rows.push_back({SettingsNode::Array{number(m(i, 0)), number(m(i, 1)), number(m(i, 2))}});
+  }
+  return {std::move(rows)};
+}
+
+SettingsNode::Table& add_machine(TomlDocument& document, const Machine& m) {
+  SettingsNode::Table& table = document.table("platform");
+  const auto set = [&](const char* key, SettingsNode value) {
+    document.set(table, key, std::move(value));
+  };
+  document.comment("CONFIRM: " + m.why);
   switch (m.platform.topology) {
     case Topology::free:
-      return text + "topology = \"free\"\n";
+      set("topology", {"free"});
+      break;
     case Topology::one_axis: {
       Eigen::Index axis = 2;
       m.platform.axis.maxCoeff(&axis);
-      return text + "topology = \"one_axis\"\naxis = \"" + "xyz"[axis] + "\"\n" +
-             comment_lines(
-                 "No moment of inertia can be known from motion alone: it is one, and "
-                 "all torques are per unit of it.");
+      set("topology", {"one_axis"});
+      set("axis", {std::string(1, "xyz"[axis])});
+      document.comment(
+          "No moment of inertia can be known from motion alone: it is one, and "
+          "all torques are per unit of it.");
+      break;
     }
     case Topology::planar:
-      return text + "topology = \"planar\"\n" +
-             comment_lines(
-                 "No mass can be known from motion alone: it is one, and all forces are per unit "
-                 "of it.");
+      set("topology", {"planar"});
+      document.comment(
+          "No mass can be known from motion alone: it is one, and all forces are per unit "
+          "of it.");
+      break;
     default:
-      return text + "topology = \"tabletop\"\n" +
-             comment_lines(
-                 "CONFIRM: neither can be read from a recording; torques and offsets of the "
-                 "centre of mass scale with them.") +
-             "mass_kg = 10\ninertia_kg_m2 = [[0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]]\n";
+      set("topology", {"tabletop"});
+      document.comment(
+          "CONFIRM: neither can be read from a recording; torques and offsets of the "
+          "centre of mass scale with them.");
+      set("mass_kg", {int64_t{10}});
+      set("inertia_kg_m2", matrix(Vec3::Constant(0.1).asDiagonal()));
   }
-}
-
-std::string matrix_text(const Mat3& m) {
-  std::string text = "[";
-  for (int i = 0; i < 3; ++i) {
-    text += i > 0 ? ", [" : "[";
-    for (int j = 0; j < 3; ++j) text += (j > 0 ? ", " : "") + digits(m(i, j));
-    text += "]";
-  }
-  return text + "]";
+  return table;
 }
 
 // Ratios of the moments as far as the rates alone tell them.
-std::string inertia_text(const std::vector<Observation>& runs) {
+void add_inertia(TomlDocument& document, SettingsNode::Table& table,
+                 const std::vector<Observation>& runs) {
   const std::optional<FreeInertia> found = free_inertia(runs);
   Mat3 value = Mat3::Identity(), sigma;
   // The magnitude of the rate of a sphere does not change, to first order whatever its moments.
@@ -126,35 +140,36 @@ std::string inertia_text(const std::vector<Observation>& runs) {
         digits(100.0 * (1.0 - found->left * found->left), 4) +
         " % of what they do. The sigmas allow for torques that are not known yet.";
   }
-  return comment_lines(
-             "Motion without a known torque tells ratios of moments alone: Ixx is one. State "
-             "a moment that was measured, and torques come out in N m.") +
-         comment_lines(why) + "[platform.inertia_kg_m2]\nvalue = " + matrix_text(value) +
-         "\nsigma = " + matrix_text(sigma) + "\n";
+  document.comment(
+      "Motion without a known torque tells ratios of moments alone: Ixx is one. State "
+      "a moment that was measured, and torques come out in N m.");
+  document.comment(why);
+  document.set(table, "inertia_kg_m2.value", matrix(value));
+  document.set(table, "inertia_kg_m2.sigma", matrix(sigma));
 }
 
 // The noise of some channels, where it is alike in all that were read.
-std::string noise_text(const std::vector<Observation>& runs, const std::vector<int>& channels,
-                       const char* table, const char* key, double unit) {
+void add_noise(TomlDocument& document, const std::vector<Observation>& runs,
+               const std::vector<int>& channels, const std::string& key, double unit) {
   std::vector<double> levels;
   for (const int channel : channels) {
     if (const auto level = reading_level(runs, channel)) levels.push_back(*level / unit);
   }
-  if (levels.empty()) return "";
+  if (levels.empty()) return;
   const auto [least, most] = std::minmax_element(levels.begin(), levels.end());
   constexpr double alike = 2.0;
   if (*most > alike * *least) {
     std::string all;
     for (const double level : levels) all += (all.empty() ? "" : ", ") + digits(level);
-    return comment_lines(
-        std::string("Neighbouring readings scatter by ") + all + " (" + table + "." + key +
+    return document.comment(
+        "Neighbouring readings scatter by " + all + " (sensors." + key +
         "), which differs from axis to axis: it is left out, and diagnose finds it.");
   }
   double square = 0.0;
   for (const double level : levels) square += level * level;
-  return std::string("[") + table + "]\n" + key + " = " +
-         digits(std::sqrt(square / static_cast<double>(levels.size()))) +
-         "  # by which neighbouring readings scatter\n";
+  document.set(document.table("sensors"), key,
+               number(std::sqrt(square / static_cast<double>(levels.size()))),
+               "by which neighbouring readings scatter");
 }
 
 bool passes_its_mean(const std::vector<Observation>& runs, int axis) {
@@ -270,19 +285,18 @@ void see_machine(Machine& m) {
       "bearing (\"free\" for what is in orbit or thrown).";
 }
 
-std::string columns_text(const std::vector<GuessedColumn>& columns, RecordingOptions& options) {
-  std::string text;
+void add_columns(TomlDocument& document, const std::vector<GuessedColumn>& columns,
+                 RecordingOptions& options) {
   for (const GuessedColumn& c : columns) {
     if (c.channel.empty() || c.channel == c.in_file) continue;
     options.columns[c.channel] = c.in_file;
-    if (!c.is_sure) text += comment_lines("CONFIRM: " + c.because + " of the next column.");
-    text += c.channel + " = " + toml_value({c.in_file}) + "\n";
+    if (!c.is_sure) document.comment("CONFIRM: " + c.because + " of the next column.");
+    document.set(document.table("recording"), "columns." + c.channel, {c.in_file});
   }
-  return text.empty() ? "" : "[recording.columns]\n" + text + "\n";
 }
 
 // Drag that slows a rate as a whole; a start from which other torques are told apart.
-std::string drag_text(const Machine& m) {
+void add_drag(TomlDocument& document, const Machine& m) {
   Eigen::Index axis = 2;
   m.platform.axis.maxCoeff(&axis);
   double slowed = 0.0, sum = 0.0;
@@ -297,49 +311,52 @@ std::string drag_text(const Machine& m) {
     sum += seen.duration_s();
   }
   const double coefficient_1_s = sum > 0.0 ? slowed / sum : 0.0;
-  if (!(slowed > 0.2)) return "";
-  return "\n" +
-         comment_lines(
-             "CONFIRM: it slows down, so a drag linear in the rate is taken to act; what it "
-             "leaves is looked for.") +
-         "[[disturbance]]\nkind = \"bearing_drag\"\ncoefficient_N_m_s = { value = " +
-         digits(coefficient_1_s) + ", sigma = " + digits(10.0 * coefficient_1_s) + " }\n";
+  if (!(slowed > 0.2)) return;
+  document.comment(
+      "CONFIRM: it slows down, so a drag linear in the rate is taken to act; what it "
+      "leaves is looked for.");
+  SettingsNode::Table& table = document.append("disturbance");
+  document.set(table, "kind", {"bearing_drag"});
+  document.set(table, "coefficient_N_m_s",
+               {SettingsNode::Table{{"value", number(coefficient_1_s)},
+                                    {"sigma", number(10.0 * coefficient_1_s)}}});
 }
 
 // Of roll, pitch and yaw.
-std::string sequence_text(const Machine& m) {
-  if (!m.platform.turns_about_one_axis() && m.has_all({"roll_rad", "pitch_rad", "yaw_rad"}) &&
-      !m.has("q_w")) {
-    const std::string sequence = m.angles ? m.angles->sequence : std::string(angle_sequences[0]);
-    const std::string why =
-        !m.angles ? "CONFIRM: the sequence of roll, pitch and yaw; no rates are there to test it."
-                  : "With this sequence, " + formula_of(sequence) +
-                        ", the rates integrate to the angles.";
-    return "[recording]\n" + comment_lines(why) + "angle_sequence = \"" + sequence + "\"\n\n";
+void add_sequence(TomlDocument& document, const Machine& m) {
+  if (m.platform.turns_about_one_axis() || !m.has_all({"roll_rad", "pitch_rad", "yaw_rad"}) ||
+      m.has("q_w")) {
+    return;
   }
-  return "";
+  const std::string sequence = m.angles ? m.angles->sequence : std::string(angle_sequences[0]);
+  SettingsNode::Table& table = document.table("recording");
+  document.comment(
+      !m.angles
+          ? "CONFIRM: the sequence of roll, pitch and yaw; no rates are there to test it."
+          : "With this sequence, " + formula_of(sequence) + ", the rates integrate to the angles.");
+  document.set(table, "angle_sequence", {sequence});
 }
 
 }  // namespace
 
-std::string guess_motion(const std::vector<fs::path>& recordings) {
+void guess_motion(TomlDocument& document, const std::vector<fs::path>& recordings) {
   RecordingOptions options;
-  const std::vector<GuessedColumn> columns = guess_columns(recordings.front());
-  const std::string mapped = columns_text(columns, options);
+  add_columns(document, guess_columns(recordings.front()), options);
   Machine m;
   for (const fs::path& path : recordings) {
     m.recordings.push_back(read_recording(path, options));
     m.names.push_back(path.string());
   }
   see_machine(m);
-  std::string text = sequence_text(m) + mapped + machine_text(m);
-  if (m.platform.topology == Topology::free) text += inertia_text(m.runs);
-  if (m.platform.turns_about_one_axis() && !m.platform.slides()) text += drag_text(m);
-  text += "\n";
+  add_sequence(document, m);
+  SettingsNode::Table& platform = add_machine(document, m);
+  if (m.platform.topology == Topology::free) add_inertia(document, platform, m.runs);
+  if (m.platform.turns_about_one_axis() && !m.platform.slides()) add_drag(document, m);
+  const char *const rate_noise = "gyro.noise_rad_s", *const angle_noise = "angle.noise_arcsec";
   const bool has_gyro = m.runs.front().has_gyro, has_angle = m.runs.front().sees_some_attitude();
-  if (has_gyro) text += noise_text(m.runs, {3, 4, 5}, "sensors.gyro", "noise_rad_s", 1.0);
+  if (has_gyro) add_noise(document, m.runs, {3, 4, 5}, rate_noise, 1.0);
   if (has_angle && m.platform.turns_about_one_axis()) {
-    text += noise_text(m.runs, {0, 1, 2}, "sensors.angle", "noise_arcsec", arcsecond_rad);
+    add_noise(document, m.runs, {0, 1, 2}, angle_noise, arcsecond_rad);
   }
   std::vector<int> rates, angles;
   for (int channel = vector_channels; channel < channel_count; ++channel) {
@@ -347,22 +364,18 @@ std::string guess_motion(const std::vector<fs::path>& recordings) {
     if (measures == Measures::angle) angles.push_back(channel);
     if (measures == Measures::rate) rates.push_back(channel);
   }
-  if (!has_gyro) text += noise_text(m.runs, rates, "sensors.gyro", "noise_rad_s", 1.0);
-  if (!has_angle) {
-    text += noise_text(m.runs, angles, "sensors.angle", "noise_arcsec", arcsecond_rad);
-  }
+  if (!has_gyro) add_noise(document, m.runs, rates, rate_noise, 1.0);
+  if (!has_angle) add_noise(document, m.runs, angles, angle_noise, arcsecond_rad);
   if (m.platform.slides()) {
     const int x = vector_channels + static_cast<int>(Scalar::position_x);
-    text += noise_text(m.runs, {x, x + 1}, "sensors.position", "noise_m", 1.0);
+    add_noise(document, m.runs, {x, x + 1}, "position.noise_m", 1.0);
   }
   std::string unused;
   for (const std::string& name :
        MotionColumns(m.recordings.front(), m.platform, m.names.front()).unused()) {
     unused += (unused.empty() ? "" : ", ") + name;
   }
-  if (!unused.empty())
-    text += "\n" + comment_lines("Columns that nothing is made of: " + unused + ".");
-  return text;
+  if (!unused.empty()) document.comment("Columns that nothing is made of: " + unused + ".");
 }
 
 }  // namespace photorque

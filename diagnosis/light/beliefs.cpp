@@ -4,7 +4,7 @@
 #include "core/errors.h"
 #include "core/text/format.h"
 #include "scenes/effects/stated.h"
-#include "scenes/experiment/toml.h"
+#include "scenes/experiment/document.h"
 
 namespace photorque {
 namespace {

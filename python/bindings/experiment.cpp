@@ -5,6 +5,7 @@
 
 #include "core/errors.h"
 #include "python/bindings/document.h"
+#include "scenes/experiment/document.h"
 #include "scenes/experiment/toml.h"
 
 namespace photorque::python {

@@ -6,6 +6,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/text/format.h"
+#include "core/text/names.h"
 #include "scenes/effects/kind.h"
 #include "sources/lamps/kind.h"
 
@@ -33,10 +34,13 @@ size_t index_of(const Settings& effect, const LightEffectKind& kind, const Light
       return effect.choice_or("axes", {"lab", "body"}, 0);
     case LightEffectKind::Index::wall: {
       const std::string node = effect.text("node");
+      std::set<std::string> nodes;
       for (size_t w = 0; w < parts.walls.size(); ++w) {
         if (parts.walls[w].node == node) return w;
+        nodes.insert(parts.walls[w].node);
       }
-      throw effect.error("node", "\"" + node + "\"", "a node of the scene beside the receiver");
+      throw effect.error("node", "\"" + node + "\"",
+                         "a node of the scene beside the receiver: " + listed_names(nodes, node));
     }
   }
   if (count == 0) {

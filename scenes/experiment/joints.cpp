@@ -6,6 +6,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/text/names.h"
 
 namespace photorque {
 namespace {
@@ -86,12 +87,10 @@ Joint read_joint(const Settings& table) {
   return joint;
 }
 
-std::string nodes_of(const Scene& scene) {
+std::string nodes_of(const Scene& scene, const std::string& wanted) {
   std::set<std::string> names;
   for (const Instance& instance : scene.instances) names.insert(instance.node);
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
+  return listed_names(std::move(names), wanted);
 }
 
 }  // namespace
@@ -160,7 +159,7 @@ void turn_joints(Scene& scene, const std::vector<Joint>& joints,
       const std::vector<uint32_t> parts = scene.instances_of(node);
       if (parts.empty()) {
         throw tables[j].error(tables[j].has(joint_key::node) ? "node" : "nodes", "\"" + node + "\"",
-                              "a node of the scene that holds a mesh: " + nodes_of(scene));
+                              "a node of the scene that holds a mesh: " + nodes_of(scene, node));
       }
       for (const uint32_t part : parts) {
         if (!turned.insert(part).second) {

@@ -72,6 +72,26 @@ std::vector<fs::path> files_named_in(const fs::path& path, const std::string& by
   return files;
 }
 
+void name_files_from(SettingsNode& node, const fs::path& from, const fs::path& to) {
+  static const std::set<std::string, std::less<>> names_of_parts = {
+      "name", "node", "receiver", "kind", "source", "body", "topology"};
+  if (auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
+    for (auto& [key, item] : *table) {
+      const bool names_file = item.is_table() || item.is_array() || !names_of_parts.contains(key);
+      if (names_file) name_files_from(item, from, to);
+    }
+  } else if (auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
+    for (SettingsNode& item : *items) name_files_from(item, from, to);
+  } else if (auto* text = std::get_if<std::string>(&node.value)) {
+    const fs::path file = named_file(from, *text);
+    if (file.empty() || fs::path(*text).is_absolute()) return;
+    *text = fs::absolute(file)
+                .lexically_normal()
+                .lexically_proximate(fs::absolute(to).lexically_normal())
+                .generic_string();
+  }
+}
+
 std::set<fs::path> all_named_files(const SettingsNode& root, const fs::path& folder) {
   std::set<fs::path> files;
   collect_from(root, folder, files);

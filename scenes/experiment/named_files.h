@@ -23,4 +23,9 @@ std::vector<std::filesystem::path> files_named_in(const std::filesystem::path& p
 std::set<std::filesystem::path> all_named_files(const SettingsNode& root,
                                                 const std::filesystem::path& folder);
 
+// Names the files that texts of the tree name from the folder `from` as seen from the folder `to`.
+// Absolute paths stay, as do texts under keys that name other things (name, node, kind, …).
+void name_files_from(SettingsNode& node, const std::filesystem::path& from,
+                     const std::filesystem::path& to);
+
 }  // namespace photorque

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <cmath>
-#include <cstdio>
 #include <sstream>
 
 #include "core/files.h"
@@ -67,7 +65,10 @@ size_t end_of_string(std::string_view text, size_t begin) {
     if (text[i] == '\\' && quote == '"') {
       ++i;
     } else if (text.substr(i, quotes) == std::string(quotes, quote)) {
-      return i + quotes;
+      // Up to two quotes more may end the text itself.
+      size_t end = i + quotes;
+      while (multiline && end < std::min(i + quotes + 2, text.size()) && text[end] == quote) ++end;
+      return end;
     } else if (text[i] == '\n' && !multiline) {
       return i;
     }
@@ -250,6 +251,32 @@ SettingsNode parse_toml(const std::string& text, const std::string& name) {
   }
 }
 
+std::vector<TomlComment> toml_comments(const std::string& text) {
+  std::vector<TomlComment> comments;
+  int line = 1, depth = 0;  // of brackets that are open
+  bool has_value = false;   // on this line, so far
+  for (size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    size_t end = i + 1;
+    if (c == '#') {
+      end = std::min(text.find('\n', i), text.size());
+      comments.push_back({line, std::string(trimmed(std::string_view(text).substr(i, end - i))),
+                          has_value || depth > 0});
+    } else if (c == '"' || c == '\'') {
+      end = end_of_string(text, i);
+    } else if (c == '\n') {
+      has_value = false;
+    }
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    has_value = has_value || std::string_view(" \t\r\n#").find(c) == std::string_view::npos;
+    line += static_cast<int>(std::count(text.begin() + static_cast<ptrdiff_t>(i),
+                                        text.begin() + static_cast<ptrdiff_t>(end), '\n'));
+    i = end;
+  }
+  return comments;
+}
+
 SettingsNode read_toml(const std::filesystem::path& path) {
   constexpr uint64_t largest_bytes = 1ull << 26;
   return parse_toml(read_file(path, largest_bytes), path.string());
@@ -288,95 +315,6 @@ const SettingsNode* find_setting(const SettingsNode& root, const std::string& ke
     }
   }
   return node;
-}
-
-namespace {
-
-std::string quoted(const std::string& text) {
-  std::string all = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      all += '\\';
-      all += c;
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      char escaped[8];
-      std::snprintf(escaped, sizeof escaped, "\\u%04x", static_cast<unsigned>(c));
-      all += escaped;
-    } else {
-      all += c;
-    }
-  }
-  return all + '"';
-}
-
-std::string key_text(const std::string& key) {
-  const bool is_bare = !key.empty() && std::ranges::all_of(key, [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-';
-  });
-  return is_bare ? key : quoted(key);
-}
-
-std::string real_text(double value) {
-  if (std::isnan(value)) return "nan";
-  if (std::isinf(value)) return value > 0.0 ? "inf" : "-inf";
-  const std::string text = shortest(value);
-  return text.find_first_of(".eE") == std::string::npos ? text + ".0" : text;
-}
-
-struct ValueWriter {
-  std::string operator()(bool value) const { return value ? "true" : "false"; }
-  std::string operator()(int64_t value) const { return std::to_string(value); }
-  std::string operator()(double value) const { return real_text(value); }
-  std::string operator()(const std::string& value) const { return quoted(value); }
-  std::string operator()(const SettingsNode::Array& items) const {
-    std::string all;
-    for (const SettingsNode& item : items) all += (all.empty() ? "" : ", ") + toml_value(item);
-    return "[" + all + "]";
-  }
-  std::string operator()(const SettingsNode::Table& table) const {
-    std::string all;
-    for (const auto& [key, value] : table) {
-      all += (all.empty() ? "" : ", ") + key_text(key) + " = " + toml_value(value);
-    }
-    return all.empty() ? "{}" : "{ " + all + " }";
-  }
-};
-
-const SettingsNode::Array* tables_of(const SettingsNode& node) {
-  const auto* items = std::get_if<SettingsNode::Array>(&node.value);
-  const bool all_tables = items != nullptr && !items->empty() &&
-                          std::ranges::all_of(*items, [](const auto& i) { return i.is_table(); });
-  return all_tables ? items : nullptr;
-}
-
-std::string section(const std::string& head, const SettingsNode& table) {
-  std::string text = "\n" + head + "\n";
-  for (const auto& [key, value] : std::get<SettingsNode::Table>(table.value)) {
-    text += key_text(key) + " = " + toml_value(value) + "\n";
-  }
-  return text;
-}
-
-}  // namespace
-
-std::string toml_value(const SettingsNode& node) {
-  return std::visit(ValueWriter{}, node.value);
-}
-
-std::string toml_document(const SettingsNode::Table& root) {
-  std::string values, sections;
-  for (const auto& [key, node] : root) {
-    const std::string name = key_text(key);
-    if (node.is_table()) {
-      sections += section("[" + name + "]", node);
-    } else if (const auto* items = tables_of(node)) {
-      for (const SettingsNode& item : *items) sections += section("[[" + name + "]]", item);
-    } else {
-      values += name + " = " + toml_value(node) + "\n";
-    }
-  }
-  return values + sections;
 }
 
 }  // namespace photorque

@@ -1,8 +1,9 @@
-// TOML text into the tree that core/settings reads, and back. The only place for toml++.
+// TOML text into the tree that core/settings reads. The only place for toml++; document.h writes.
 #pragma once
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/settings/settings.h"
 
@@ -15,6 +16,15 @@ SettingsNode parse_toml(const std::string& text, const std::string& name);
 // Reads a file.
 SettingsNode read_toml(const std::filesystem::path& path);
 
+// A comment of a TOML text.
+struct TomlComment {
+  int line = 0;         // from one
+  std::string text;     // from # on
+  bool beside = false;  // stands behind a value on its line, or within a value of several lines
+};
+// The comments of a text that parse_toml() takes, in order.
+std::vector<TomlComment> toml_comments(const std::string& text);
+
 // Sets one value as the command line's `--set KEY=VALUE` does: "source[0].power_W=10".
 //
 // KEY is a path of names and indices from the root; tables on the way that do not exist are made,
@@ -25,12 +35,5 @@ void apply_override(SettingsNode& root, const std::string& assignment);
 
 // The value under such a KEY; null where there is none, or KEY is no path.
 const SettingsNode* find_setting(const SettingsNode& root, const std::string& key);
-
-// One value on one line, tables inline. Real numbers read back as the same doubles.
-std::string toml_value(const SettingsNode& node);
-
-// A whole document: a table's own values first, then its tables and arrays of tables as sections;
-// what lies deeper stands inline.
-std::string toml_document(const SettingsNode::Table& root);
 
 }  // namespace photorque

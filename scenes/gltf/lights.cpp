@@ -7,6 +7,7 @@
 
 #include "core/constants.h"
 #include "core/files.h"
+#include "core/text/names.h"
 #include "core/transform.h"
 #include "scenes/gltf/nodes.h"
 #include "scenes/gltf/validation.h"
@@ -160,11 +161,9 @@ const GltfLight& light_named(const Settings& source, const std::vector<GltfLight
     throw source.error("light", '"' + name + "\", the name of " + std::to_string(count) + " lamps",
                        "a name that one lamp of the scene has");
   }
-  std::string known;
-  for (const std::string& other : names) known += (known.empty() ? "\"" : ", \"") + other + '"';
   throw source.error("light", '"' + name + '"',
-                     known.empty() ? "a scene with lights (KHR_lights_punctual, EXT_lights_ies)"
-                                   : "one of " + known);
+                     names.empty() ? "a scene with lights (KHR_lights_punctual, EXT_lights_ies)"
+                                   : "one of " + listed_names(names, name));
 }
 
 }  // namespace

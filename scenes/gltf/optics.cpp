@@ -5,6 +5,7 @@
 #include <set>
 #include <sstream>
 
+#include "core/text/names.h"
 #include "raytrace/surfaces/bsdf.h"
 #include "raytrace/surfaces/glass.h"
 #include "scenes/gltf/file/fault.h"
@@ -202,11 +203,8 @@ MaterialOverrides read_overrides(const Document& document, const GltfOptions& op
   for (const Settings& material : options.materials) {
     const std::string name = material.text("name");
     if (!name.empty() && !names.contains(name)) {
-      const std::string weak_evidence = nearest(name, names);
-      throw material.error(
-          "name", "\"" + name + "\"",
-          "a material of " + document.file +
-              (weak_evidence.empty() ? "" : ", perhaps \"" + weak_evidence + "\""));
+      throw material.error("name", "\"" + name + "\"",
+                           "a material of " + document.file + ": " + listed_names(names, name));
     }
     if (!overrides.emplace(name, read_sheet(material, options.bands.count(), name, files)).second) {
       throw material.error("name", "\"" + name + "\" a second time", "each material once");

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -8,6 +9,7 @@
 
 #include "attitude/environment/epoch.h"
 #include "attitude/recordings/aem.h"
+#include "attitude/recordings/recording.h"
 #include "core/errors.h"
 #include "tests/outside.h"
 
@@ -187,6 +189,46 @@ TEST(Aem, DataThatAreNoRowsAreRefused) {
 }
 
 // Day of the year 60 of a leap year is 29 February.
+// A body that spins about z at 0.1 rad/s: q_z = sin(0.05 t). Rows with the scalar last or first,
+// from the lab to the body or back, in one segment or in two that share an instant.
+TEST(Aem, IsReadAsARecording) {
+  constexpr int rows = 101;
+  for (const bool first : {false, true}) {
+    for (const bool from_body : {false, true}) {
+      for (const bool inverse : {false, true}) {
+        const std::string meta =
+            std::string("META_START\nOBJECT_NAME = BODY\nOBJECT_ID = 2026-001A\n") +
+            "CENTER_NAME = EARTH\nREF_FRAME_A = " + (from_body ? "SC_BODY_1" : "EME2000") +
+            "\nREF_FRAME_B = " + (from_body ? "EME2000" : "SC_BODY_1") +
+            "\nATTITUDE_DIR = " + (inverse ? "B2A" : "A2B") +
+            "\nTIME_SYSTEM = UTC\nSTART_TIME = 2026-11-27T00:00:00\n" +
+            "STOP_TIME = 2026-11-27T00:00:10\nATTITUDE_TYPE = QUATERNION\nQUATERNION_TYPE = " +
+            (first ? "FIRST" : "LAST") + "\nMETA_STOP\nDATA_START\n";
+        std::string text =
+            "CCSDS_AEM_VERS = 1.0\nCREATION_DATE = 2026-11-27T00:00:00\nORIGINATOR = TEST\n" + meta;
+        for (int i = 0; i < rows; ++i) {
+          const double time_s = 0.1 * i, sign = from_body == inverse ? 1.0 : -1.0;
+          char row[160];
+          const double w = std::cos(0.05 * time_s), z = sign * std::sin(0.05 * time_s);
+          std::snprintf(row, sizeof row, "2026-11-27T00:00:%04.1f %.15g %.15g %.15g %.15g\n",
+                        time_s, first ? w : 0.0, 0.0, first ? 0.0 : z, first ? z : w);
+          text += row;
+          if (i == 40) text += "DATA_STOP\n" + meta + row;
+        }
+        const TemporaryFile file(text + "DATA_STOP\n");
+        const Recording recording = read_recording(file.path());
+        ASSERT_EQ(recording.rows(), static_cast<size_t>(rows));
+        EXPECT_EQ(recording.report.repeated_times, 1);
+        for (size_t i = 0; i < recording.rows(); ++i) {
+          EXPECT_NEAR(recording.time_s[i], 0.1 * static_cast<double>(i), 1e-9);
+          EXPECT_NEAR(recording.find("q_z")->values[i], std::sin(0.05 * recording.time_s[i]), 1e-9);
+          EXPECT_NEAR(recording.find("q_w")->values[i], std::cos(0.05 * recording.time_s[i]), 1e-9);
+        }
+      }
+    }
+  }
+}
+
 TEST(CalendarTimes, CountDaysAsTheCalendarDoes) {
   const auto at = [](const char* text) { return *parse_epoch(text); };
   EXPECT_EQ(at("1970-01-01T00:00:00").day, 0);

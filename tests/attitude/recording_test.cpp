@@ -55,6 +55,13 @@ const std::vector<double>& cells_of(const Recording& recording, std::string_view
   return recording.find(name)->values;
 }
 
+// 200 rows 1e15 s apart: nanoseconds, or an error; estimating over them does not end.
+TEST(Recording, TimesOverCenturiesAreRefused) {
+  std::string text = "t_s,gyro_x_rad_s\n";
+  for (int i = 0; i < 200; ++i) text += std::to_string(i) + "e15,0.1\n";
+  EXPECT_THAT(complaint(text), HasSubstr("t_s: found times from 0 to"));
+}
+
 TEST(Recording, WrittenAndReadBackIsTheSameToTheBit) {
   Recording recording;
   std::mt19937_64 engine(3);

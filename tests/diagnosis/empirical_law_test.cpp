@@ -81,7 +81,7 @@ Diagnosis told(const Fitted& f) {
 
 // improved.toml, propagated, follows the fitted model.
 void expect_same_flight(const Fitted& f, const Diagnosis& d) {
-  const std::string text = improved_experiment(nominal_text, d, ".");
+  const std::string text = improved_experiment(TomlDocument(nominal_text, "nominal.toml"), d, ".");
   PropagationRun run = read_propagation(
       Settings(std::make_shared<const SettingsNode>(parse_toml(text, "improved.toml"))));
   run.options.tolerance = 1e-10;

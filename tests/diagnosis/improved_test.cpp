@@ -40,15 +40,70 @@ Settings read(const std::string& text) {
   return Settings(std::make_shared<const SettingsNode>(parse_toml(text, "improved.toml")));
 }
 
-TEST(Improved, KeepsTheUsersTextToTheLastComment) {
+std::string improved(const std::string& text, const Diagnosis& diagnosis) {
+  return improved_experiment(TomlDocument(text, "written.toml"), diagnosis, ".");
+}
+
+TEST(Improved, KeepsTheUsersValuesAndComments) {
   Diagnosis d = sample_diagnosis();
   d.priors_refined.clear();
-  EXPECT_THAT(improved_experiment(written, d, "."), StartsWith(written + "\n"));
+  d.effects.clear();
+  d.replay.reset();
+  const std::string text = improved(written, d);
+  EXPECT_TRUE(same_values(parse_toml(text, "a"), parse_toml(written, "b")));
+  EXPECT_THAT(text, StartsWith("# Written by photorque diagnose: " + d.sentence + "\n"));
+  for (const char* kept : {"# My laboratory, as I know it.\n[platform]\n", "  # weighed twice\n"}) {
+    EXPECT_THAT(text, HasSubstr(kept));
+  }
+}
+
+// Names come from files of others: whatever they hold, they stay values of their keys.
+TEST(Improved, HostileNamesAddNoTable) {
+  for (const std::string name : {"wall\"\n[evil]\nx = \"1", "a'''\"\"\"\r\n[[evil]]",
+                                 "\x1b[2J\x07\\", "# comment", "x\u0085\u2028y"}) {
+    Diagnosis d = sample_diagnosis();
+    d.sentence = d.effects[0].explanation = name;
+    d.effects[0].indistinguishable_from = {name};
+    d.effects[1] = {"wall_reflectance", 0.9, {{"factor", {0.5}, {0.1}}}, {name}, name};
+    d.effects[1].table = "effect";
+    d.effects[1].texts = {{"node", name}};
+    d.priors_refined.push_back({name, {1.0}, {0.1}});
+    d.replay->recording = name;
+    d.replay->has_commands = true;
+    EmpiricalTorque torque;
+    torque.variable = torque.formula = torque.looks_like = name;
+    d.empirical = {torque};
+    const SettingsNode root = parse_toml(improved(written, d), "improved.toml");
+    const auto& tables = std::get<SettingsNode::Table>(root.value);
+    EXPECT_EQ(tables.size(), 6u) << name;  // those written, [[effect]] and [propagate]
+    const SettingsNode* node = find_setting(root, "effect[0].node");
+    ASSERT_NE(node, nullptr);
+    EXPECT_EQ(std::get<std::string>(node->value), name);
+    EXPECT_EQ(std::get<std::string>(find_setting(root, "propagate.commands")->value), name);
+  }
+}
+
+// In an inline table, under a dotted key, in a table within a table.
+TEST(Improved, FindsKeysWithoutAHeaderOfTheirOwn) {
+  Diagnosis d = sample_diagnosis();
+  d.effects.clear();
+  d.replay.reset();
+  d.priors_refined = {{"source[0].power_W", {3.5}, {0.25}}, {"array.loss.ohmic_W", {2.0}, {0.5}}};
+  for (const char* text : {"source = [{ power_mW = { value = 3000, sigma = 200 }, name = \"a\" }]\n"
+                           "array.loss.ohmic_W = 1\n",
+                           "array = { loss = { ohmic_W = 1 } }\n[source]\npower_W = 3 # stated\n"
+                           "name = '''\na'''\n"}) {
+    const SettingsNode root = parse_toml(improved(text, d), "improved.toml");
+    EXPECT_EQ(std::get<double>(find_setting(root, "source[0].power_W.value")->value), 3.5);
+    EXPECT_EQ(std::get<int64_t>(find_setting(root, "array.loss.ohmic_W.value")->value), 2);
+    EXPECT_EQ(find_setting(root, "source[0].power_mW"), nullptr);
+    EXPECT_EQ(std::get<std::string>(find_setting(root, "source[0].name")->value), "a");
+  }
 }
 
 // Uncertain values act as fitted; as it was written it stays as a comment.
 TEST(Improved, PutsFittedNominalValuesInTheirPlaces) {
-  const std::string text = improved_experiment(written, sample_diagnosis(), ".");
+  const std::string text = improved(written, sample_diagnosis());
   const Disturbance unbalance = read_attitude_model(read(text)).model.disturbances.at(0);
   const double value[] = {1e-6, 2e-6, -3e-5};
   for (size_t i = 0; i < 3; ++i) {
@@ -56,9 +111,9 @@ TEST(Improved, PutsFittedNominalValuesInTheirPlaces) {
     EXPECT_DOUBLE_EQ(unbalance.parameters[i].sigma, 1e-8);
   }
   EXPECT_THAT(text,
-              HasSubstr("# before the fit: offset_m = { value = [-8.7e-7, -2.7e-6, -4.3e-5]"));
+              HasSubstr("# before the fit: offset_m = { value = [-8.7e-07, -2.7e-06, -4.3e-05]"));
   for (const char* kept :
-       {"mass_kg = 8.7   # weighed twice", "[sensors.gyro]\nnoise_rad_s = 2e-4"}) {
+       {"mass_kg = 8.7  # weighed twice", "[sensors.gyro]\nnoise_rad_s = 2e-04"}) {
     EXPECT_THAT(text, HasSubstr(kept));
   }
 }
@@ -86,13 +141,13 @@ latitude_deg = 40
   d.effects.clear();
   d.priors_refined = {{"disturbance[1].offset_m", {3e-6, 4e-6, -5e-5}, {1e-8, 1e-8, 1e-8}},
                       {"disturbance[7].scale", {1.5}, {0.5}}};
-  const std::string text = improved_experiment(many, d, ".");
+  const std::string text = improved(many, d);
   const AttitudeModel model = read_attitude_model(read(text)).model;
   EXPECT_DOUBLE_EQ(model.disturbances.at(0).parameters[0].value, 2e-5);
   EXPECT_DOUBLE_EQ(model.disturbances.at(1).parameters[0].value, 3e-6);
   EXPECT_DOUBLE_EQ(model.disturbances.at(1).parameters[2].value, -5e-5);
-  EXPECT_THAT(text, HasSubstr("#   disturbance[7].scale = "));
-  EXPECT_THAT(text, HasSubstr("  # along\n"));
+  EXPECT_THAT(text, HasSubstr("# disturbance[7].scale = "));
+  EXPECT_THAT(text, HasSubstr("# along\n"));
 }
 
 // Those of light: of the second source, of an override within the array, of the attitude.
@@ -116,9 +171,9 @@ tilt_deg = { value = 12, sigma = 0.5 }
   d.priors_refined = {{"array.cell_override[0].shunt_ohm", {8.0}, {0.5}},
                       {"attitude.tilt_deg", {12.25}, {0.125}},
                       {"source[1].power_W", {3.75}, {0.0625}}};
-  const SettingsNode improved = parse_toml(improved_experiment(lamps, d, "."), "improved.toml");
+  const SettingsNode refined = parse_toml(improved(lamps, d), "improved.toml");
   const auto number = [&](const std::string& key) {
-    const SettingsNode* node = find_setting(improved, key);
+    const SettingsNode* node = find_setting(refined, key);
     EXPECT_NE(node, nullptr) << key;
     if (node == nullptr) return 0.0;
     const auto* whole = std::get_if<int64_t>(&node->value);
@@ -129,11 +184,11 @@ tilt_deg = { value = 12, sigma = 0.5 }
   EXPECT_EQ(number("source[1].power_W.sigma"), 0.0625);
   EXPECT_EQ(number("array.cell_override[0].shunt_ohm.value"), 8.0);
   EXPECT_EQ(number("attitude.tilt_deg.value"), 12.25);
-  EXPECT_EQ(find_setting(improved, "source[1].power_mW"), nullptr);
+  EXPECT_EQ(find_setting(refined, "source[1].power_mW"), nullptr);
 }
 
 TEST(Improved, ActsWithTheFittedNumbersAndTheirErrors) {
-  const std::string text = improved_experiment(written, sample_diagnosis(), ".");
+  const std::string text = improved(written, sample_diagnosis());
   const AttitudeModel model = read_attitude_model(read(text)).model;
   ASSERT_GE(model.disturbances.size(), 3u);
   const Disturbance& dipole = model.disturbances[1];
@@ -149,7 +204,7 @@ TEST(Improved, ActsWithTheFittedNumbersAndTheirErrors) {
 }
 
 TEST(Improved, PropagatesTheFirstRecordingAgain) {
-  const std::string text = improved_experiment(written, sample_diagnosis(), ".");
+  const std::string text = improved(written, sample_diagnosis());
   const PropagationRun run = read_propagation(read(text));
   EXPECT_DOUBLE_EQ(run.duration_s, 200.0);
   EXPECT_DOUBLE_EQ(run.initial.rate_body_rad_s.z(), 0.1);
@@ -168,18 +223,17 @@ TEST(Improved, BeginsWithWhatSwingsBesideTheBody) {
                 {},
                 ""}};
   d.effects[0].begins = {{"initial_angle_deg", {0.5}, {}}, {"initial_rate_rad_s", {-0.02}, {}}};
-  const PropagationRun run = read_propagation(read(improved_experiment(written, d, ".")));
+  const PropagationRun run = read_propagation(read(improved(written, d)));
   ASSERT_EQ(run.initial.extra.size(), 2u);
   EXPECT_NEAR(run.initial.extra[0], 0.5 * pi / 180.0, 1e-12);
   EXPECT_NEAR(run.initial.extra[1], -0.02, 1e-12);
   const std::string own = written + "\n[propagate]\nduration_s = 5\n";
-  EXPECT_EQ(read_propagation(read(improved_experiment(own, d, "."))).initial.extra[0], 0.0);
+  EXPECT_EQ(read_propagation(read(improved(own, d))).initial.extra[0], 0.0);
 }
 
 TEST(Improved, LeavesAFlightOfTheUsersAlone) {
   const std::string own = written + "\n[propagate]\nduration_s = 5\n";
-  const PropagationRun run =
-      read_propagation(read(improved_experiment(own, sample_diagnosis(), ".")));
+  const PropagationRun run = read_propagation(read(improved(own, sample_diagnosis())));
   EXPECT_DOUBLE_EQ(run.duration_s, 5.0);
 }
 
@@ -232,7 +286,7 @@ TEST(Improved, HoldsEveryKindWithNumbers) {
   for (const auto& [kind, parameters] : found) {
     Diagnosis d = sample_diagnosis();
     d.effects = {{kind, 0.9, parameters, {}, ""}};
-    const std::string text = improved_experiment(seen_by_markers, d, ".");
+    const std::string text = improved(seen_by_markers, d);
     EXPECT_NO_THROW({
       const AttitudeModel model = read_attitude_model(read(text)).model;
       EXPECT_EQ(model.disturbances.at(1).kind, kind);
@@ -252,7 +306,7 @@ TEST(Improved, HoldsAnEmpiricalTorque) {
   torque.parameters = {{"tilt_exponent", {2.9}, {0.1}},
                        {"coefficients_N_m", {1e-6, -2e-6}, {1e-8, 2e-8}}};
   d.empirical = {torque};
-  const std::string text = improved_experiment(written, d, ".");
+  const std::string text = improved(written, d);
   const AttitudeModel model = read_attitude_model(read(text)).model;
   ASSERT_EQ(model.disturbances.size(), 3u);
   EXPECT_EQ(model.disturbances[1].kind, "turbine_torque");
@@ -270,7 +324,7 @@ TEST(Improved, HoldsAnEmpiricalTorque) {
 TEST(Improved, CommentsStayComments) {
   Diagnosis d = sample_diagnosis();
   d.sentence = "one\nmass_kg = 3";
-  EXPECT_NO_THROW(read(improved_experiment(written, d, ".")));
+  EXPECT_NO_THROW(read(improved(written, d)));
 }
 
 }  // namespace

@@ -87,6 +87,30 @@ CORNERS = struct.pack("<12f", -0.2, 0.1, -0.2, -0.2, 0.1, 0.2, 0.2, 0.1, 0.2, 0.
     "<6H", 0, 1, 2, 0, 2, 3)
 
 
+# The functions of FMI 3.0: its section 2.2 (common), 3.2 (model exchange), 4.2 (co-simulation), 5.2 (scheduled execution).
+TYPES = ["Float32", "Float64", "Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64", "Boolean", "String",
+         "Binary", "Clock"]
+FUNCTIONS = {f"fmi3{verb}{kind}" for verb in ("Get", "Set") for kind in TYPES} | {"fmi3" + name for name in """
+GetVersion SetDebugLogging InstantiateModelExchange InstantiateCoSimulation InstantiateScheduledExecution FreeInstance
+EnterInitializationMode ExitInitializationMode EnterEventMode Terminate Reset GetNumberOfVariableDependencies
+GetVariableDependencies GetFMUState SetFMUState FreeFMUState SerializedFMUStateSize SerializeFMUState DeserializeFMUState
+GetDirectionalDerivative GetAdjointDerivative EnterConfigurationMode ExitConfigurationMode GetIntervalDecimal
+GetIntervalFraction GetShiftDecimal GetShiftFraction SetIntervalDecimal SetIntervalFraction SetShiftDecimal SetShiftFraction
+EvaluateDiscreteStates UpdateDiscreteStates EnterContinuousTimeMode CompletedIntegratorStep SetTime SetContinuousStates
+GetContinuousStateDerivatives GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates
+GetNumberOfEventIndicators GetNumberOfContinuousStates EnterStepMode GetOutputDerivatives DoStep ActivateModelPartition
+""".split()}
+
+
+def check_exports(library):
+    """The library exports the standard's functions and nothing else, and holds no further symbols."""
+    listed = subprocess.run(["nm", "-D", "--defined-only", library], capture_output=True, text=True, check=True).stdout
+    exported = {line.split()[-1].split("@")[0] for line in listed.splitlines()}
+    expect(exported == FUNCTIONS, f"exported: missing {FUNCTIONS - exported}, more {exported - FUNCTIONS}")
+    inner = subprocess.run(["nm", library], capture_output=True, text=True, check=False)
+    expect(not inner.stdout.strip(), f"{len(inner.stdout.splitlines())} symbols that strip would remove")
+
+
 def run(*arguments):
     done = subprocess.run([program, *arguments], capture_output=True, text=True, check=False)
     if done.returncode != 0:
@@ -296,7 +320,13 @@ def check_refusals(folder):
     expect(unit.get(["command_x_N_m"]) == [0.0], "what was refused does not act")
     expect(unit.step(0.7, 0.1)[0] == ERROR and "0.7" in unit.said[-1][2], "a step from elsewhere")
     expect(unit.step(0.5, 2.0)[0] == ERROR, "a step beyond the end")
-    expect(unit.call("fmi3GetInt32") == ERROR, "what is not offered")
+    for name in ("fmi3GetInt32", "fmi3SetTime", "fmi3CompletedIntegratorStep", "fmi3GetNumberOfContinuousStates"):
+        expect(unit.call(name) == ERROR, f"{name} is not offered")
+    for name, callbacks in (("fmi3InstantiateModelExchange", 0), ("fmi3InstantiateScheduledExecution", 3)):
+        instantiate = getattr(unit.shared_object, name)
+        instantiate.restype = ctypes.c_void_p
+        made = instantiate(b"one", b"{}", b"", ctypes.c_bool(False), ctypes.c_bool(True), None, unit.log, *[None] * callbacks)
+        expect(made is None and unit.said[-1][0] == ERROR and name in unit.said[-1][2], f"{name}: {unit.said[-1]}")
     # Communication steps of any length: the outputs are those of the last tick.
     status, _, reached = unit.step(0.5, 0.01)
     expect(status == OK and reached == 0.51, "a step of 1.6 ticks")
@@ -326,6 +356,7 @@ with tempfile.TemporaryDirectory() as name:
         with zipfile.ZipFile(place / title / f"{title}.fmu") as archive:
             expect(archive.testzip() is None, "the archive")
             archive.extractall(folder)
+        check_exports(folder / "binaries" / "x86_64-linux" / "photorque.so")
         check_description((folder / "modelDescription.xml").read_text(encoding="utf-8"))
         unit = Unit(folder)
         expect(unit.handle, f"instantiation: {unit.said}")

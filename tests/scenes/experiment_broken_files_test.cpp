@@ -151,7 +151,7 @@ const Broken cases[] = {
      "perhaps \"power_W\""},
     // Receivers
     {"unknown_node", 15, "node = \"solar_aray\"", ":15: receiver[0].node",
-     "perhaps \"solar_array\" (known: "},
+     "perhaps \"solar_array\""},
     {"no_node", 15, "", ":14: receiver[0].", "found nothing"},
     {"unknown_receiver_kind", 15, "node = \"solar_array\"\nkind = \"flux_mapp\"",
      ":16: receiver[0].kind", "did you mean \"flux_map\"?"},

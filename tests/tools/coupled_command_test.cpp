@@ -1,8 +1,10 @@
 // `propagate` with light: against closed forms of a plate in sunlight, and tables against tracing.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <sstream>
 
 #include "core/constants.h"
@@ -346,6 +348,54 @@ direction = [0, 0, -1]
     EXPECT_NEAR(table("o/power.csv").at("array_power_W").back(), steady_W, 1e-3 * steady_W);
     EXPECT_THAT(moving.out, HasSubstr("cells at the end"));
   }
+}
+
+// Whatever the platform and its start: a run in light ends at its time, or at the platform's own
+// stop, never at the edge of a table.
+TEST_F(CoupledCommand, NoRunEndsAtTheEdgeOfATable) {
+  std::mt19937_64 random(20261127);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  std::filesystem::rename(experiment(sun), at("sunny.toml"));
+  const std::string lit = experiment(lamp);
+  size_t wider = 0;
+  constexpr int runs = 8;
+  for (int i = 0; i < runs; ++i) {
+    const bool has_stop = i % 3 == 0;
+    const double stop_deg = has_stop ? between(8.0, 40.0) : 90.0;
+    const std::vector<std::pair<std::string, double>> numbers = {
+        {"platform.mass_kg", between(1.0, 10.0)},
+        {"platform.tilt_limit_deg", stop_deg},
+        {"propagate.initial_tilt_deg", between(0.5, 7.0)},
+        {"propagate.initial_heading_deg", between(0.0, 360.0)},
+        {"propagate.tolerance", std::pow(10.0, between(-9.0, -4.0))},
+        {"propagate.duration_s", 120.0},
+        {"propagate.output_rate_Hz", 0.5},
+        {"light.step_s", between(0.2, 20.0)},
+        {"light.tolerance", 0.05},
+        {"light.rays", 256.0},
+        {"light.max_traces", 100.0}};
+    std::string words = "propagate " + (i % 2 == 0 ? lit : at("sunny.toml"));
+    for (const auto& [key, value] : numbers) {
+      char text[40];
+      std::snprintf(text, sizeof text, "%.9g", value);
+      words += " --set " + key + "=" + text;
+    }
+    words += " --set 'propagate.initial_rate_rad_s=[" + std::to_string(between(-0.03, 0.03)) + "," +
+             std::to_string(between(-0.03, 0.03)) + "," + std::to_string(between(-0.2, 0.2)) + "]'";
+    // Top-heavy under the lamp: it falls over, through every table.
+    if (i % 2 == 0) words += " --set 'disturbance[0].offset_m=[0,0,1e-4]'";
+    if (i % 4 == 0) words += " --set light.max_tilt_deg=" + std::to_string(between(1.0, 20.0));
+    const Outcome got = run(words + " --out " + at("o"));
+    ASSERT_EQ(got.status, 0) << words << got.err;
+    wider += got.out.find("again with a wider table") != std::string::npos ? 1 : 0;
+    const double end_s = table("o/time_history.csv").at("t_s").back();
+    if (end_s > 119.0) continue;
+    ASSERT_TRUE(std::filesystem::exists(at("o/events.csv"))) << words;
+    EXPECT_THAT(file_text(at("o/events.csv")), HasSubstr("tilt_stop")) << words;
+  }
+  EXPECT_GE(wider, 2u);  // so that the edge was met
 }
 
 TEST_F(CoupledCommand, ATableIsKeptByTheContentOfItsInputs) {

@@ -13,6 +13,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/settings/keys.h"
+#include "scenes/experiment/document.h"
 #include "scenes/experiment/toml.h"
 #include "tools/verbs/check.h"
 

@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "core/constants.h"
+#include "scenes/experiment/document.h"
+#include "scenes/experiment/toml.h"
 #include "tests/tools/sweep_test.h"
 
 namespace photorque {
@@ -123,6 +125,22 @@ TEST_F(SweepDesigns, TheBestKeepsToTheConstraintsAndRunsAsItStands) {
   EXPECT_EQ(query(at("out/designs.sqlite"),
                   "SELECT \"attitude.tilt_deg\" FROM designs WHERE feasible = 1"),
             (std::vector<std::vector<std::string>>{{"40.0"}, {"60.0"}}));
+}
+
+// What stands in a text of an axis is a text of best.toml.
+TEST_F(SweepDesigns, HostileTextsStayValues) {
+  const std::string name = "a\"\n[evil]\nx = \"1\x1b[2J'''#";
+  experiment(
+      "[sweep]\nverb = \"trace\"\nmaximise = \"power_on_plate_W\"\n[[sweep.axis]]\n"
+      "key = \"source[0].name\"\nvalues = [" +
+      toml_value({name}) + "]\n");
+  const Outcome got = sweep();
+  ASSERT_EQ(got.status, 0) << got.err;
+  const SettingsNode best = parse_toml(file_text(at("out/best.toml")), "best.toml");
+  EXPECT_EQ(find_setting(best, "evil"), nullptr);
+  const SettingsNode* written = find_setting(best, "source[0].name");
+  ASSERT_NE(written, nullptr);
+  EXPECT_EQ(std::get<std::string>(written->value), name);
 }
 
 TEST_F(SweepDesigns, ArePicturedWithNamesAndUnitsOfTheirAxes) {

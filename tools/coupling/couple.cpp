@@ -375,7 +375,8 @@ void attempt(CoupledResult& result, const Console& console, const ExperimentFile
     print_light_table(console, *result.table);
     run.model.disturbances.push_back(light_from_table(result.table, lamp_groups(outputs)));
     if (!result.light->sun_direction_lab() && table_tilt_rad < pi) {
-      run.model.platform.tilt_limit_rad = table_tilt_rad;
+      auto& limit_rad = run.model.platform.tilt_limit_rad;
+      limit_rad = std::min(limit_rad.value_or(pi), table_tilt_rad);
     }
   } else {
     run.model.disturbances.push_back(light_from_tracer(lamp_groups(outputs)));
@@ -415,21 +416,24 @@ CoupledResult propagate_in_light(const RunOptions& options, const Console& conso
   }
   require_light_once(file);
   result.light = std::make_unique<LightModel>(options, console, settings, run.model.platform);
-  constexpr double least_rad = 5.0 * degree_rad;
+  const bool is_live = static_cast<bool>(run.commander);
   const double limit_rad = result.light->max_angle_rad();
-  double tilt_now_rad = limit_rad;
-  // Who commands a run live cannot be asked again: its table is as wide as it may become.
-  if (!result.light->sun_direction_lab() && !run.commander) {
-    tilt_now_rad = std::min(limit_rad, std::max(least_rad, 2.0 * tilt_rad(run.initial)));
-  }
+  double tilt_now_rad = result.light->first_angle_rad(tilt_rad(run.initial), is_live);
   KeptState kept(console, checkpoint, identity + of_inputs(result.light->inputs()));
   if (kept.table_tilt_rad()) tilt_now_rad = *kept.table_tilt_rad();
-  for (;; tilt_now_rad = std::min(limit_rad, 2.0 * tilt_now_rad)) {
-    attempt(result, console, file, settings, run, tilt_now_rad, kept);
-    const bool wider = result.table && tilt_now_rad < limit_rad && hits_tilt_limit(result.motion);
-    if (!wider) break;
-    console.line("the tilt passed " + show(tilt_now_rad / degree_rad) + " deg at " +
-                 show(result.motion.events.back().time_s) + " s: again with a wider table");
+  for (;;) {
+    try {
+      attempt(result, console, file, settings, run, tilt_now_rad, kept);
+      const bool wider =
+          result.table && tilt_now_rad < limit_rad && !is_live && hits_tilt_limit(result.motion);
+      if (!wider) break;
+    } catch (const BeyondTable&) {
+      if (is_live || tilt_now_rad >= pi) throw;
+      console.done();
+    }
+    console.line("the motion passed the table's " + show(tilt_now_rad / degree_rad) +
+                 " deg: again with a wider table");
+    tilt_now_rad = std::min(tilt_now_rad < limit_rad ? limit_rad : pi, 2.0 * tilt_now_rad);
   }
   if (result.beside) add_events(result.motion, *result.beside);
   return result;

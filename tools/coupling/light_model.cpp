@@ -11,6 +11,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/parallel.h"
+#include "core/text/names.h"
 #include "tools/coupling/table_cache.h"
 
 namespace photorque {
@@ -46,10 +47,8 @@ InputError unknown_source(const ExperimentFile& file, const std::string& name,
                           const std::vector<Beam>& beams) {
   std::set<std::string> known;
   for (const Beam& beam : beams) known.insert(beam.name.substr(0, beam.name.find('[')));
-  std::string list;
-  for (const std::string& one : known) list += (list.empty() ? "\"" : ", \"") + one + "\"";
   return InputError({file.path.string()}, "light.switch.source", "\"" + name + "\"",
-                    "the name of a source: " + list);
+                    "the name of a source: " + listed_names(known, name));
 }
 
 std::optional<Vec3> direction_of_suns(const std::vector<Beam>& beams) {
@@ -76,12 +75,10 @@ LightModel::LightModel(const RunOptions& options, const Console& console,
   const ExperimentFile file = whole->experiment().file;
   inputs_ = whole->experiment().inputs;
   sun_direction_lab_ = direction_of_suns(beams);
-  const double tilt_rad = settings.max_tilt_rad.value_or(platform.tilt_limit_rad.value_or(pi));
-  max_angle_rad_ = tilt_rad;
   if (sun_direction_lab_) {
-    max_angle_rad_ =
-        std::min(pi, tilt_rad + std::acos(std::clamp(sun_direction_lab_->z(), -1.0, 1.0)));
+    sun_angle_rad_ = std::acos(std::clamp(sun_direction_lab_->z(), -1.0, 1.0));
   }
+  max_angle_rad_ = std::min(pi, platform.tilt_limit_rad.value_or(pi) + sun_angle_rad_);
   for (const std::string& name : switched_sources(settings)) {
     if (std::ranges::none_of(beams, [&](const Beam& beam) { return is_of(beam, name); })) {
       throw unknown_source(file, name, beams);
@@ -121,6 +118,15 @@ LightModel::LightModel(const RunOptions& options, const Console& console,
         cell_currents(array.design, array_light(map, dark), array.responsivity_A_W).area_m2;
   }
   for (size_t g = 0; g < groups_.size(); ++g) groups_[g].first = g * channels_per_group();
+}
+
+double LightModel::first_angle_rad(double initial_tilt_rad, bool is_live) const {
+  constexpr double least_rad = 5.0 * degree_rad, margin = 1.2;
+  const bool asks_once = is_live || sun_direction_lab_.has_value();
+  double tilt_rad = asks_once ? max_angle_rad_ : std::max(least_rad, 2.0 * initial_tilt_rad);
+  if (settings_.max_tilt_rad)
+    tilt_rad = std::max(*settings_.max_tilt_rad, margin * initial_tilt_rad);
+  return std::min(max_angle_rad_, tilt_rad + sun_angle_rad_);
 }
 
 // The joint that moves, of which there is at most one.

@@ -30,7 +30,7 @@ struct LightSettings {
   double step_s = 1.0;      // between exchanges of motion and power
   uint64_t rays = 0;        // per attitude
   size_t max_traces = 20000;
-  std::optional<double> max_tilt_rad;          // that the table holds
+  std::optional<double> max_tilt_rad;          // that the first table holds
   std::optional<std::filesystem::path> cache;  // a folder; none: tables are not kept
   // [[light.switch]]: lamps of one source, or of all.
   struct Switch {
@@ -45,7 +45,7 @@ struct LightSettings {
 bool has_light(const ExperimentFile& file);
 
 // Reads [light], which may be absent: mode ("table"), tolerance (1e-3), step_s (1), rays (of the
-// trace, at most 2^18), max_traces (20000), max_tilt_deg (the platform's limit, or 180), cache (the
+// trace, at most 2^18), max_traces (20000), max_tilt_deg (none), cache (the
 // user's cache folder; "" for none); [[light.switch]] with time_s, on and source (all). InputError
 // as usual, and for switches out of order.
 LightSettings read_light(const ExperimentFile& file);
@@ -89,9 +89,12 @@ class LightModel {
   // All channels at one attitude. `progress` as of the console.
   RotationSample trace(const Quat& lab_from_body) const;
 
-  // The largest angle that a table has to hold, of body z from the vertical or, where the Sun is
-  // the only light, from the Sun: that of the platform's stop or of [light] max_tilt_deg.
+  // The largest angle that the motion may have, of body z from the vertical or, where the Sun is
+  // the only light, from the Sun: that of the platform's stop, or π.
   double max_angle_rad() const { return max_angle_rad_; }
+  // The angle that the first table holds, for a motion that begins at a tilt. What a live run does
+  // is not known, and it cannot begin again: its table holds [light] max_tilt_deg or all angles.
+  double first_angle_rad(double initial_tilt_rad, bool is_live) const;
   // The table up to an angle, from the cache or traced now; says which on the console.
   std::shared_ptr<const RotationTable> make_table(const Console& console,
                                                   double max_angle_rad) const;
@@ -127,6 +130,7 @@ class LightModel {
   std::vector<double> cell_area_m2_;
   std::optional<Vec3> sun_direction_lab_;
   std::vector<std::pair<std::string, std::string>> inputs_;
+  double sun_angle_rad_ = 0.0;  // from the vertical; 0: the Sun is not the only light
   double max_angle_rad_ = 0.0;
   std::string key_;
 };

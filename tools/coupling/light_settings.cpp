@@ -21,8 +21,9 @@ constexpr IntegerKey rays("rays", 256, int64_t{1} << 40, "per attitude",
                           {.usually = "`trace.rays`, at most 2^18"});
 constexpr IntegerKey max_traces("max_traces", 20000, 100, 10'000'000,
                                 "attitudes of a table, after which it is refined no further");
-constexpr NumberKey max_tilt("max_tilt_deg", {0.0, pi, true, false}, "the widest table",
-                             {.usually = "the platform's stop, or 180"});
+constexpr NumberKey max_tilt("max_tilt_deg", {0.0, pi, true, false},
+                             "tilt that the first table holds; motion beyond it gets a wider one",
+                             {.usually = "twice the initial tilt, at least 5"});
 constexpr TextKey cache("cache",
                         "where tables are kept, relative to the experiment; `\"\"`: nowhere",
                         {.usually = "the user's cache folder"});

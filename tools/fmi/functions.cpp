@@ -1,4 +1,4 @@
-// The functions of FMI 3.0 that a co-simulation unit exports.
+// The functions of FMI 3.0, all of which a unit for co-simulation has to export.
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -312,7 +312,7 @@ PHOTORQUE_EXPORT fmi3Status fmi3DeserializeFMUState(fmi3Instance handle, const f
   });
 }
 
-// The functions that the unit does not have. Some importers look for every name.
+// The functions that the unit does not offer: they return fmi3Error. Importers look for every name.
 #define PHOTORQUE_ABSENT(name)                                               \
   PHOTORQUE_EXPORT fmi3Status name(fmi3Instance handle) {                    \
     return guarded(handle, #name, [](Instance& instance) {                   \
@@ -364,4 +364,42 @@ PHOTORQUE_ABSENT(fmi3EnterEventMode)
 PHOTORQUE_ABSENT(fmi3EnterStepMode)
 PHOTORQUE_ABSENT(fmi3GetOutputDerivatives)
 PHOTORQUE_ABSENT(fmi3ActivateModelPartition)
+// Of model exchange.
+PHOTORQUE_ABSENT(fmi3EnterContinuousTimeMode)
+PHOTORQUE_ABSENT(fmi3CompletedIntegratorStep)
+PHOTORQUE_ABSENT(fmi3SetTime)
+PHOTORQUE_ABSENT(fmi3SetContinuousStates)
+PHOTORQUE_ABSENT(fmi3GetContinuousStates)
+PHOTORQUE_ABSENT(fmi3GetContinuousStateDerivatives)
+PHOTORQUE_ABSENT(fmi3GetNominalsOfContinuousStates)
+PHOTORQUE_ABSENT(fmi3GetEventIndicators)
+PHOTORQUE_ABSENT(fmi3GetNumberOfContinuousStates)
+PHOTORQUE_ABSENT(fmi3GetNumberOfEventIndicators)
+
+namespace {
+
+fmi3Instance refuse_interface(const char* function, fmi3InstanceEnvironment environment,
+                              fmi3LogMessageCallback log) {
+  Instance instance;
+  instance.environment = environment;
+  instance.log = log;
+  instance.refuse(std::string(function) + ": the unit is for co-simulation alone");
+  return nullptr;
+}
+
+}  // namespace
+
+PHOTORQUE_EXPORT fmi3Instance fmi3InstantiateModelExchange(fmi3String, fmi3String, fmi3String,
+                                                           fmi3Boolean, fmi3Boolean,
+                                                           fmi3InstanceEnvironment environment,
+                                                           fmi3LogMessageCallback log) {
+  return refuse_interface("fmi3InstantiateModelExchange", environment, log);
+}
+
+PHOTORQUE_EXPORT fmi3Instance fmi3InstantiateScheduledExecution(
+    fmi3String, fmi3String, fmi3String, fmi3Boolean, fmi3Boolean,
+    fmi3InstanceEnvironment environment, fmi3LogMessageCallback log, fmi3ClockUpdateCallback,
+    fmi3LockPreemptionCallback, fmi3UnlockPreemptionCallback) {
+  return refuse_interface("fmi3InstantiateScheduledExecution", environment, log);
+}
 // NOLINTEND(readability-identifier-naming)

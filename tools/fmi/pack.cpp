@@ -13,6 +13,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text/parse.h"
+#include "scenes/experiment/document.h"
 #include "scenes/experiment/named_files.h"
 #include "scenes/experiment/toml.h"
 #include "tools/fmi/standard.h"

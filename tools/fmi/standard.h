@@ -32,6 +32,9 @@ typedef void (*fmi3IntermediateUpdateCallback)(fmi3InstanceEnvironment environme
                                                fmi3Boolean can_return_early,
                                                fmi3Boolean* early_return_requested,
                                                fmi3Float64* early_return_time);
+typedef void (*fmi3ClockUpdateCallback)(fmi3InstanceEnvironment environment);
+typedef void (*fmi3LockPreemptionCallback)(void);
+typedef void (*fmi3UnlockPreemptionCallback)(void);
 
 /* NOLINTEND(modernize-use-using,readability-identifier-naming) */
 

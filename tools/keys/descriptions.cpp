@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "core/text/parse.h"
-#include "scenes/experiment/toml.h"
+#include "scenes/experiment/document.h"
 
 namespace photorque {
 namespace {

@@ -88,6 +88,11 @@ ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known) {
     throw InputError({experiment.file.path.string()}, "array",
                      tables.empty() ? "no table" : "more than one table", "one table [array]");
   }
+  for (const NamedReceiver& receiver : experiment.receivers) {
+    if (!receiver.flux_map || receiver.name != "cells") continue;
+    throw InputError({experiment.file.path.string()}, "receiver.name", "\"cells\"",
+                     "another name: power_on_cells_W is the light on the cells of the array");
+  }
   ArrayPower array;
   array.flux_map = run.flux_map_index(tables[0].text_or("receiver", ""));
   const FluxMapReceiver& map = run.flux_map(array.flux_map);

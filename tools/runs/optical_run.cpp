@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <set>
 #include <thread>
 
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/text/format.h"
+#include "core/text/names.h"
 #include "images/writers/image_file.h"
 #include "receivers/gather/bodies/wrench.h"
 #include "scenes/effects/stated.h"
@@ -245,16 +247,17 @@ std::optional<size_t> OpticalRun::first_flux_map() const {
 }
 
 size_t OpticalRun::flux_map_index(const std::string& name) const {
-  std::string known;
+  std::set<std::string> known;
   for (size_t i = 0; i < experiment_.receivers.size(); ++i) {
     const NamedReceiver& receiver = experiment_.receivers[i];
     if (!receiver.flux_map) continue;
     if (name.empty() || receiver.name == name) return i;
-    known += (known.empty() ? "\"" : ", \"") + receiver.name + "\"";
+    known.insert(receiver.name);
   }
   throw InputError({experiment_.file.path.string()}, "array.receiver",
                    name.empty() ? "no receiver of kind \"flux_map\"" : "\"" + name + "\"",
-                   known.empty() ? "a [[receiver]] of kind \"flux_map\"" : "one of " + known);
+                   known.empty() ? "a [[receiver]] of kind \"flux_map\""
+                                 : "one of " + listed_names(known, name));
 }
 
 const WrenchReceiver& OpticalRun::wrench() const {

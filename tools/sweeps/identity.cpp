@@ -2,27 +2,12 @@
 
 #include "core/files.h"
 #include "core/provenance.h"
+#include "scenes/experiment/document.h"
 #include "scenes/experiment/named_files.h"
 #include "scenes/experiment/toml.h"
 
 namespace photorque {
-namespace {
-
 namespace fs = std::filesystem;
-
-void name_files_from(SettingsNode& node, const fs::path& from, const fs::path& to) {
-  if (auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
-    for (auto& [key, item] : *table) name_files_from(item, from, to);
-  } else if (auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
-    for (SettingsNode& item : *items) name_files_from(item, from, to);
-  } else if (auto* text = std::get_if<std::string>(&node.value)) {
-    const fs::path file = named_file(from, *text);
-    if (file.empty() || fs::path(*text).is_absolute()) return;
-    *text = fs::absolute(file).lexically_normal().lexically_proximate(to).generic_string();
-  }
-}
-
-}  // namespace
 
 RunIdentity::RunIdentity(RunOptions options, std::string command)
     : options_(std::move(options)),
@@ -95,11 +80,13 @@ SettingsNode RunIdentity::value(const Changes& changes, const std::string& key) 
   return *found;
 }
 
-std::string RunIdentity::experiment(const Changes& changes, const std::string& head,
+std::string RunIdentity::experiment(const Changes& changes, const std::vector<std::string>& head,
                                     const fs::path& folder) const {
-  SettingsNode root = changed(changes);
-  name_files_from(root, folder_, fs::absolute(folder).lexically_normal());
-  return head + toml_document(std::get<SettingsNode::Table>(root.value));
+  TomlDocument document(options_.experiment_text(), options_.experiment.string());
+  document.root = changed(changes);
+  for (const std::string& line : head) document.add_to_head(line);
+  name_files_from(document.root, folder_, folder);
+  return document.text();
 }
 
 }  // namespace photorque

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "core/settings/settings.h"
 #include "tools/runs/options.h"
@@ -26,8 +27,8 @@ class RunIdentity {
   SettingsNode value(const Changes& changes, const std::string& key) const;
 
   // The experiment under these changes, without its plan, as a file for `folder`: files are named
-  // from there.
-  std::string experiment(const Changes& changes, const std::string& head,
+  // from there. `head` are comment lines at its beginning.
+  std::string experiment(const Changes& changes, const std::vector<std::string>& head,
                          const std::filesystem::path& folder) const;
 
  private:

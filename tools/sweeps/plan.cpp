@@ -164,6 +164,16 @@ SearchPlan read_search(const Settings& sweep) {
 
 }  // namespace
 
+std::string lacks_for_search(const SweepPlan& plan) {
+  if (plan.objectives.empty()) return "maximise or minimise";
+  for (const SweepAxis& axis : plan.axes) {
+    if (!axis.low || !axis.high || !(*axis.low < *axis.high)) {
+      return "from and to of the axis " + axis.key + ", one below the other";
+    }
+  }
+  return "";
+}
+
 size_t SweepPlan::designs() const {
   if (!grid) return axes.front().values.size();
   size_t count = 1;

@@ -9,7 +9,7 @@
 #include "core/numerics/quadrature.h"
 #include "core/numerics/random.h"
 #include "core/numerics/root.h"
-#include "scenes/experiment/toml.h"
+#include "scenes/experiment/document.h"
 #include "tools/sweeps/keys.h"
 
 namespace photorque {
@@ -83,14 +83,11 @@ std::string toml_number(double value) {
 }
 
 std::string toml_text(const SettingsNode& node) {
-  if (const auto* flag = std::get_if<bool>(&node.value)) return *flag ? "true" : "false";
-  if (const auto* whole = std::get_if<int64_t>(&node.value)) return std::to_string(*whole);
   if (const auto* real = std::get_if<double>(&node.value)) return toml_number(*real);
-  if (std::holds_alternative<std::string>(node.value)) return toml_value(node);
+  const auto* array = std::get_if<SettingsNode::Array>(&node.value);
+  if (array == nullptr) return toml_value(node);
   std::string items;
-  if (const auto* array = std::get_if<SettingsNode::Array>(&node.value)) {
-    for (const SettingsNode& item : *array) items += (items.empty() ? "" : ", ") + toml_text(item);
-  }
+  for (const SettingsNode& item : *array) items += (items.empty() ? "" : ", ") + toml_text(item);
   return "[" + items + "]";
 }
 

@@ -13,7 +13,7 @@ inline constexpr size_t max_designs = 1000000;
 // 15 digits: what a decimal file says, without the rest of its binary form.
 std::string toml_number(double value);
 
-// A value as TOML text; tables are not values of a sweep.
+// A value as TOML text, its numbers by toml_number().
 std::string toml_text(const SettingsNode& node);
 
 // `values = […]`, or `from`, `to`, `count` (and `spacing`), both ends included.

@@ -266,8 +266,15 @@ class Checker {
   void check_sweep() {
     attempt([&] {
       const SweepPlan plan = read_sweep_plan(file_->others("sweep").front());
-      if (plan.designs() == 0) {
+      const std::string lacks = lacks_for_search(plan);
+      if (lacks.empty()) {
         add("optimise", "over " + counted(plan.axes.size(), "key") + " by " + plan.verb);
+      } else {
+        report_.impossible.push_back({"optimise", "[sweep] lacks " + lacks});
+      }
+      if (plan.designs() == 0) {
+        report_.impossible.push_back(
+            {"sweep", "[sweep] lacks count, or values, of an axis with from and to"});
         return;
       }
       RunOptions first = options_;
@@ -338,6 +345,9 @@ void run(const CommandOptions& options, const Program& program) {
   const CheckReport report = run_check(options);
   print_commands(console, report, program.verbs);
   if (report.mistakes.empty()) print_lacking(console, report, program.verbs);
+  for (const CheckReport::Command& command : report.impossible) {
+    console.line("not " + command.name + ": " + command.what);
+  }
   for (const std::string& note : report.notes) console.line("note: " + note);
   if (report.mistakes.empty()) return;
   for (size_t i = 0; i + 1 < report.mistakes.size(); ++i) {

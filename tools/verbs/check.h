@@ -15,6 +15,7 @@ struct CheckReport {
     std::string what;  // what the command would do, in a sentence
   };
   std::vector<Command> commands;
+  std::vector<Command> impossible;  // what the file has tables for, and why it cannot be done
   std::vector<std::string> tables;  // that the file has, in the order of the documents
   // Every key that is unknown, of the wrong type or out of range; beside them, of tables without
   // such, the first that a run would end with.

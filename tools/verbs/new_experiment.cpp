@@ -10,6 +10,7 @@
 #include "core/text/parse.h"
 #include "receivers/surface_grid.h"
 #include "scenes/cad/model.h"
+#include "scenes/experiment/document.h"
 #include "scenes/experiment/toml.h"
 #include "scenes/gltf/reader.h"
 #include "tools/verbs/check.h"

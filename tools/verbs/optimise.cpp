@@ -11,14 +11,10 @@
 namespace photorque::verbs::optimise {
 namespace {
 
-// The axes of [sweep] as a box. InputError for one without ends.
-SearchBox box_of(const ExperimentFile& file, const SweepPlan& plan) {
+// The axes of [sweep] as a box.
+SearchBox box_of(const SweepPlan& plan) {
   SearchBox box;
   for (const SweepAxis& axis : plan.axes) {
-    if (!axis.low || !axis.high || !(*axis.low < *axis.high)) {
-      throw file.settings.error("sweep", "an axis " + axis.key + " that is no range",
-                                "from and to, one below the other");
-    }
     box.low.push_back(*axis.low);
     box.high.push_back(*axis.high);
   }
@@ -50,12 +46,11 @@ class Search {
         plan_(read_study_plan(file_, verbs)),
         engine_(study_task(options, plan_, verbs, SweepFiles{options.out_folder()}.database())),
         evaluator_(plan_, engine_) {
-    if (plan_.objectives.empty()) {
-      throw file_.settings.error("sweep.maximise", "nothing", "maximise or minimise");
-    }
+    const std::string lacks = lacks_for_search(plan_);
+    if (!lacks.empty()) throw file_.settings.error("sweep", "no plan of a search", lacks);
     // From now on the designs are those that the search asks for.
     plan_.grid = false;
-    box_ = box_of(file_, plan_);
+    box_ = box_of(plan_);
     for (SweepAxis& axis : plan_.axes) axis.values.clear();
   }
 

@@ -30,10 +30,10 @@ void build_copies(Study& study) {
 }
 
 RunFile best_experiment(const Study& study, const Changes& changes) {
-  std::string head = "# Design " + std::to_string(*study.result.best + 1) + " of `" +
-                     study.options.verb + "` of " + study.options.experiment.filename().string() +
-                     ":\n";
-  for (const std::string& change : changes) head += "#   " + change + "\n";
+  std::vector<std::string> head{"Design " + std::to_string(*study.result.best + 1) + " of `" +
+                                study.options.verb + "` of " +
+                                study.options.experiment.filename().string() + ":"};
+  for (const std::string& change : changes) head.push_back("  " + change);
   const std::string text =
       study.engine.identity().experiment(changes, head, study.options.out_folder());
   return {"best.toml", [text](const std::filesystem::path& path) { write_file_whole(path, text); },

@@ -16,9 +16,9 @@ constexpr NumberKey inner("inner_m", 0.0, Range::not_negative(), "where it begin
 constexpr NumberKey outer("outer_m", Range::positive(), "where it ends, beyond `inner_m`",
                           {.varies = true});
 constexpr IntegerKey faces("faces", 2, 1, 2, "of it that are wetted");
-constexpr NumberKey drag("drag_coefficient", Range::not_negative(),
+constexpr NumberKey drag("drag_coefficient", {0.0, 1e3, false, false},
                          "on the area that meets the flow");
-constexpr NumberKey moment("moment_coefficient", sphere_moment_howarth, Range::positive(),
+constexpr NumberKey moment("moment_coefficient", sphere_moment_howarth, {0.0, 1e3, true, false},
                            "3.27 is also quoted");
 constexpr ChoiceKey shape("shape",
                           {{"disc", "friction: spins in its plane"},

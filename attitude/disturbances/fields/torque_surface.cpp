@@ -7,6 +7,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/numerics/table.h"
 #include "core/text/parse.h"
 
 namespace photorque {
@@ -37,8 +38,8 @@ Cubic cubic_between(const std::array<double, 4>& x, const std::array<Vec3, 4>& f
 size_t interval(const std::vector<double>& nodes, double& x, const char* name) {
   const size_t n = nodes.size();
   if (!(x >= 2.0 * nodes[0] - nodes[1] && x <= 2.0 * nodes[n - 1] - nodes[n - 2])) {
-    throw NumericalError(std::string("wrench table: ") + name + " " +
-                         std::to_string(x / degree_rad) + " deg is outside the table");
+    throw BeyondTable(std::string("wrench table: ") + name + " " + std::to_string(x / degree_rad) +
+                      " deg is outside the table");
   }
   x = std::clamp(x, nodes.front(), nodes.back());
   const auto above = std::upper_bound(nodes.begin(), nodes.end() - 1, x);

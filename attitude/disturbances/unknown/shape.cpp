@@ -60,11 +60,14 @@ std::vector<int> read_orders(const Settings& settings, const std::string& key, i
 
 SmoothTable read_knots(const Settings& settings, const std::string& key) {
   const std::vector<double> knots = settings.numbers(key);
-  const bool rise =
-      std::adjacent_find(knots.begin(), knots.end(), std::greater_equal<>()) == knots.end();
+  // Slopes between knots that lie closer are of rounding.
+  constexpr double least_step = 1e-9;  // of the range
+  const bool rise = std::adjacent_find(knots.begin(), knots.end(), [&](double a, double b) {
+                      return !(b - a >= least_step * (knots.back() - knots.front()) && b > a);
+                    }) == knots.end();
   if (knots.size() < 4 || knots.size() > 1000 || !rise) {
     throw settings.error(key, "an array of " + std::to_string(knots.size()),
-                         "4 to 1000 numbers that rise");
+                         "4 to 1000 numbers that rise, by 1e-9 of their range at least");
   }
   return SmoothTable(knots);
 }

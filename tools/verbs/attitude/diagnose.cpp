@@ -6,7 +6,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <regex>
 
 #include "core/errors.h"
 #include "core/files.h"
@@ -19,6 +18,8 @@
 #include "diagnosis/light/module/diagnose.h"
 #include "diagnosis/light/together.h"
 #include "images/writers/staged_files.h"
+#include "scenes/experiment/document.h"
+#include "scenes/experiment/named_files.h"
 #include "scenes/experiment/toml.h"
 #include "tools/pages/pages.h"
 #include "tools/runs/attitude_run.h"
@@ -40,42 +41,15 @@ std::vector<NamedRecording> read_all(const std::vector<fs::path>& paths,
   return all;
 }
 
-// Whether the text ends in a key whose words are names, not files.
-bool is_name(const std::string& before) {
-  static const std::regex own_names(
-      R"((^|[\s{,.])(name|node|receiver|kind|source|body|topology)\s*=\s*$)");
-  const size_t line = before.rfind('\n');
-  return std::regex_search(line == std::string::npos ? before : before.substr(line), own_names);
-}
-
-// The text of an experiment with the files that it names found from another folder.
-std::string seen_from(const std::string& text, const fs::path& experiment, const fs::path& folder) {
-  static const std::regex quoted(R"x("([^"\n]+)"|'([^'\n]+)')x");
-  std::string result;
-  size_t done = 0;
-  for (std::sregex_iterator it(text.begin(), text.end(), quoted), end; it != end; ++it) {
-    const std::string name = (*it)[1].matched ? (*it)[1].str() : (*it)[2].str();
-    const fs::path file = fs::absolute(experiment).parent_path() / name;
-    const auto at = static_cast<size_t>(it->position());
-    std::error_code ignored;
-    if (!fs::is_regular_file(file, ignored) || is_name(text.substr(done, at - done))) continue;
-    result += text.substr(done, at - done) + "\"" +
-              file.lexically_proximate(fs::absolute(folder)).generic_string() + "\"";
-    done = at + static_cast<size_t>(it->length());
-  }
-  return result + text.substr(done);
-}
-
-// The text with what the command line changes; then without its comments.
+// The text with the changes of the command line.
 std::string with_overrides(const std::string& text, const std::vector<std::string>& overrides) {
   if (overrides.empty()) return text;
-  SettingsNode root = parse_toml(text, "");
-  std::string head;
+  TomlDocument document(text, "");
   for (const std::string& assignment : overrides) {
-    apply_override(root, assignment);
-    head += "# --set " + assignment + "\n";
+    apply_override(document.root, assignment);
+    document.add_to_head("--set " + assignment);
   }
-  return head + toml_document(std::get<SettingsNode::Table>(root.value));
+  return document.text();
 }
 
 // Whether the recordings are of light. InputError naming the first that is of another kind.
@@ -247,7 +221,9 @@ std::string DiagnosisRun::json() const {
 }
 
 std::string DiagnosisRun::improved(const fs::path& folder) const {
-  return improved_experiment(seen_from(text, experiment, folder), diagnosis, fs::absolute(folder));
+  TomlDocument document(text, experiment.string());
+  name_files_from(document.root, experiment.parent_path(), folder);
+  return improved_experiment(std::move(document), diagnosis, folder);
 }
 
 std::string DiagnosisRun::report() const {
