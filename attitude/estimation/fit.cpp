@@ -66,8 +66,19 @@ std::vector<inference::ChannelResiduals> channels_of(const std::vector<Predictio
 
 double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
                     const Thresholds::Noise& limits) {
+  // Where runs are short, a start that is fitted leaves no mean of many neighbours: their channels
+  // have as many means as show what is left beside it.
+  constexpr size_t fewest_means = 6;
   try {
-    return inference::whiteness(channels_of(residuals_of(fit, runs)), limits).excess_sigma;
+    const std::vector<inference::ChannelResiduals> channels = channels_of(residuals_of(fit, runs));
+    size_t longest = 0;
+    for (const auto& run : channels) {
+      for (const auto& channel : run) longest = std::max(longest, channel.size());
+    }
+    Thresholds::Noise scale = limits;
+    scale.neighbours = std::clamp(longest / fewest_means, size_t{1}, limits.neighbours);
+    return std::max(inference::whiteness(channels, limits).excess_sigma,
+                    inference::whiteness(channels, scale).excess_sigma);
   } catch (const NumericalError&) {
     return limits.excess_unknown;
   }

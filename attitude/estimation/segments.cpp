@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "attitude/estimation/release.h"
 #include "attitude/recordings/columns.h"
 #include "core/errors.h"
 #include "core/text/format.h"
@@ -125,6 +126,11 @@ std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   return kinks;
 }
 
+bool is_commanded(const Schedule& schedule) {
+  return std::any_of(schedule.held.begin(), schedule.held.end(),
+                     [](const ZeroOrderHold& held) { return held != ZeroOrderHold{}; });
+}
+
 Segments cut(const Recording& recording, const std::string& name, const Platform& platform,
              size_t max_blocks) {
   const Observation rows = observe(recording, name, platform, std::numeric_limits<size_t>::max());
@@ -141,6 +147,16 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
       first = lawful.first;
       last = lawful.last;
       if (!lawful.left_out.empty()) result.lawless.push_back(std::move(lawful.left_out));
+    }
+    if (platform.turns_about_one_axis() && !platform.slides() && rows.sees_some_attitude() &&
+        !is_commanded(rows.schedule)) {
+      const size_t released = released_at(rows, platform.axis, first, last);
+      if (released > first) {
+        result.lawless.push_back("until " + readable_number(rows.time_s[released], 4) +
+                                 " s the angle does not follow the law of the rest: a hand holds "
+                                 "it, or something else acts");
+      }
+      first = released;
     }
     if (last > first && rows.readings(first, last) >= least_of_stretch) {
       const auto blocks = static_cast<size_t>(share * static_cast<double>(last - first));
@@ -328,11 +344,6 @@ std::vector<Break> breaks_of(const AxisRates& read, size_t window) {
     }
   }
   return breaks;
-}
-
-bool is_commanded(const Schedule& schedule) {
-  return std::any_of(schedule.held.begin(), schedule.held.end(),
-                     [](const ZeroOrderHold& held) { return held != ZeroOrderHold{}; });
 }
 
 }  // namespace

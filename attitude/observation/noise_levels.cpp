@@ -233,18 +233,32 @@ struct LeftSeries {
   std::vector<double> time_s, value;
 };
 
-std::vector<LeftSeries> left_of(const std::vector<Prediction>& residuals,
-                                const std::vector<Observation>& runs, int channel) {
-  std::vector<LeftSeries> all(runs.size());
+void append_left(const std::vector<Prediction>& residuals, const std::vector<Observation>& runs,
+                 int channel, std::vector<LeftSeries>& all) {
   for (size_t run = 0; run < runs.size(); ++run) {
+    LeftSeries& series = all.emplace_back();
     for (size_t i = 0; i < residuals[run].off.size(); ++i) {
       const double x = residuals[run].off[i][channel];
       if (!std::isfinite(x)) continue;
-      all[run].time_s.push_back(runs[run].time_s[i]);
-      all[run].value.push_back(x);
+      series.time_s.push_back(runs[run].time_s[i]);
+      series.value.push_back(x);
     }
   }
-  return all;
+}
+
+// Channels with one remainder between them: what pushes on a table prefers neither x nor y.
+std::vector<std::vector<int>> alike_channels() {
+  std::vector<std::vector<int>> groups;
+  for (int channel = 0; channel < channel_count; ++channel) {
+    const bool is_along_y = channel == vector_channels + static_cast<int>(Scalar::position_y) ||
+                            channel == vector_channels + static_cast<int>(Scalar::velocity_y);
+    if (is_along_y) {
+      groups.back().push_back(channel);
+    } else {
+      groups.push_back({channel});
+    }
+  }
+  return groups;
 }
 
 double mean_square(const std::vector<LeftSeries>& all) {
@@ -302,17 +316,19 @@ NoiseLevels with_discrepancy(const std::vector<Prediction>& residuals,
                              const std::vector<Observation>& runs, const NoiseLevels& own,
                              Remainder remainder) {
   NoiseLevels noise = own;
-  for (int channel = 0; channel < channel_count; ++channel) {
-    const std::vector<LeftSeries> left = left_of(residuals, runs, channel);
-    const double square = mean_square(left), level = own.of(channel).level;
-    if (!(square > level * level)) continue;
+  for (const std::vector<int>& channels : alike_channels()) {
+    std::vector<LeftSeries> left;
+    for (const int channel : channels) append_left(residuals, runs, channel, left);
+    const double square = mean_square(left);
     ChannelNoise found{std::sqrt(square)};
-    if (remainder == Remainder::correlated) {
+    if (square > 0.0 && remainder == Remainder::correlated) {
       const Shared shared = shared_by_neighbours(left, square);
       found.coloured = shared.fraction;
       found.time_s = shared.time_s;
     }
-    noise.set(channel, found);
+    for (const int channel : channels) {
+      if (found.level > own.of(channel).level) noise.set(channel, found);
+    }
   }
   return noise;
 }

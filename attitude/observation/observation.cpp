@@ -34,7 +34,7 @@ Vec3 rotation_vector(const Quat& rotation) {
 
 ChannelNoise NoiseLevels::of(int channel) const {
   if (channel >= vector_channels) {
-    return {scalar[static_cast<size_t>(channel - vector_channels)], 0.0, 0.0};
+    return scalar[static_cast<size_t>(channel - vector_channels)];
   }
   const int k = channel % 3;
   if (channel < 3) return {camera_rad[k], camera_colour.fraction[k], camera_colour.time_s[k]};
@@ -43,7 +43,7 @@ ChannelNoise NoiseLevels::of(int channel) const {
 
 void NoiseLevels::set(int channel, const ChannelNoise& noise) {
   if (channel >= vector_channels) {
-    scalar[static_cast<size_t>(channel - vector_channels)] = noise.level;
+    scalar[static_cast<size_t>(channel - vector_channels)] = noise;
     return;
   }
   const int k = channel % 3;
@@ -58,7 +58,7 @@ NoiseLevels noise_levels(const Sensors& sensors) {
   if (states_camera_noise(sensors)) noise.camera_rad = sensors.camera->noise_rad;
   if (states_gyro_noise(sensors)) noise.gyro_rad_s = Vec3::Constant(sensors.gyro->noise_rad_s);
   for (int s = 0; s < scalar_count; ++s) {
-    double& level = noise.scalar[static_cast<size_t>(s)];
+    double& level = noise.scalar[static_cast<size_t>(s)].level;
     constexpr double usual_force_m_s2 = 0.01, usual_field_T = 1e-7;
     switch (channel_traits(vector_channels + s).measures) {
       case Measures::angle:  // as good as the camera about the vertical

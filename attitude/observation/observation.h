@@ -29,7 +29,7 @@ struct NoiseLevels {
   struct Colour {
     Vec3 fraction = Vec3::Zero(), time_s = Vec3::Zero();
   } camera_colour, gyro_colour;
-  std::array<double, scalar_count> scalar = {};  // white; in SI
+  std::array<ChannelNoise, scalar_count> scalar = {};  // in SI
 
   // Of a channel (recordings/columns.h).
   ChannelNoise of(int channel) const;

@@ -6,6 +6,7 @@
 #include "attitude/observation/blocks.h"
 #include "attitude/observation/expected_readings.h"
 #include "attitude/propagation/sampling.h"
+#include "core/constants.h"
 #include "core/errors.h"
 
 namespace photorque {
@@ -128,9 +129,10 @@ ExpectedInstant mean_of(const std::vector<ExpectedInstant>& all, const BlockInst
 
 class Comparison {
  public:
-  Comparison(const Observation& seen, const BlockInstants& instants, double fastest_rad_s,
-             size_t variables, bool keep, double max_chi2)
-      : seen_(seen),
+  Comparison(const Platform& platform, const Observation& seen, const BlockInstants& instants,
+             double fastest_rad_s, size_t variables, bool keep, double max_chi2)
+      : platform_(platform),
+        seen_(seen),
         instants_(instants),
         max_chi2_(max_chi2),
         max_rate_rad_s_(runaway * fastest_rad_s),
@@ -185,6 +187,7 @@ class Comparison {
     if (seen_.attitude_rows[block] > 0.0 && seen_.sees_some_attitude()) {
       off.head<3>() = rotation_vector(seen_.attitude[block] * state.lab_from_body.conjugate()) -
                       state.lab_from_body * camera_offset_body;
+      if (platform_.turns_about_one_axis()) count_turns(off);
     }
     off.segment<3>(3) = seen_.gyro_rad_s[block] - moment.gyro_mean_rad_s;
     if (instants_.per_block() > 1) off.segment<3>(3) -= seen_.spread[block].gyro_moved_rad_s;
@@ -223,6 +226,16 @@ class Comparison {
     result_.scalars.push_back(scalars);
   }
 
+  // Whole turns about the one axis count: a prediction that lags by more than half a turn is off by
+  // as much. From one reading to the next it gains or loses less than half a turn.
+  void count_turns(WhiteRow& off) {
+    const Vec3& axis = platform_.axis;
+    const double along_rad = axis.dot(off.head<3>());
+    const double turns = std::round((off_before_rad_ - along_rad) / (2.0 * pi));
+    off_before_rad_ = along_rad + 2.0 * pi * turns;
+    off.head<3>() += 2.0 * pi * turns * axis;
+  }
+
   // Slopes and residual, whitened alike. Returns the whitened residual.
   double put(int channel, size_t block, double rows, double off) {
     auto row = sums_.next();
@@ -237,8 +250,10 @@ class Comparison {
   // Times the fastest motion seen: no trial of parameters is worth more.
   static constexpr double runaway = 20.0;
 
+  const Platform& platform_;
   const Observation& seen_;
   const BlockInstants& instants_;
+  double off_before_rad_ = 0.0;  // about the one axis
   double max_chi2_, max_rate_rad_s_, chi2_ = 0.0;
   inference::SumsOfRows sums_;
   SlopeRows slope_, instant_slope_;
@@ -256,8 +271,8 @@ Prediction predict(const Dynamics& dynamics, const PlatformState& initial, const
   const size_t blocks = std::min(options.blocks, seen.blocks());
   const double fastest = fastest_rad_s(seen);
   const BlockInstants instants(seen, fastest);
-  Comparison comparison(seen, instants, fastest, variables.size(), options.keep_residuals,
-                        options.max_chi2);
+  Comparison comparison(dynamics.model().platform, seen, instants, fastest, variables.size(),
+                        options.keep_residuals, options.max_chi2);
   PropagationOptions propagation = options.propagation;
   // A trial of parameters that make the motion run away is not worth its steps.
   // What rubs and stops needs thousands in a short time.

@@ -31,6 +31,43 @@ bool is_among(const Candidate& c, Among among) {
 
 }  // namespace
 
+std::optional<double> simpler_by(const Trial& first, const Trial& second, const Answer& answer) {
+  std::vector<size_t> ours = first.candidates, theirs = second.candidates;
+  for (const size_t c : second.candidates) std::erase(ours, c);
+  for (const size_t c : first.candidates) std::erase(theirs, c);
+  if (ours.size() != 1 || theirs.size() != 1) return std::nullopt;
+  const Candidate &our = answer.all[ours[0]], &their = answer.all[theirs[0]];
+  const bool push_alike = our.effect.how.needs == their.effect.how.needs;
+  if (push_alike && our.effect.how.steady && their.effect.how.steady) {
+    return static_cast<double>(their.start.parameters.size()) -
+           static_cast<double>(our.start.parameters.size());
+  }
+  const AttitudeModel& model = answer.trials.front().fit.best.model;
+  const std::optional<double> one = braking_power(our, model), other = braking_power(their, model);
+  if (!one || !other) return std::nullopt;
+  return *other - *one;
+}
+
+namespace {
+
+// Of names that are not told from the chosen ones the simplest stand (simpler_by()).
+void prefer_simpler(const Thresholds& limits, Answer& a) {
+  if (a.decision.finding != inference::Finding::named) return;
+  const double alike = a.chosen().log_evidence - limits.search.min_log_evidence_gain;
+  for (size_t i = 0; i < a.trials.size(); ++i) {
+    const Trial& t = a.trials[i];
+    const bool stands = t.objection.empty() && t.log_evidence > alike && t.predictive &&
+                        t.predictive->sigma < limits.decision.max_predictive_sigma &&
+                        std::ranges::all_of(t.significance, [&](double s) {
+                          return s >= limits.decision.min_significance;
+                        });
+    if (!stands || simpler_by(t, a.chosen(), a).value_or(0.0) <= 0.0) continue;
+    a.decision.chosen = a.decision.best_named = i;
+  }
+}
+
+}  // namespace
+
 Answer searched(const NominalModel& nominal, const Fit& nominal_fit, const RecordedData& data,
                 const DiagnoseOptions& options, Among among, const Trial* near) {
   Answer a;
@@ -61,6 +98,7 @@ Answer searched(const NominalModel& nominal, const Fit& nominal_fit, const Recor
   };
   a.decision = inference::decide({a.trials.begin(), a.trials.end()}, domain.candidates(), excess,
                                  options.limits.decision);
+  prefer_simpler(options.limits, a);
   return a;
 }
 

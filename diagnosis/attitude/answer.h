@@ -42,6 +42,13 @@ struct Answer {
 Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOptions& options,
                Fit& nominal_fit);
 
+// Of two explanations that differ in one name: by how much the first's is the simpler one (below
+// zero: the second's), where both brake (by the power of the speed, braking_power()) or both push
+// steadily (by their parameters: a spring without stiffness is a slope). Nothing for others. Of
+// such names the higher one stands only where the lower one does not do as well (marginality: J. A.
+// Nelder, J. R. Statist. Soc. A 140 (1977) 48).
+std::optional<double> simpler_by(const Trial& first, const Trial& second, const Answer& answer);
+
 void tell(const DiagnoseOptions& options, const std::string& what);
 
 }  // namespace photorque

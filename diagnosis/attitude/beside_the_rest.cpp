@@ -20,6 +20,31 @@ void use_noise(const NoiseLevels& noise, RecordedData& data) {
   }
 }
 
+// As many stretches as what the best explanation leaves has independent numbers (n (1 − ρ)/(1 + ρ)
+// of n readings whose neighbours are correlated by ρ), between `limits.stretches` and three times
+// as many: of a few, a difference that is not alike everywhere is not told from none.
+size_t stretches_of(const Answer& answer, const RecordedData& data, const NoiseLevels& own) {
+  constexpr double most = 3.0;
+  const auto fewest = static_cast<double>(answer.all.limits.discrepancy.stretches);
+  const Trial* best = &answer.trials.front();
+  for (const Trial& t : answer.trials) {
+    if (t.objection.empty() && t.fit.chi2 < best->fit.chi2) best = &t;
+  }
+  const NoiseLevels left =
+      with_discrepancy(residuals_of(best->fit, data.train), data.train, own, Remainder::correlated);
+  double independent = most * fewest;
+  for (int channel = 0; channel < channel_count; ++channel) {
+    double readings = 0.0;
+    for (const Observation& seen : data.train) {
+      for (size_t i = 0; i < seen.blocks(); ++i) readings += seen.rows_of(i, channel) > 0.0;
+    }
+    const double shared = left.of(channel).coloured;
+    if (!(readings > 0.0) || !(left.of(channel).level > own.of(channel).level)) continue;
+    independent = std::min(independent, readings * (1.0 - shared) / (1.0 + shared));
+  }
+  return static_cast<size_t>(std::max(fewest, independent));
+}
+
 // An explanation and how it predicts stretches, and what was held out from the fitted alone.
 struct Contender {
   Trial trial;
@@ -31,13 +56,13 @@ struct Contender {
 // Explanations of one search held against each other by the stretches that they predict.
 class Contest {
  public:
-  Contest(const Answer& answer, const RecordedData& data, int threads)
+  Contest(const Answer& answer, const RecordedData& data, size_t stretches, int threads)
       : answer_(answer),
         limits_(answer.all.limits.discrepancy),
         domain_(answer.all),
         train_(data.train),
         held_(data.held),
-        stretches_(domain_, data.train, data.held, limits_.stretches, threads) {}
+        stretches_(domain_, data.train, data.held, stretches, threads) {}
 
   size_t stretches() const { return stretches_.count(); }
 
@@ -120,6 +145,7 @@ class Contest {
   }
 
   // Of the contenders that are not told from `won` and have no more names, the likeliest, or `won`.
+  // The simpler of two kinds of one law counts as likelier (simpler_by()).
   const Contender& likeliest_like(const Contender& won) const {
     const auto evidence = [&](const Contender& c) {
       const auto twin = std::ranges::find_if(answer_.trials, [&](const Trial& t) {
@@ -132,7 +158,9 @@ class Contest {
       const bool is_as_simple = !other.trial.candidates.empty() &&
                                 other.trial.candidates.size() <= won.trial.candidates.size();
       const bool is_alike = gain_sigma(other.chi2, won.chi2) < limits_.min_rival_sigma;
-      if (is_as_simple && is_alike && evidence(other) > evidence(*best)) best = &other;
+      const double better =
+          simpler_by(other.trial, best->trial, answer_).value_or(evidence(other) - evidence(*best));
+      if (is_as_simple && is_alike && better > 0.0) best = &other;
     }
     return *best;
   }
@@ -258,7 +286,7 @@ std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, Recorde
     tell(options, "naming what stands out, with the rest counted as noise");
     Answer next = searched(nominal, fit_nominal(nominal, data.train, options.limits), data, options,
                            Among::torques, nullptr);
-    Contest contest(next, data, options.threads);
+    Contest contest(next, data, stretches_of(next, data, own), options.threads);
     Contender won = contest.winner();
     Trial fitted = fitted_beside_the_rest(won.trial, next.all, own, data);
     for (;;) {

@@ -20,6 +20,9 @@ namespace photorque {
 
 namespace {
 
+// Blocks of a stretch, at the least: a start, and what it cannot take up.
+constexpr size_t least_of_stretch = 12;
+
 // What was said of a file's rows as it was cut.
 void say_cuts(const std::string& name, const Segments& segments,
               std::vector<std::string>& warnings) {
@@ -78,6 +81,34 @@ void say_assumed_sequence(const NamedRecording& r, const Platform& platform,
                      "; no rates are there to test it, and [recording] angle_sequence states it");
 }
 
+// What slides under forces that are commanded in answer to its place hardly moves: over a whole run
+// no force at all, the commanded one least, describes it best (closed-loop identification, L.
+// Ljung, System Identification, 2nd ed. 1999, section 13.4). Over stretches with starts of their
+// own, short against the run, the forces show.
+void begin_anew_under_commands(const std::string& name, const Platform& platform, size_t stretches,
+                               std::vector<Observation>& all, std::vector<std::string>& warnings) {
+  std::vector<Observation> result;
+  for (const Observation& seen : all) {
+    const bool is_commanded =
+        platform.slides() && std::ranges::any_of(seen.schedule.held, [](const ZeroOrderHold& held) {
+          return held.commands_force();
+        });
+    const size_t count = is_commanded ? std::min(stretches, seen.blocks() / least_of_stretch) : 1;
+    for (size_t i = 0; i < count; ++i) {
+      result.push_back(count == 1
+                           ? seen
+                           : seen.part(i * seen.blocks() / count, (i + 1) * seen.blocks() / count));
+    }
+    if (count > 1) {
+      warnings.push_back(
+          written("%s: forces are commanded, which may answer the motion: %zu "
+                  "stretches with a start of their own each",
+                  name.c_str(), count));
+    }
+  }
+  all = std::move(result);
+}
+
 // The stretches of each recording.
 std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecording>& recordings,
                                                   const NominalModel& nominal,
@@ -112,6 +143,8 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
       of_rates += repair_free_rates(segments.all, platform.inertia_kg_m2);
     if (convention.empty()) convention = of_rates;
     if (!convention.empty()) warnings.push_back(r.name + ": " + convention);
+    begin_anew_under_commands(r.name, platform, options.limits.discrepancy.stretches, segments.all,
+                              warnings);
     all.push_back(std::move(segments.all));
   }
   return all;

@@ -31,9 +31,12 @@ Stretches::Stretches(const AttitudeDomain& domain, std::vector<Observation> trai
                      std::vector<Observation> held, size_t wanted, int threads)
     : domain_(domain), threads_(threads), runs_(std::move(train)), train_(runs_.size()) {
   std::move(held.begin(), held.end(), std::back_inserter(runs_));
-  const size_t pieces = (wanted + runs_.size() - 1) / runs_.size();
+  size_t all = 0;
+  for (const Observation& seen : runs_) all += seen.blocks();
   for (size_t run = 0; run < runs_.size(); ++run) {
     const size_t blocks = runs_[run].blocks();
+    const size_t pieces =
+        runs_.size() >= wanted ? 1 : std::max<size_t>(1, (wanted * blocks + all / 2) / all);
     for (size_t piece = 0; piece < pieces; ++piece) {
       const Stretch stretch{run, piece * blocks / pieces, (piece + 1) * blocks / pieces};
       if (runs_[run].readings(stretch.first, stretch.last) > 0) stretches_.push_back(stretch);

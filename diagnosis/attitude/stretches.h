@@ -13,7 +13,7 @@ namespace photorque {
 
 class Stretches {
  public:
-  // Every run in as many stretches as give about `wanted` in all; of more runs than that each is
+  // Runs in stretches of about equally many blocks, about `wanted` in all; of as many runs each is
   // one, and only how it began is taken from it.
   Stretches(const AttitudeDomain& domain, std::vector<Observation> train,
             std::vector<Observation> held, size_t wanted, int threads);

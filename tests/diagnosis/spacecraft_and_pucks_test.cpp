@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <random>
@@ -91,6 +92,61 @@ TEST(Pucks, AWallIsNoForce) {
   }
   const Diagnosis d = diagnose(machine(puck_toml), {{"puck.csv", free}}, {});
   EXPECT_EQ(d.verdict, Verdict::consistent);
+}
+
+// A platform that thrusters hold in its place, PD control, while it turns evenly: the commanded
+// force answers the place, and what is missing shows in the command alone. Between commands the
+// acceleration is constant but for the force that turns along, which is taken at the middle.
+Recording held_in_place(double gain, const Vec2& lab_m_s2, const Vec2& body_m_s2, uint64_t seed) {
+  constexpr double mass_kg = 12.0, turn_rad_s = 0.055, step_s = 0.1;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise(0.0, 3e-5), of_angle(0.0, 1.5e-4);
+  std::array<Channel, 5> all{
+      {{"x_m", {}}, {"y_m", {}}, {"angle_rad", {}}, {"command_x_N", {}}, {"command_y_N", {}}}};
+  Vec2 place_m(0.004, -0.003), velocity_m_s(2e-4, 1e-4);
+  for (int i = 0; i < 1200; ++i) {
+    const Vec2 seen_m = place_m + Vec2(noise(random), noise(random));
+    const Vec2 command_N = -mass_kg * (0.02 * seen_m + 0.15 * velocity_m_s);
+    all[0].values.push_back(seen_m.x());
+    all[1].values.push_back(seen_m.y());
+    all[2].values.push_back(turn_rad_s * step_s * i + of_angle(random));
+    all[3].values.push_back(command_N.x());
+    all[4].values.push_back(command_N.y());
+    const double heading = turn_rad_s * step_s * (i + 0.5);
+    const Vec2 along(std::cos(heading), std::sin(heading)), across(-along.y(), along.x());
+    const Vec2 a =
+        gain * command_N / mass_kg + lab_m_s2 + body_m_s2.x() * along + body_m_s2.y() * across;
+    place_m += step_s * velocity_m_s + 0.5 * step_s * step_s * a;
+    velocity_m_s += step_s * a;
+  }
+  return recording_of(step_s, {all.begin(), all.end()});
+}
+
+TEST(Pucks, ForcesUnderFeedbackAreFoundOverStretches) {
+  const Vec2 lab_m_s2(4e-4, 1.5e-4), body_m_s2(1.5e-4, -1e-4);
+  constexpr double gain = 0.8;
+  const std::vector<NamedRecording> runs = {
+      {"held.csv", held_in_place(gain, lab_m_s2, body_m_s2, 6)}};
+  const NominalModel platform = machine(R"([platform]
+topology = "planar"
+mass_kg = 12
+inertia_kg_m2 = 0.2
+[sensors.position]
+noise_m = 3e-5
+[sensors.angle]
+noise_arcsec = 31
+)");
+  const Diagnosis d = diagnose(platform, runs, {});
+  ASSERT_THAT(kinds_of(d), UnorderedElementsAre("actuator_gain", "table_slope", "body_force"))
+      << d.sentence;
+  EXPECT_THAT(d.warnings, testing::Contains(HasSubstr("16 stretches")));
+  EXPECT_NEAR(parameter(d, "actuator_gain", "gain_error").value[0], gain - 1.0, 0.05);
+  for (size_t k = 0; k < 2; ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    EXPECT_NEAR(parameter(d, "table_slope", "slope_rad").value[k],
+                -lab_m_s2[at] / standard_gravity_m_s2, 2e-6);
+    EXPECT_NEAR(parameter(d, "body_force", "force_N").value[k], 12.0 * body_m_s2[at], 2e-4);
+  }
 }
 
 TEST(Pucks, AreGuessedByTheirColumns) {

@@ -294,19 +294,39 @@ bool turns(const std::vector<Observation>& runs) {
   });
 }
 
+// Rates about an axis: those of a gyro, or of angles across a sixteenth of the run.
+std::vector<double> rates_about(const Observation& seen, const Vec3& axis) {
+  std::vector<double> rate_rad_s, angle_rad, time_s;
+  size_t before = seen.blocks();
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    double along_rad_s = 0.0, read = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      if (axis[k] == 0.0) continue;
+      along_rad_s += axis[k] * seen.gyro_rad_s[i][k];
+      read += seen.gyro_rows[i][k];
+    }
+    if (read > 0.0 && std::isfinite(along_rad_s)) rate_rad_s.push_back(along_rad_s);
+    if (!seen.sees_some_attitude() || !(seen.attitude_rows[i] > 0.0)) continue;
+    const double turned_rad =
+        before == seen.blocks()
+            ? 0.0
+            : axis.dot(rotation_vector(seen.attitude[i] * seen.attitude[before].conjugate()));
+    angle_rad.push_back((angle_rad.empty() ? 0.0 : angle_rad.back()) + turned_rad);
+    time_s.push_back(seen.time_s[i]);
+    before = i;
+  }
+  if (!rate_rad_s.empty()) return rate_rad_s;
+  const size_t across = std::max<size_t>(1, angle_rad.size() / 16);
+  for (size_t i = across; i < angle_rad.size(); ++i) {
+    rate_rad_s.push_back((angle_rad[i] - angle_rad[i - across]) / (time_s[i] - time_s[i - across]));
+  }
+  return rate_rad_s;
+}
+
 // Whether every run turns one way about `axis`, and ever more slowly; it may stop.
 bool only_slows_down(const std::vector<Observation>& runs, const Vec3& axis) {
   return std::all_of(runs.begin(), runs.end(), [&](const Observation& seen) {
-    std::vector<double> rate_rad_s;
-    for (size_t i = 0; i < seen.blocks(); ++i) {
-      double along_rad_s = 0.0, read = 0.0;
-      for (int k = 0; k < 3; ++k) {
-        if (axis[k] == 0.0) continue;
-        along_rad_s += axis[k] * seen.gyro_rad_s[i][k];
-        read += seen.gyro_rows[i][k];
-      }
-      if (read > 0.0 && std::isfinite(along_rad_s)) rate_rad_s.push_back(along_rad_s);
-    }
+    const std::vector<double> rate_rad_s = rates_about(seen, axis);
     if (rate_rad_s.empty()) return false;
     const auto [least, most] = std::minmax_element(rate_rad_s.begin(), rate_rad_s.end());
     // What noise makes of a wheel at rest, and of a short stretch.
@@ -363,6 +383,34 @@ bool needs_attitude(const Candidate& c, AttitudeModel model) {
 }
 
 }  // namespace
+
+std::optional<double> braking_power(const Candidate& candidate, AttitudeModel model) {
+  const bool slides = model.platform.slides(), pushes = is_force(candidate.effect.how.needs);
+  if (candidate.empirical() || candidate.start.stage == Stage::measurement) return std::nullopt;
+  if (pushes ? !slides : !model.platform.turns_about_one_axis()) return std::nullopt;
+  Disturbance acting = candidate.start;
+  for (size_t p = 0; p < acting.parameters.size(); ++p) {
+    if (candidate.is_strength(p)) acting.parameters[p].value += candidate.scale[p];
+  }
+  model.disturbances = {std::move(acting)};
+  if (slides) model.disturbances.push_back(translation());
+  // Along the motion: the action at this rate about the axis, or at this speed along x.
+  const auto action = [&](double motion) {
+    PlatformState state =
+        Dynamics(model).initial_state(pushes ? Vec3::Zero().eval() : motion * model.platform.axis);
+    if (slides) {
+      std::copy_n(std::array{0.0, 0.0, pushes ? motion : 0.0, 0.0}.begin(), 4,
+                  state.extra.end() - 4);
+    }
+    return pushes ? disturbance_forces_lab_N(model, state).front().x()
+                  : model.platform.axis.dot(disturbance_torques_body_N_m(model, state).front());
+  };
+  constexpr double slow = 0.5, alike = 1e-6;
+  const double forward = action(slow), backward = action(-slow), faster = action(2.0 * slow);
+  const bool brakes = forward < 0.0 && std::abs(forward + backward) < -alike * forward;
+  if (!brakes || !(faster < 0.0)) return std::nullopt;
+  return std::log2(faster / forward);
+}
 
 Candidates all_candidates(const NominalModel& nominal, const std::vector<Observation>& runs,
                           const Thresholds& limits) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,10 @@ struct Candidate {
            std::none_of(searched.begin(), searched.end(), [](bool b) { return b; });
   }
 };
+
+// By which power of the rate, or of the speed of what slides, a candidate brakes: 0 where it rubs.
+// Nothing where it does anything else. `model`: of the platform.
+std::optional<double> braking_power(const Candidate& candidate, AttitudeModel model);
 
 // Where the fit of a candidate starts.
 struct Start {
