@@ -47,8 +47,14 @@ std::string comment(const std::string& text) {
   return line + "\n";
 }
 
-// Exact numbers, with their errors as a comment: of what acts on light there is no prior.
+// Exact numbers, with their errors as a comment: of what acts on light there is no prior. Of places
+// that explain as much the first is taken.
 std::string plain_text(const FittedParameter& p) {
+  if (p.key == "index" && p.value.size() > 1) {
+    const std::vector<double> others(p.value.begin() + 1, p.value.end());
+    return p.key + " = " + print("%.9g", p.value.front()) + "  # or as well " +
+           array_text(others, "%.9g") + "\n";
+  }
   std::string text = p.key + " = " + array_text(p.value, "%.9g");
   if (has_sigma(p)) text += "  # ± " + array_text(p.sigma, "%.3g");
   return text + "\n";
