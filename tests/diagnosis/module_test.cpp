@@ -259,7 +259,9 @@ TEST(ModuleDiagnosis, NamesTheCurvesOfADayThatDiffer) {
     append(day.temperature_K, curve.temperature_K);
     append(day.lab_from_body, curve.lab_from_body);
     day.sweep.insert(day.sweep.end(), curve.rows(), k);
-    day.irradiance_W_m2.insert(day.irradiance_W_m2.end(), curve.rows(), 900.0 * lights[k]);
+    // A sensor that reads 2 % less from curve to curve.
+    day.irradiance_W_m2.insert(day.irradiance_W_m2.end(), curve.rows(),
+                               900.0 * lights[k] * std::pow(0.98, k));
   }
   day.kind = LightRecording::Kind::sweep;
   day.name = "folder/day.csv";
@@ -273,6 +275,8 @@ TEST(ModuleDiagnosis, NamesTheCurvesOfADayThatDiffer) {
     ASSERT_EQ(effect.texts.size(), 1u);
     EXPECT_EQ(effect.texts[0].second, "day.csv, sweep " + std::to_string(k));
   }
+  ASSERT_FALSE(d.where.depends_on.empty());
+  EXPECT_EQ(d.where.depends_on.front().variable, "time");
 }
 
 // Curves of a healthy module at other light and temperature (pvlib, ../shared): measured, so that

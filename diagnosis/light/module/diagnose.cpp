@@ -423,14 +423,17 @@ ModuleData of_one_curve(const ModuleRun& whole) {
 }
 
 // Every curve alone: the nominal model first, and all hypotheses where that leaves something.
+// `light`: of each over the reference, by the nominal model.
 std::vector<Diagnosis> each_curve(const ModuleDesign& design, const ModuleNominal& nominal,
-                                  const ModuleData& all, const ModuleDiagnoseOptions& options) {
+                                  const ModuleData& all, const ModuleDiagnoseOptions& options,
+                                  std::vector<double>& light) {
   const std::vector<ModuleHypothesis> hypotheses = module_hypotheses(design, nominal);
   const ModuleFitter fitter(design, nominal, options.limits);
   std::vector<Diagnosis> each;
   for (const ModuleRun& curve : all.whole) {
     const ModuleData data = of_one_curve(curve);
     ModuleAnswer answer = explain_module(design, nominal, {hypotheses.front()}, data, options);
+    light.push_back(std::exp(answer.trials.front().fit.at[0]));
     const double excess =
         excess_of(fitter, hypotheses.front(), answer.trials.front(), data.train, options.limits);
     const bool is_odd = answer.decision.finding != inference::Finding::nothing_missing ||
@@ -511,6 +514,62 @@ Diagnosis of_all_curves(std::vector<Diagnosis> each) {
   return all;
 }
 
+// Adds how the light of the curves goes with what a sensor saw: a line through the logarithm of
+// their ratio over the order of the curves, by Theil and Sen, which a few curves under a cloud do
+// not move. Without the irradiance of the reference the ratio counts from its median.
+void compare_with_sensor(const ModuleDesign& design, const std::vector<ModuleRun>& curves,
+                         const std::vector<double>& light, Diagnosis& d) {
+  std::vector<double> order, ratio;
+  for (size_t i = 0; i < curves.size(); ++i) {
+    if (!(curves[i].irradiance_W_m2 > 0.0)) continue;
+    order.push_back(static_cast<double>(i));
+    ratio.push_back(std::log(light[i] / curves[i].irradiance_W_m2));
+  }
+  constexpr size_t fewest = 5;
+  if (ratio.size() < fewest) return;
+  const std::vector<double>& stated = design.reference_irradiances_W_m2;
+  const bool is_absolute = !stated.empty() && stated.front() > 0.0;
+  const double unit = is_absolute ? -std::log(stated.front()) : median_of(ratio);
+  std::vector<double> slopes, off;
+  for (size_t i = 0; i < ratio.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) {
+      slopes.push_back((ratio[i] - ratio[j]) / (order[i] - order[j]));
+    }
+  }
+  const double slope = median_of(slopes);
+  for (size_t i = 0; i < ratio.size(); ++i) off.push_back(ratio[i] - slope * order[i]);
+  const double level = median_of(off);
+  for (double& x : off) x = std::abs(x - level);
+  constexpr double of_median = 0.6745;  // of a normal variable's standard deviation
+  const double scatter = median_of(off) / of_median;
+  const auto at = [&](double i) { return std::exp(level + slope * i - unit); };
+  // The error of the slope of a line through n points, one apart: scatter √(12/n³).
+  const auto n = static_cast<double>(ratio.size());
+  const double sigma = std::abs(slope) / std::max(1e-9, scatter * std::sqrt(12.0 / (n * n * n)));
+  char text[400];
+  std::snprintf(
+      text, sizeof text,
+      "light over irradiance_W_m2%s goes from %.3f at the first curve to %.3f at the last "
+      "(a line over their order, %.1f standard errors), and scatters by %.2g %%: angle of "
+      "incidence, dirt, spectrum or the sensor, not the cells",
+      is_absolute ? "" : ", over its median,", at(order.front()), at(order.back()), sigma,
+      100.0 * scatter);
+  d.warnings.emplace_back(text);
+  constexpr double beyond_doubt = 4.0, far = 6.0;
+  if (sigma > beyond_doubt) {
+    const double moved = std::abs(slope) * (order.back() - order.front());
+    d.where.depends_on.push_back({"time", moved / (moved + scatter)});
+  }
+  for (size_t i = 0; i < ratio.size(); ++i) {
+    if (off[i] < far * scatter) continue;
+    const ModuleRun& curve = curves[static_cast<size_t>(order[i])];
+    std::snprintf(text, sizeof text, "%s: light over irradiance_W_m2 is %.3f, off that line",
+                  std::filesystem::path(curve.sweep.name).filename().string().c_str(),
+                  std::exp(ratio[i] - unit));
+    d.warnings.emplace_back(text);
+  }
+}
+
 }  // namespace
 
 Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRecording>& recordings,
@@ -543,12 +602,16 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
   Diagnosis d;
   bool is_done = false;
   if (holdouts.empty() && data.whole.size() > 1) {
-    std::vector<Diagnosis> each = each_curve(design, nominal, data, options);
+    std::vector<double> light;
+    std::vector<Diagnosis> each = each_curve(design, nominal, data, options, light);
     const auto differing = static_cast<size_t>(std::ranges::count_if(
         each, [](const Diagnosis& one) { return one.verdict != Verdict::consistent; }));
     const bool is_even = differing == 0 || differing == each.size();
     is_done = !is_even || each.size() > few;
-    if (is_done) d = of_all_curves(std::move(each));
+    if (is_done) {
+      d = of_all_curves(std::move(each));
+      compare_with_sensor(design, data.whole, light, d);
+    }
   }
   if (!is_done) {
     const ModuleAnswer answer =

@@ -341,8 +341,10 @@ double point_sigma_A(const ModuleNominal& nominal, const ModuleSweep& sweep) {
   // Per unit of distance, of the short-circuit current: what the powers of Translation leave of the
   // two modules from which their sizes come.
   constexpr double translation_misfit = 1.5e-3;
+  // One or two references show their misfit over few lengths of correlation, to a third.
+  constexpr double of_curves = 1.33;
   const double misfit_A =
-      std::hypot(nominal.misfit, translation_misfit * distance_of(nominal, sweep)) *
+      std::hypot(of_curves * nominal.misfit, translation_misfit * distance_of(nominal, sweep)) *
       nominal.cell.photocurrent_A * sweep.light;
   const double repeated = std::max(1.0, nominal.correlation_V / step_V);
   return std::hypot(sweep.noise_A, misfit_A * std::sqrt(repeated));
