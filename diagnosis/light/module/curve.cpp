@@ -23,8 +23,9 @@ CellParameters at_state(const ModuleCell& cell, const ModuleState& state) {
   };
   const double of_ideality = power(by.ideality_by_light, by.ideality_by_temperature),
                n = std::clamp(cell.ideality * of_ideality, 0.05, 50.0);
-  const double open = std::log(std::max(cell.photocurrent_A, 1e-30) / cell.saturation_A),
-               saturation_A = cell.saturation_A * std::exp(open * (1.0 - 1.0 / of_ideality));
+  const double at_reference_A = std::clamp(cell.saturation_A, 1e-60, 1e3),
+               open = std::log(std::clamp(cell.photocurrent_A, 1e-30, 1e9) / at_reference_A),
+               saturation_A = at_reference_A * std::exp(open * (1.0 - 1.0 / of_ideality));
   const double per_kelvin = silicon_gap_eV * elementary_charge_C / boltzmann_J_K / n;
   CellParameters p;
   p.temperature_K = T;

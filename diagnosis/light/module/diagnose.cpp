@@ -215,8 +215,11 @@ ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nom
     p.sigma = (p.chi2_per_sample - 1.0) /
               std::sqrt(2.0 / held + 2.0 / static_cast<double>(train.fit.samples));
     if (i > 0) {
+      // Within the error of one diode and of its translation nothing can be said to act.
+      const bool leaves_more = all.data_chi2 > static_cast<double>(all.samples);
       train.significance = {std::sqrt(std::max(0.0, own.chi2 - train.fit.chi2))};
-      train.joint_significance = {std::sqrt(std::max(0.0, all.chi2 - joint.fit.chi2))};
+      train.joint_significance = {leaves_more ? std::sqrt(std::max(0.0, all.chi2 - joint.fit.chi2))
+                                              : 0.0};
     }
     train.holdout_chi2_per_sample = p.chi2_per_sample;
     train.predictive = p;
@@ -428,16 +431,12 @@ std::vector<Diagnosis> each_curve(const ModuleDesign& design, const ModuleNomina
                                   const ModuleData& all, const ModuleDiagnoseOptions& options,
                                   std::vector<double>& light) {
   const std::vector<ModuleHypothesis> hypotheses = module_hypotheses(design, nominal);
-  const ModuleFitter fitter(design, nominal, options.limits);
   std::vector<Diagnosis> each;
   for (const ModuleRun& curve : all.whole) {
     const ModuleData data = of_one_curve(curve);
     ModuleAnswer answer = explain_module(design, nominal, {hypotheses.front()}, data, options);
     light.push_back(std::exp(answer.trials.front().fit.at[0]));
-    const double excess =
-        excess_of(fitter, hypotheses.front(), answer.trials.front(), data.train, options.limits);
-    const bool is_odd = answer.decision.finding != inference::Finding::nothing_missing ||
-                        excess > options.limits.search.explained_sigma;
+    const bool is_odd = answer.decision.finding != inference::Finding::nothing_missing;
     if (is_odd) answer = explain_module(design, nominal, hypotheses, data, options);
     each.push_back(described(design, nominal, answer, data, options.limits));
     Diagnosis& d = each.back();
