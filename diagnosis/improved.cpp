@@ -74,6 +74,13 @@ void add_effect(TomlDocument& document, const FoundEffect& effect, const std::st
   if (table_name == "effect") {
     // Exact numbers, with their errors as a comment: of what acts on light there is no prior.
     for (const FittedParameter& p : effect.parameters) {
+      if (p.key == "index" && p.value.size() > 1) {
+        // Of places that explain as much the first is taken.
+        const std::vector<double> others(p.value.begin() + 1, p.value.end());
+        document.set(table, p.key, numbers({p.value.front()}, "%.9g"),
+                     "or as well " + toml_value(numbers(others, "%.9g")));
+        continue;
+      }
       document.set(table, p.key, numbers(p.value, "%.9g"),
                    has_sigma(p) ? "± " + toml_value(numbers(p.sigma, "%.3g")) : "");
     }

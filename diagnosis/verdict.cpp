@@ -1,5 +1,7 @@
 #include "diagnosis/verdict.h"
 
+#include <cstdio>
+
 namespace photorque {
 
 Verdict verdict_of(inference::Finding finding) {
@@ -12,6 +14,15 @@ Verdict verdict_of(inference::Finding finding) {
       return Verdict::unexplained;
   }
   return Verdict::unexplained;
+}
+
+std::string untested_names(const Holdout& holdout) {
+  char text[240];
+  std::snprintf(text, sizeof text,
+                "what was held out does not test the names: the nominal model predicts it as well "
+                "(χ² per sample %.3g, with the names %.3g)",
+                holdout.chi2_per_sample_before, holdout.chi2_per_sample_after);
+  return text;
 }
 
 }  // namespace photorque

@@ -8,4 +8,7 @@ namespace photorque {
 
 Verdict verdict_of(inference::Finding finding);
 
+// The sentence where what was held out does not tell the names from the nominal model.
+std::string untested_names(const Holdout& holdout);
+
 }  // namespace photorque

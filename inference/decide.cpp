@@ -11,8 +11,8 @@ namespace {
 class Judge {
  public:
   Judge(const std::vector<Explanation>& trials, const std::vector<CandidateTraits>& all,
-        const Thresholds::Decision& limits)
-      : trials_(trials), all_(all), limits_(limits) {}
+        const Checks& checks, const Thresholds::Decision& limits)
+      : trials_(trials), all_(all), checks_(checks), limits_(limits) {}
 
   bool is_empirical(size_t trial) const {
     const std::vector<size_t>& candidates = trials_[trial].candidates;
@@ -49,7 +49,7 @@ class Judge {
     return best;
   }
 
-  // The same without those of its names that are hardly missed.
+  // The trial without those of its names that are hardly missed.
   size_t pruned(size_t trial) const {
     while (trial != 0) {
       size_t fewer = trial;
@@ -64,11 +64,47 @@ class Judge {
     return trial;
   }
 
+  // The trial without those of its names that left-out segments do not need; `gains`: of the rest.
+  // `unneeded` gains the others' names.
+  size_t needed_by_segments(size_t trial, std::vector<std::optional<double>>& gains,
+                            std::set<std::string>& unneeded) const {
+    gains.clear();
+    if (!checks_.gain_sigma) return trial;
+    for (size_t which = 0; which < trials_[trial].candidates.size(); ++which) {
+      const std::optional<double> gain = checks_.gain_sigma(trial, which);
+      if (gain && *gain < checks_.limits.min_gain_sigma) {
+        unneeded.insert(all_[trials_[trial].candidates[which]].name);
+        return needed_by_segments(without(trial, which), gains, unneeded);
+      }
+      gains.push_back(gain);
+    }
+    return trial;
+  }
+
+  // Whether what was held out tells a trial from the nominal model.
+  bool is_tested(size_t trial) const {
+    const auto &before = trials_.front().holdout_chi2_per_sample,
+               &after = trials_[trial].holdout_chi2_per_sample;
+    return !before || !after || *after < checks_.limits.max_untested_fraction * *before;
+  }
+
+  // Candidates at other places that explain as much as the one at `which`.
+  std::vector<size_t> equal_places(size_t trial, size_t which) const {
+    std::vector<size_t> equal;
+    if (!checks_.other_places) return equal;
+    for (const auto& [candidate, behind] : checks_.other_places(trial, which)) {
+      if (behind < checks_.limits.min_log_odds_of_place) equal.push_back(candidate);
+    }
+    return equal;
+  }
+
   // Whether the trial predicts what was held out. Where that was asked of the nominal model, one
   // that was never asked has not shown it.
   bool predicts(size_t trial) const {
     const std::optional<Predictive>& p = trials_[trial].predictive;
-    return p ? p->sigma < limits_.max_predictive_sigma : !trials_.front().predictive;
+    if (!p) return !trials_.front().predictive;
+    const bool is_off = trials_[trial].held_out_sigma.value_or(0.0) > limits_.max_predictive_sigma;
+    return p->sigma < limits_.max_predictive_sigma && !is_off;
   }
 
   // Candidates with a name that no explanation as good does without.
@@ -115,6 +151,12 @@ class Judge {
     return ours.size() == theirs.size() && shared.size() + 1 == ours.size() && !is_empirical(other);
   }
 
+  // Whether `other` has all names of `trial`, but another known effect for the one at `which`.
+  bool exchanges(size_t trial, size_t which, size_t other) const {
+    return exchanges_one(trial, other) &&
+           !has_name(other, all_[trials_[trial].candidates[which]].name);
+  }
+
   std::multiset<std::string> names_of(size_t trial) const {
     std::multiset<std::string> names;
     for (const size_t c : trials_[trial].candidates) names.insert(all_[c].name);
@@ -122,6 +164,18 @@ class Judge {
   }
 
  private:
+  // The best trial of the others' names alone; the nominal model where none was fitted.
+  size_t without(size_t trial, size_t which) const {
+    std::multiset<std::string> rest = names_of(trial);
+    rest.erase(rest.find(all_[trials_[trial].candidates[which]].name));
+    size_t best = 0;
+    for (size_t i = 1; i < trials_.size(); ++i) {
+      if (names_of(i) != rest || !trials_[i].objection.empty() || !is_significant(i)) continue;
+      if (best == 0 || trials_[i].log_evidence > trials_[best].log_evidence) best = i;
+    }
+    return best;
+  }
+
   // Whether `part` has all names of `whole` but one.
   bool is_part(size_t part, size_t whole) const {
     const auto fewer = names_of(part), all = names_of(whole);
@@ -143,6 +197,7 @@ class Judge {
 
   const std::vector<Explanation>& trials_;
   const std::vector<CandidateTraits>& all_;
+  const Checks& checks_;
   const Thresholds::Decision& limits_;
 };
 
@@ -179,17 +234,21 @@ double probability_of(const std::vector<double>& probability,
 }  // namespace
 
 Decision decide(const std::vector<Explanation>& trials, const std::vector<CandidateTraits>& all,
-                const std::function<double(size_t trial)>& excess_sigma,
-                const Thresholds::Decision& limits) {
-  const Judge judge(trials, all, limits);
-  const size_t named = judge.pruned(judge.best(false)), empirical = judge.best(true);
+                const Checks& checks, const Thresholds::Decision& limits) {
+  const Judge judge(trials, all, checks, limits);
+  const size_t empirical = judge.best(true);
+  std::vector<std::optional<double>> gains;
+  std::set<std::string> unneeded;
+  // Gates (b) and (c).
+  const size_t named = judge.needed_by_segments(judge.pruned(judge.best(false)), gains, unneeded);
   Decision d;
   d.probability = posterior(trials, judge);
   d.best_named = named;
   const bool only_empirical =
       empirical != 0 &&
       trials[empirical].log_evidence > trials[named].log_evidence + limits.min_log_odds;
-  const bool structure_left = excess_sigma(named) > limits.max_excess_sigma;
+  // Gate (d).
+  const bool structure_left = checks.excess_sigma(named) > limits.max_excess_sigma;
   const bool predicts = judge.predicts(named);
   if (only_empirical || structure_left || !predicts) {
     d.finding = Finding::unknown;
@@ -199,7 +258,7 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
     d.chosen = only_empirical ? empirical : named;
     const bool law_does = only_empirical && judge.predicts(empirical) &&
                           judge.predicts_far_better(empirical) &&
-                          excess_sigma(empirical) < limits.max_excess_sigma;
+                          checks.excess_sigma(empirical) < limits.max_excess_sigma;
     d.leaves_more = !law_does;
     if (law_does) d.beside_law = judge.indispensable(empirical);
     // The law is an approximation, and several effects take up together what it leaves.
@@ -211,14 +270,18 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
     return d;
   }
   if (named == 0) {
-    // What is less likely than nothing is no rival, however many such there are.
-    const double rivals = probability_of(
-        d.probability, [&](size_t i) { return d.probability[i] > d.probability.front(); });
-    d.confidence = d.probability.front() / (d.probability.front() + rivals);
+    // What is less likely than nothing is no rival, however many such there are, and neither is
+    // what predicts nothing.
+    const double rivals = probability_of(d.probability, [&](size_t i) {
+      const bool predicts_nothing = std::ranges::any_of(
+          unneeded, [&](const std::string& name) { return judge.has_name(i, name); });
+      return d.probability[i] > d.probability.front() && !predicts_nothing;
+    });
+    const double nothing = d.probability.front() + rivals;
+    d.confidence = nothing > 0.0 ? d.probability.front() / nothing : 1.0;
     return d;
   }
-  // The same names with another parametrisation are the same answer.
-  // More than these is not said, though more may act.
+  // Gate (a). The same names with another parametrisation are the same answer; more may act.
   d.confidence =
       probability_of(d.probability, [&](size_t i) { return judge.has_names_of(named, i); });
   const double of_group = probability_of(d.probability, [&](size_t i) {
@@ -246,6 +309,16 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
   } else {
     d.finding = Finding::named;
     d.chosen = named;
+    d.held_out_tests_names = judge.is_tested(named);  // gate (e)
+    for (size_t which = 0; which < trials[named].candidates.size(); ++which) {
+      Name name{trials[named].candidates[which]};
+      name.probability = probability_of(d.probability, [&](size_t i) {
+        return judge.has_name(i, all[name.candidate].name) || judge.exchanges(named, which, i);
+      });
+      if (which < gains.size()) name.gain_sigma = gains[which];
+      name.equal_places = judge.equal_places(named, which);  // gate (f)
+      d.names.push_back(std::move(name));
+    }
   }
   return d;
 }

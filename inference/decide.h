@@ -1,7 +1,15 @@
-// The verdict: from the evidence of all trials, what is forbidden, and whether noise is left.
+// The verdict on the trials of any domain. Every name passes the same gates:
+//
+//   (a) it is probable, it or what cannot be told from it; else it is a candidate and no name;
+//   (b) each of its groups of parameters differs from neutral;
+//   (c) segments that a fit left out are predicted better with it than without it;
+//   (d) with all names the held-out χ² agrees with its prediction; else the finding is unknown;
+//   (e) where the nominal model predicts the held-out data as well, these do not test the names;
+//   (f) of places that explain the data as well all are listed with it.
 #pragma once
 
 #include <functional>
+#include <utility>
 
 #include "inference/domain.h"
 
@@ -11,6 +19,39 @@ enum class Finding {
   nothing_missing,  // what differs is noise
   named,            // the candidates named explain what differs
   unknown,          // structure is left after them, or only an empirical candidate takes it up
+};
+
+// Limits of the gates beside those of Thresholds::Decision.
+struct GateLimits {
+  // Standard errors over left-out segments by which they are predicted better with a name than
+  // without it.
+  double min_gain_sigma = 3.0;
+  // χ² of what was held out over that of the nominal model, above which it does not test a name.
+  double max_untested_fraction = 0.9;
+  // Log evidence that tells one place (a cell, an LED) from another: odds of 20 to 1.
+  double min_log_odds_of_place = 3.0;
+};
+
+// What a domain computes of its trials for the gates; each is called for few of them.
+struct Checks {
+  // Structure that the trial leaves of what was fitted (whiteness.h) [sigma].
+  std::function<double(size_t trial)> excess_sigma;
+  // Standard errors by which left-out segments are predicted better with the candidate at `which`
+  // of the trial than without it. Nothing where there are too few segments; not set: not checked.
+  std::function<std::optional<double>(size_t trial, size_t which)> gain_sigma = {};
+  // Candidates of the same kind at other places, each in the place of the candidate at `which`,
+  // with the log evidence by which it is behind; not set: there are no places.
+  using Place = std::pair<size_t, double>;
+  std::function<std::vector<Place>(size_t trial, size_t which)> other_places = {};
+  GateLimits limits = {};
+};
+
+// A candidate that passed the gates.
+struct Name {
+  size_t candidate = 0;
+  double probability = 0.0;  // that it acts, or what is not told from it
+  std::optional<double> gain_sigma = {};
+  std::vector<size_t> equal_places = {};  // candidates
 };
 
 struct Decision {
@@ -30,13 +71,14 @@ struct Decision {
   // explanations that are about as likely have in common.
   std::vector<size_t> beside_law = {};
   std::vector<double> probability;  // of each trial
+  std::vector<Name> names = {};     // of the chosen trial where the finding is `named`
+  // Whether what was held out tells the chosen trial from the nominal model.
+  bool held_out_tests_names = true;
 };
 
-// Trial 0 is the nominal model. `excess_sigma` is asked for the best named trial, and is the
-// structure that it leaves. Whatever is said has to predict what was held out, "nothing is missing"
-// as well, and every name has to be missed where it is taken away.
+// Trial 0 is the nominal model. `excess_sigma` is called for the best named trial. "Nothing is
+// missing" has to predict what was held out as well.
 Decision decide(const std::vector<Explanation>& trials, const std::vector<CandidateTraits>& all,
-                const std::function<double(size_t trial)>& excess_sigma,
-                const Thresholds::Decision& limits);
+                const Checks& checks, const Thresholds::Decision& limits);
 
 }  // namespace photorque::inference

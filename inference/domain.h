@@ -42,6 +42,9 @@ struct CandidateTraits {
   size_t parameters = 0;
   // Whether it stands at a place of which one recording alone may leave several open.
   bool has_place = false;
+  // Whether readings bend with it so much that no forecast is made about a model without it: each
+  // is fitted alone, from all its starts, before sets are forecast.
+  bool is_fitted_first = false;
 };
 
 // What a trial says, without what was fitted.
@@ -58,6 +61,8 @@ struct Explanation {
   // Of its prediction of what was held out, where it was asked for.
   std::optional<double> holdout_chi2_per_sample = {};
   std::optional<Predictive> predictive = {};
+  // How far its χ² lies above what the errors of the fitted parameters predict (held_out.h).
+  std::optional<double> held_out_sigma = {};
 };
 
 // How patiently is fitted: the fractions of each run that are fitted in turn, and the iterations

@@ -42,6 +42,9 @@ class Rounds {
         scans_base = true;
         for (Trial& t : scanned(trials_.front())) found.push_back(std::move(t));
       }
+      if (round == 0) {
+        for (Trial& t : each_alone(at)) found.push_back(std::move(t));
+      }
       if (scan) {
         for (Trial& t : relocated(at)) found.push_back(std::move(t));
       } else {
@@ -299,6 +302,28 @@ class Rounds {
     });
     keep_below(found, refits);
     return found;
+  }
+
+  // What bends too much for a forecast, one candidate at a time.
+  std::vector<Trial> each_alone(const Trial& at) const {
+    const std::vector<CandidateTraits>& all = domain_.candidates();
+    std::vector<size_t> bent;
+    for (size_t c = 0; c < all.size(); ++c) {
+      if (all[c].is_fitted_first && !acts_already(at.candidates, c, all)) bent.push_back(c);
+    }
+    if (bent.empty() || at.candidates.size() >= max_effects_) return {};
+    const Runs averages = slow_runs(domain_, at, set_);
+    const auto starts = domain_.starts(at, bent, set_.runs, averages, threads_);
+    Members<typename D::Start> own;
+    for (const auto& term : domain_.terms_of(at)) own.push_back({term});
+    std::vector<Members<typename D::Start>> chosen;
+    for (size_t i = 0; i < bent.size(); ++i) {
+      for (const auto& start : starts[i]) {
+        chosen.push_back(own);
+        chosen.back().push_back({{bent[i], start}});
+      }
+    }
+    return fitted(at, chosen, averages);
   }
 
   // What acts or does not, and has no strength of which a forecast could be made.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "inference/held_out.h"
 #include "inference/rounds.h"
 
 namespace photorque::inference {
@@ -59,6 +60,11 @@ class Weighing {
     for (const Leader& leader : leaders_) {
       Trial& train = trials_[leader.at];
       train.predictive = predictive_of(train, leader.joint);
+      if constexpr (std::same_as<std::decay_t<decltype(train.fit)>, Fit>) {
+        if (!train.holdout_chi2_per_sample) continue;
+        train.held_out_sigma = inference::held_out_sigma(
+            train.fit, leader.joint.fit, *train.holdout_chi2_per_sample, noise_of(train));
+      }
     }
     for (const Leader& leader : leaders_) {
       Trial& trial = trials_[leader.at];
@@ -175,13 +181,17 @@ class Weighing {
       return result;
     }
     // The noise is known to a few per cent; what it is shows in the train runs.
-    const double noise = std::clamp(train.fit.chi2_per_sample(), 1.0, limits_.held_out.max_noise);
+    const double noise = noise_of(train);
     result.sigma = (result.chi2_per_sample - noise) / std::sqrt(2.0 / held + 2.0 / fitted);
     const std::vector<typename D::Begin> begins = domain_.begins_of(joint);
     const Trial on_held = domain_.with_begins(
         joint, {begins.end() - static_cast<std::ptrdiff_t>(held_.size()), begins.end()});
     result.sigma = std::max(result.sigma, domain_.excess_sigma(on_held, held_));
     return result;
+  }
+
+  double noise_of(const Trial& train) const {
+    return std::clamp(train.fit.chi2_per_sample(), 1.0, limits_.held_out.max_noise);
   }
 
   // Where the best does not predict what was held out, all runs together are searched from there.

@@ -122,4 +122,15 @@ double signed_rank_sigma(const std::vector<double>& differences) {
   return (above - n * (n + 1.0) / 4.0) / std::sqrt(n * (n + 1.0) * (2.0 * n + 1.0) / 24.0);
 }
 
+double gain_sigma(const std::vector<double>& chi2_of_worse,
+                  const std::vector<double>& chi2_of_better) {
+  std::vector<double> gains;
+  for (size_t i = 0; i < chi2_of_worse.size(); ++i) {
+    const double gain = 0.5 * (chi2_of_worse[i] - chi2_of_better[i]);
+    if (!std::isnan(gain)) gains.push_back(gain);
+  }
+  const double by_ranks = signed_rank_sigma(gains), by_mean = mean_sigma(std::move(gains));
+  return std::abs(by_ranks) > std::abs(by_mean) ? by_ranks : by_mean;
+}
+
 }  // namespace photorque::inference

@@ -40,4 +40,10 @@ double mean_sigma(std::vector<double> differences);
 // 0 where nothing is left.
 double signed_rank_sigma(const std::vector<double>& differences);
 
+// Standard errors by which one explanation predicts segments better than another, from χ² of each
+// segment: of the differences of their log scores, by their mean or, where they differ in size by
+// orders, by their ranks, whichever says more.
+double gain_sigma(const std::vector<double>& chi2_of_worse,
+                  const std::vector<double>& chi2_of_better);
+
 }  // namespace photorque::inference

@@ -96,7 +96,7 @@ Answer searched(const NominalModel& nominal, const Fit& nominal_fit, const Recor
   const auto excess = [&](size_t trial) {
     return domain.excess_sigma(a.trials[trial], data.train);
   };
-  a.decision = inference::decide({a.trials.begin(), a.trials.end()}, domain.candidates(), excess,
+  a.decision = inference::decide({a.trials.begin(), a.trials.end()}, domain.candidates(), {excess},
                                  options.limits.decision);
   prefer_simpler(options.limits, a);
   return a;

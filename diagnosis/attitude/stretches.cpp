@@ -7,7 +7,6 @@
 #include "core/errors.h"
 #include "core/parallel.h"
 #include "diagnosis/attitude/holdout.h"
-#include "inference/whiteness.h"
 
 namespace photorque {
 namespace {
@@ -95,18 +94,6 @@ std::vector<double> Stretches::predicted(const Trial& trial, const std::vector<R
     result.clear();
   }
   return result;
-}
-
-double gain_sigma(const std::vector<double>& chi2_of_worse,
-                  const std::vector<double>& chi2_of_better) {
-  std::vector<double> gains;
-  for (size_t i = 0; i < chi2_of_worse.size(); ++i) {
-    const double gain = 0.5 * (chi2_of_worse[i] - chi2_of_better[i]);
-    if (!std::isnan(gain)) gains.push_back(gain);
-  }
-  const double by_ranks = inference::signed_rank_sigma(gains),
-               by_mean = inference::mean_sigma(std::move(gains));
-  return std::abs(by_ranks) > std::abs(by_mean) ? by_ranks : by_mean;
 }
 
 }  // namespace photorque

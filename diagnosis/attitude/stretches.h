@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "diagnosis/attitude/domain.h"
+#include "inference/whiteness.h"
 
 namespace photorque {
 
@@ -39,10 +40,6 @@ class Stretches {
   std::vector<Stretch> stretches_;
 };
 
-// By how many standard errors one explanation predicts stretches better than another: of the
-// differences of their log scores, by their mean or, where they differ in size by orders, by their
-// ranks, whichever says more (inference/whiteness.h).
-double gain_sigma(const std::vector<double>& chi2_of_worse,
-                  const std::vector<double>& chi2_of_better);
+using inference::gain_sigma;
 
 }  // namespace photorque

@@ -151,13 +151,14 @@ std::vector<FoundEffect> found_light_effects(const LightAnswer& answer,
   for (size_t i = 0; i < chosen.candidates.size(); ++i) {
     if (answer.all[chosen.candidates[i]].is_empirical()) continue;
     FoundEffect effect = found_light_effect(chosen, answer.all, i, runs);
-    for (size_t t = 0; t < answer.trials.size(); ++t) {
-      const auto& candidates = answer.trials[t].candidates;
-      if (std::ranges::find(candidates, chosen.candidates[i]) != candidates.end()) {
-        effect.probability += answer.decision.probability[t];
+    const inference::Name& name = answer.decision.names[i];
+    effect.probability = name.probability;
+    for (const size_t c : name.equal_places) {
+      const auto index = static_cast<double>(answer.all[c].index);
+      for (FittedParameter& p : effect.parameters) {
+        if (p.key == "index") p.value.push_back(index);
       }
     }
-    effect.probability = std::min(1.0, effect.probability);
     for (const std::string& rival : light_rivals(answer, i, runs)) {
       auto& known = effect.indistinguishable_from;
       if (rival != effect.kind && std::ranges::find(known, rival) == known.end()) {
@@ -270,7 +271,10 @@ std::string light_sentence(const Diagnosis& d) {
       std::string name = e.kind;
       std::ranges::replace(name, '_', ' ');
       for (const FittedParameter& p : e.parameters) {
-        if (p.key == "index") name += " " + std::to_string(static_cast<int>(p.value.front()));
+        if (p.key != "index") continue;
+        for (size_t k = 0; k < p.value.size(); ++k) {
+          name += (k > 0 ? " or " : " ") + std::to_string(static_cast<int>(p.value[k]));
+        }
       }
       text += (i > 0 ? "; " : "") + name + " (" + e.explanation + ")";
     }

@@ -38,6 +38,13 @@ std::vector<FittedParameter> refined_light_beliefs(const LightAnswer& answer);
 std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
                                       const std::vector<FittedRun>& runs);
 
+// The trial's candidate at `which` at each other place that its kind has (a cell, an LED …), and by
+// how much log evidence all `runs` make it worse there.
+std::vector<inference::Checks::Place> other_light_places(const LightTrial& trial, size_t which,
+                                                         const LightCandidates& all,
+                                                         const std::vector<FittedRun>& runs,
+                                                         int threads);
+
 // Readings beside both models: of runs voltage and current over time and the motion, of scans and
 // sweeps every row.
 RecordingSeries light_series(const LightAnswer& answer, const FittedRun& run, bool is_held_out);

@@ -113,10 +113,15 @@ LightCandidates light_candidates(const LightLab& lab, const LightBelief& nominal
         nominal.uncertain, [&](const LightPrior& p) { return p.key.starts_with(kind.name + "."); });
     if (is_believed) continue;
     const size_t count = count_of(lab, kind.index);
+    const bool bends = kind.index == LightEffectKind::Index::cell &&
+                       std::ranges::any_of(runs, [](const FittedRun& r) {
+                         return r.run->recording().kind != LightRecording::Kind::scan;
+                       });
     // An interrupted only string, or a shorted only diode, leaves nothing to measure.
     const bool is_only = count < 2 && (kind.index == LightEffectKind::Index::string);
     for (size_t i = 0; i < count && !is_only; ++i) {
       LightCandidate c{kind, i, kind.name, {}, {}};
+      c.bends = bends;
       const bool has_number =
           kind.index != LightEffectKind::Index::none && kind.index != LightEffectKind::Index::frame;
       if (has_number) c.label += "[" + std::to_string(i) + "]";

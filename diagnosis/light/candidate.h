@@ -44,6 +44,8 @@ struct LightCandidate {
   bool has_strength() const;
   // Whether all that is fitted is a strength, and nothing has to be scanned.
   bool is_linear() const;
+  // Whether circuits of cells make the readings bend with it.
+  bool bends = false;
 };
 
 struct LightCandidates {

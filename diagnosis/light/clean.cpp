@@ -35,12 +35,6 @@ std::vector<size_t> nearest_in_time(const LightRecording& r, size_t row) {
   return near;
 }
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // How far a value is from the plane through its neighbours, beyond what these scatter about it.
 bool leaves_plane(const std::vector<Vec2>& at, const std::vector<double>& value, double own,
                   double allowed) {

@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "diagnosis/light/account.h"
 #include "diagnosis/light/domain.h"
+#include "diagnosis/light/segments.h"
 #include "diagnosis/verdict.h"
 #include "inference/decide.h"
 #include "inference/search.h"
@@ -151,11 +152,23 @@ LightAnswer explain_light(const LightLab& lab, const LightBelief& nominal, Light
   }
   tell(options, "comparing with what was held out");
   inference::weigh_with_held_out(domain, data.train, data.held, options.threads, answer.trials);
-  const auto excess = [&](size_t trial) {
-    return domain.excess_sigma(answer.trials[trial], data.train);
-  };
+  std::vector<FittedRun> everything = data.train;
+  everything.insert(everything.end(), data.held.begin(), data.held.end());
+  const inference::Checks checks{
+      .excess_sigma =
+          [&](size_t trial) { return domain.excess_sigma(answer.trials[trial], data.train); },
+      .gain_sigma =
+          [&](size_t trial, size_t which) {
+            return gain_over_segments(answer.trials[trial], which, answer.all, everything,
+                                      options.threads);
+          },
+      .other_places =
+          [&](size_t trial, size_t which) {
+            return other_light_places(answer.trials[trial], which, answer.all, everything,
+                                      options.threads);
+          }};
   answer.decision = inference::decide({answer.trials.begin(), answer.trials.end()},
-                                      domain.candidates(), excess, options.limits.decision);
+                                      domain.candidates(), checks, options.limits.decision);
   return answer;
 }
 
@@ -292,6 +305,7 @@ Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
         "the recordings and what was held out show together what neither shows alone, but not "
         "which effect it is: see the alternatives");
   }
+  if (!answer.decision.held_out_tests_names) d.warnings.push_back(untested_names(*d.holdout));
   if (lab.has_array()) {
     std::vector<WeighedSpectrum> spectra;
     for (const Beam& beam : lab.experiment().beams) spectra.push_back({beam.spectrum, 1.0});

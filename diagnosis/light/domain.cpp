@@ -20,6 +20,7 @@ inference::CandidateTraits traits_of_light(const LightCandidate& c) {
   traits.has_strength = c.has_strength();
   traits.has_place = c.kind.scan == LightEffectKind::Scan::shadow;
   traits.parameters = c.fitted();
+  traits.is_fitted_first = c.bends;
   return traits;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/parallel.h"
 #include "diagnosis/light/domain.h"
 
 namespace photorque {
@@ -73,6 +74,30 @@ Eigen::VectorXd unlike_switched(const LightTrial& own, const LightTrial& without
 }
 
 }  // namespace
+
+std::vector<inference::Checks::Place> other_light_places(const LightTrial& trial, size_t which,
+                                                         const LightCandidates& all,
+                                                         const std::vector<FittedRun>& runs,
+                                                         int threads) {
+  const LightCandidate& named = all[trial.candidates[which]];
+  std::vector<inference::Checks::Place> places;
+  const bool has_place = named.kind.index != LightEffectKind::Index::none &&
+                         named.kind.index != LightEffectKind::Index::frame;
+  if (!has_place) return places;
+  for (size_t i = 0; i < all.list.size(); ++i) {
+    const bool is_free = std::ranges::find(trial.candidates, i) == trial.candidates.end();
+    if (is_free && all[i].kind.name == named.kind.name) places.emplace_back(i, 0.0);
+  }
+  constexpr int iterations = 12;
+  const LightTrial own = fit_light(all, trial.candidates, trial.x, trial.priors, runs, iterations);
+  parallel_for(places.size(), threads, [&](size_t k) {
+    std::vector<size_t> candidates = trial.candidates;
+    candidates[which] = places[k].first;
+    const LightTrial there = fit_light(all, candidates, trial.x, trial.priors, runs, iterations);
+    places[k].second = own.log_evidence - there.log_evidence;
+  });
+  return places;
+}
 
 std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
                                       const std::vector<FittedRun>& runs) {

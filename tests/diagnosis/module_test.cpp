@@ -9,6 +9,8 @@
 #include "diagnosis/light/module/diagnose.h"
 #include "photovoltaics/cell/table.h"
 #include "photovoltaics/network/curve.h"
+#include "scenes/experiment/toml.h"
+#include "tests/outside.h"
 
 namespace photorque {
 namespace {
@@ -153,6 +155,151 @@ TEST(ModuleDiagnosis, NamesCellsWithAPartCutOff) {
   const Diagnosis d = diagnose_module(design_with_reference(), {measured(network.curve(), 4)}, {});
   ASSERT_EQ(d.verdict, Verdict::missing_physics) << d.because;
   EXPECT_EQ(d.effects.front().kind, "cell_cracked");
+}
+
+// R_s ∝ S^a (T/T₀)^b and R_sh ∝ S^(e − 1), written out for a cell that has them as its own.
+TEST(ModuleCurve, FollowsPowersOfLightAndTemperature) {
+  ModuleCell follows = usual, has = usual;
+  follows.translation = {
+      .series_by_light = 0.3, .series_by_temperature = 2.0, .shunt_by_light = 0.4};
+  ModuleState state;
+  state.light = 0.5;
+  state.temperature_K = usual.temperature_K * 1.1;
+  has.series_ohm *= 0.81225239635623547 * 1.21;  // 0.5^0.3, 1.1²
+  has.shunt_ohm *= 0.75785828325519911;          // 0.5^0.4
+  for (const double V : {0.0, 3.0, 5.0, 6.0}) {
+    EXPECT_NEAR(module_curve({cells}, follows, state).current_A(V),
+                module_curve({cells}, has, state).current_A(V), 1e-9);
+  }
+}
+
+// Of an ideality that follows the light the open-circuit voltage at the reference stays, and at
+// other light it is n(S) times the logarithm: with n = 1.1 S^0.5 and no shunt, V = 12 n k T/q
+// (ln(I/I₀)/n · 1.1 + ln S).
+TEST(ModuleCurve, KeepsTheReferencesOpenCircuitVoltage) {
+  ModuleCell cell = usual;
+  cell.shunt_ohm = 1e9;
+  ModuleState state;
+  const double before_V = module_curve({cells}, cell, state).open_circuit_V();
+  cell.translation.ideality_by_light = 0.5;
+  EXPECT_NEAR(module_curve({cells}, cell, state).open_circuit_V(), before_V, 1e-9);
+  state.light = 0.81;
+  const double thermal_V = 1.380649e-23 * 298.15 / 1.602176634e-19;
+  const double expected_V = before_V + cells * thermal_V * 1.1 * 0.9 * std::log(0.81);
+  EXPECT_NEAR(module_curve({cells}, cell, state).open_circuit_V(), expected_V, 1e-6);
+}
+
+// Light that falls by a tenth while the voltage rises, against curves in steady light.
+TEST(ModuleCurve, TakesTheLightOfEachPoint) {
+  ModuleState state;
+  state.light_change = -0.1;
+  const std::vector<double> voltage_V = {0.0, 2.0, 4.0, 5.0, 6.0};
+  const auto points = module_points({cells}, usual, state, voltage_V);
+  for (size_t i = 0; i < voltage_V.size(); ++i) {
+    ModuleState steady;
+    steady.light = 1.0 - 0.1 * (voltage_V[i] / 6.0 - 0.5);
+    EXPECT_NEAR(points[i].current_A, module_curve({cells}, usual, steady).current_A(voltage_V[i]),
+                1e-3 * usual.photocurrent_A);
+  }
+}
+
+// The module at 0.6 of the light and 25 K colder, with a series resistance and an ideality that the
+// usual law does not have: as measured modules (docs/light_diagnosis.md). A translation that were
+// exact would name damage.
+LightRecording elsewhere(unsigned seed) {
+  ModuleCell other = usual;
+  other.translation = {.series_by_temperature = 1.9, .ideality_by_temperature = 0.95};
+  ModuleState state;
+  state.light = 0.6;
+  state.temperature_K = 273.15;
+  LightRecording r = measured(module_curve({cells}, other, state), seed);
+  for (double& T : r.temperature_K) T = 273.15;
+  return r;
+}
+
+TEST(ModuleDiagnosis, NamesNoDamageInAnotherLightAndTemperature) {
+  const Diagnosis d = diagnose_module(design_with_reference(), {elsewhere(5)}, {});
+  EXPECT_EQ(d.verdict, Verdict::consistent) << d.sentence;
+  EXPECT_TRUE(d.effects.empty());
+}
+
+// The same curve as a second reference leaves the translation no freedom: a shaded cell shows
+// there.
+LightRecording shaded_curve(double light, double factor, unsigned seed) {
+  Network network(6, false);
+  for (int i = 0; i < 6; ++i) network.light_A[static_cast<size_t>(i)] *= factor;
+  for (double& I : network.light_A) I *= light;
+  return measured(network.curve(), seed);
+}
+
+TEST(ModuleDiagnosis, NamesASubstringInTheShade) {
+  ModuleDesign design = design_with_reference();
+  design.bypass_every = 6;
+  const Diagnosis d = diagnose_module(design, {shaded_curve(1.0, 0.8, 6)}, {});
+  ASSERT_EQ(d.verdict, Verdict::missing_physics) << d.because;
+  ASSERT_EQ(d.effects.size(), 1u);
+  EXPECT_EQ(d.effects.front().kind, "substring_shaded");
+  EXPECT_NEAR(d.effects.front().parameters[0].value[0], 0.8, 0.01);
+}
+
+// Six curves of one day, two of them with a substring in the shade: each is explained alone.
+TEST(ModuleDiagnosis, NamesTheCurvesOfADayThatDiffer) {
+  ModuleDesign design = design_with_reference();
+  design.bypass_every = 6;
+  LightRecording day;
+  const double lights[] = {0.5, 0.6, 0.7, 0.8, 0.9, 1.0}, factors[] = {0.7, 0.85, 1, 1, 1, 1};
+  for (int k = 0; k < 6; ++k) {
+    const LightRecording curve =
+        shaded_curve(lights[k], factors[k], 10u + static_cast<unsigned>(k));
+    const auto append = [](auto& to, const auto& more) {
+      to.insert(to.end(), more.begin(), more.end());
+    };
+    append(day.voltage_V, curve.voltage_V);
+    append(day.current_A, curve.current_A);
+    append(day.temperature_K, curve.temperature_K);
+    append(day.lab_from_body, curve.lab_from_body);
+    day.sweep.insert(day.sweep.end(), curve.rows(), k);
+    // A sensor that reads 2 % less from curve to curve.
+    day.irradiance_W_m2.insert(day.irradiance_W_m2.end(), curve.rows(),
+                               900.0 * lights[k] * std::pow(0.98, k));
+  }
+  day.kind = LightRecording::Kind::sweep;
+  day.name = "folder/day.csv";
+  const Diagnosis d = diagnose_module(design, {day}, {});
+  EXPECT_EQ(d.verdict, Verdict::missing_physics) << d.sentence;
+  ASSERT_EQ(d.effects.size(), 2u) << d.sentence;
+  for (size_t k = 0; k < 2; ++k) {
+    const FoundEffect& effect = d.effects[k];
+    EXPECT_EQ(effect.kind, "substring_shaded");
+    EXPECT_NEAR(effect.parameters[0].value[0], factors[k], 0.01);
+    ASSERT_EQ(effect.texts.size(), 1u);
+    EXPECT_EQ(effect.texts[0].second, "day.csv, sweep " + std::to_string(k));
+  }
+  ASSERT_FALSE(d.where.depends_on.empty());
+  EXPECT_EQ(d.where.depends_on.front().variable, "time");
+}
+
+// Curves of a healthy module at other light and temperature (pvlib, ../shared): measured, so that
+// no translation is exact. Nothing may be named.
+TEST(ModuleDiagnosis, NamesNothingInMeasuredCurvesOfAHealthyModule) {
+  PHOTORQUE_NEEDS_THIRD_PARTY("recordings/pv_healthy");
+  const std::filesystem::path folder = outside::third_party("recordings/pv_healthy");
+  struct Curve {
+    const char* file;
+    double temperature_K;
+  };
+  for (const auto& [file, temperature_K] : {Curve{"c0000.csv", 307.97},
+                                            {"c0180.csv", 325.23},
+                                            {"c1740.csv", 333.95},
+                                            {"c2340.csv", 326.59},
+                                            {"c2880.csv", 304.31}}) {
+    SettingsNode node = read_toml(folder / "experiment.toml");
+    apply_override(node, "module.temperature_K=" + std::to_string(temperature_K));
+    const Settings root(std::make_shared<const SettingsNode>(std::move(node)));
+    const ModuleDesign design = read_module(root, folder);
+    const Diagnosis d = diagnose_module(design, {read_light_recording(folder / file, {})}, {});
+    EXPECT_TRUE(d.effects.empty()) << file << ": " << d.sentence;
+  }
 }
 
 }  // namespace

@@ -23,8 +23,7 @@ Explanation explanation(std::vector<size_t> which, double log_evidence, double p
 
 Decision decided(const std::vector<Explanation>& trials,
                  const Thresholds::Decision& limits = Thresholds().decision) {
-  return decide(
-      trials, candidates, [](size_t) { return 0.0; }, limits);
+  return decide(trials, candidates, {[](size_t) { return 0.0; }}, limits);
 }
 
 TEST(Decide, NamesWhatPredicts) {
@@ -91,8 +90,7 @@ TEST(Decide, ANameThatIsUnlikelyIsNotSaid) {
   const std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
                                            explanation({1}, 104.4, 1.0)};
   const auto judged = [&](const Thresholds::Decision& limits) {
-    return decide(
-        trials, all, [](size_t) { return 0.0; }, limits);
+    return decide(trials, all, {[](size_t) { return 0.0; }}, limits);
   };
   Thresholds::Decision limits;
   EXPECT_EQ(judged(limits).finding, Finding::unknown);
@@ -145,8 +143,7 @@ TEST(Decide, AKnownEffectIsNamedBesideALawThatNeedsIt) {
       explanation({0, 1, 2}, 2006.0, 1.0),
   };
   const auto judged = [&](double structure_sigma, const Thresholds::Decision& limits) {
-    return decide(
-        trials, all, [&](size_t) { return structure_sigma; }, limits);
+    return decide(trials, all, {[&](size_t) { return structure_sigma; }}, limits);
   };
   const Thresholds::Decision limits = Thresholds().decision;
   const Decision d = judged(0.0, limits);
@@ -157,9 +154,7 @@ TEST(Decide, AKnownEffectIsNamedBesideALawThatNeedsIt) {
   std::vector<Explanation> worse = trials;
   worse.front().holdout_chi2_per_sample = 20.0;
   worse.back().holdout_chi2_per_sample = 700.0;
-  EXPECT_TRUE(decide(
-                  worse, all, [](size_t) { return 0.0; }, limits)
-                  .beside_law.empty());
+  EXPECT_TRUE(decide(worse, all, {[](size_t) { return 0.0; }}, limits).beside_law.empty());
   // Where the law leaves structure, the names may make up for it.
   EXPECT_TRUE(judged(20.0, limits).beside_law.empty());
   Thresholds::Decision mutant = limits;
@@ -182,8 +177,7 @@ TEST(Decide, WhatCannotBeToldApartIsNotNothing) {
       t.joint_significance = t.significance;
       if (t.candidates.size() == 2) t.significance[1] = 1.0;
     }
-    return decide(
-        trials, all, [](size_t) { return 0.0; }, Thresholds().decision);
+    return decide(trials, all, {[](size_t) { return 0.0; }}, Thresholds().decision);
   };
   EXPECT_EQ(judged(1.0).finding, Finding::nothing_missing);
   EXPECT_TRUE(judged(1.0).undecided);
@@ -192,6 +186,94 @@ TEST(Decide, WhatCannotBeToldApartIsNotNothing) {
   EXPECT_FALSE(d.undecided);
   EXPECT_TRUE(d.beside_law.empty());
   EXPECT_NEAR(d.confidence, 1.0 / (1.0 + std::exp(0.3)), 1e-6);
+}
+
+// The gates (a) to (f) of decide.h. Each test has a mutant: the limit of the gate moved until it
+// lets everything pass. (a), (b) and the first half of (d) are tested above.
+
+// Evidence of 100, and segments that were left out of the fits are predicted no better with the
+// name.
+TEST(Gates, ANameThatLeftOutSegmentsDoNotNeedIsNotSaid) {
+  const std::vector<Explanation> trials = {explanation({}, 0.0, 1.0), explanation({0}, 100.0, 1.0),
+                                           explanation({0, 1}, 200.0, 1.0)};
+  // Of "first" and "second" in standard errors.
+  const auto judged = [&](double first, double second, const GateLimits& limits) {
+    const auto gain = [&](size_t trial, size_t which) -> std::optional<double> {
+      return trials[trial].candidates[which] == 0 ? first : second;
+    };
+    return decide(trials, candidates, {[](size_t) { return 0.0; }, gain, {}, limits},
+                  Thresholds().decision);
+  };
+  GateLimits limits, mutant;
+  mutant.min_gain_sigma = -1e9;
+  EXPECT_EQ(judged(8.0, 3.1, limits).chosen, 2u);
+  EXPECT_EQ(judged(8.0, 3.1, limits).names[1].gain_sigma, 3.1);
+  EXPECT_EQ(judged(8.0, 2.9, limits).chosen, 1u);
+  EXPECT_EQ(judged(8.0, 2.9, mutant).chosen, 2u);
+  EXPECT_EQ(judged(2.9, 2.9, limits).finding, Finding::nothing_missing);
+  // Only "second" is needed, and no trial has it alone: nothing that was fitted can be said.
+  EXPECT_EQ(judged(2.9, 8.0, limits).finding, Finding::nothing_missing);
+  EXPECT_EQ(judged(2.9, 8.0, mutant).finding, Finding::named);
+}
+
+// What a fit to all recordings explains, the fit to some of them may still have led away from.
+TEST(Gates, AHeldOutChi2FarAboveItsPredictionIsUnknown) {
+  std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0)};
+  Thresholds::Decision limits, mutant;
+  mutant.max_predictive_sigma = 1e9;
+  trials[1].held_out_sigma = 4.9;
+  EXPECT_EQ(decided(trials, limits).finding, Finding::named);
+  trials[1].held_out_sigma = 5.1;
+  EXPECT_EQ(decided(trials, limits).finding, Finding::unknown);
+  EXPECT_EQ(decided(trials, mutant).finding, Finding::named);
+}
+
+TEST(Gates, WhatTheNominalModelPredictsAsWellTestsNoName) {
+  std::vector<Explanation> trials = {explanation({}, 0.0, 1.0), explanation({0}, 100.0, 1.0)};
+  trials[0].holdout_chi2_per_sample = 1.1;
+  trials[1].holdout_chi2_per_sample = 1.0;
+  const auto is_tested = [&](const GateLimits& limits) {
+    return decide(trials, candidates, {[](size_t) { return 0.0; }, {}, {}, limits},
+                  Thresholds().decision)
+        .held_out_tests_names;
+  };
+  GateLimits mutant;
+  mutant.max_untested_fraction = 1e9;
+  EXPECT_EQ(decided(trials).finding, Finding::named);
+  EXPECT_FALSE(is_tested({}));
+  EXPECT_TRUE(is_tested(mutant));
+  trials[0].holdout_chi2_per_sample = 2.0;
+  EXPECT_TRUE(is_tested({}));
+}
+
+// Cells 0 and 1 explain as much, cell 2 less by odds of e⁵.
+TEST(Gates, PlacesThatExplainAsMuchAreListed) {
+  const std::vector<CandidateTraits> cells = {
+      {.name = "cell 0"}, {.name = "cell 1"}, {.name = "cell 2"}};
+  const std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
+                                           explanation({1}, 99.0, 1.0),
+                                           explanation({2}, 95.0, 1.0)};
+  const auto places = [&](size_t trial, size_t) {
+    std::vector<Checks::Place> others;
+    for (size_t i = 1; i < trials.size(); ++i) {
+      if (i == trial) continue;
+      others.emplace_back(i - 1, trials[trial].log_evidence - trials[i].log_evidence);
+    }
+    return others;
+  };
+  const auto judged = [&](const GateLimits& limits) {
+    return decide(trials, cells, {[](size_t) { return 0.0; }, {}, places, limits},
+                  Thresholds().decision);
+  };
+  GateLimits limits, mutant;
+  const Decision d = judged(limits);
+  EXPECT_EQ(d.finding, Finding::named);
+  EXPECT_EQ(d.names.front().equal_places, std::vector<size_t>{1});
+  // That it is one of these cells is sure, though none of them is.
+  EXPECT_GT(d.names.front().probability, 0.99);
+  EXPECT_LT(d.confidence, 0.8);
+  mutant.min_log_odds_of_place = -1e9;
+  EXPECT_TRUE(judged(mutant).names.front().equal_places.empty());
 }
 
 }  // namespace

@@ -40,9 +40,9 @@ Answered answer(const std::vector<Term>& terms, const std::vector<Series>& train
   Answered a;
   a.trials = search(domain, domain.nominal(train), train, 1);
   if (!held.empty()) weigh_with_held_out(domain, train, held, 1, a.trials);
-  a.decision = decide(
-      {a.trials.begin(), a.trials.end()}, domain.candidates(),
-      [&](size_t t) { return domain.excess_sigma(a.trials[t], train); }, limits.decision);
+  a.decision =
+      decide({a.trials.begin(), a.trials.end()}, domain.candidates(),
+             {[&](size_t t) { return domain.excess_sigma(a.trials[t], train); }}, limits.decision);
   for (const size_t c : a.trials[a.decision.chosen].candidates) {
     a.names.insert(terms[c].traits.name);
   }

@@ -173,6 +173,7 @@ class RowReader {
         constexpr double most = 1e9;  // what an int holds, and more than anybody measures
         if (!(std::abs(sweep) <= most)) return "unreadable number";
         into_.sweep.push_back(static_cast<int>(sweep));
+        if (columns_.irradiance) into_.irradiance_W_m2.push_back(value(columns_.irradiance));
       }
       into_.voltage_V.push_back(V);
       into_.current_A.push_back(I);
@@ -264,6 +265,37 @@ LightRecording LightRecording::part(const std::vector<size_t>& rows) const {
   keep(some.lab_from_body);
   keep(some.sweep);
   return some;
+}
+
+std::vector<LightRecording> sweeps_of(const LightRecording& recording) {
+  std::vector<int> numbers;
+  std::map<int, std::vector<size_t>> rows;
+  for (size_t i = 0; i < recording.rows(); ++i) {
+    if (!rows.contains(recording.sweep[i])) numbers.push_back(recording.sweep[i]);
+    rows[recording.sweep[i]].push_back(i);
+  }
+  std::vector<LightRecording> curves;
+  for (const int number : numbers) {
+    curves.push_back(numbers.size() > 1 ? recording.part(rows[number]) : recording);
+    if (numbers.size() == 1) break;
+    curves.back().name += ", sweep " + std::to_string(number);
+    curves.back().rows_read = static_cast<int64_t>(rows[number].size());
+    curves.back().rejected.clear();
+  }
+  // What was left out of the file counts once.
+  for (const auto& [reason, count] : recording.rejected) {
+    if (curves.size() > 1) curves.front().rows_read += count;
+  }
+  if (!curves.empty()) curves.front().rejected = recording.rejected;
+  return curves;
+}
+
+double median_of(std::vector<double> values) {
+  std::erase_if(values, [](double x) { return !std::isfinite(x); });
+  if (values.empty()) return absent;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
 }
 
 std::optional<LightRecording::Kind> light_kind_of(const std::filesystem::path& path) {

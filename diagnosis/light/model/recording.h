@@ -19,13 +19,15 @@ namespace photorque {
 struct LightRecording {
   enum class Kind {
     scan,   // u_m, v_m, irradiance_W_m2 [, tilt_deg, heading_deg]
-    sweep,  // voltage_V, current_A (or V, I) [, sweep, tilt_deg, heading_deg, cell_temperature_K]
+    sweep,  // voltage_V, current_A (or V, I) [, sweep, tilt_deg, heading_deg, cell_temperature_K,
+            // irradiance_W_m2]
     run,    // t_s, q_w … q_z, array_voltage_V, array_current_A [, cell_temperature_K, …]
   };
   Kind kind = Kind::scan;
   std::string name;  // path as given
 
   // One entry per row that was kept; what the kind does not have is empty.
+  // The irradiance of a sweep is what a sensor beside the array saw; NaN where a row has none.
   std::vector<double> u_m, v_m, irradiance_W_m2;
   std::vector<double> voltage_V, current_A;
   std::vector<double> time_s;
@@ -44,6 +46,13 @@ struct LightRecording {
   // The chosen rows alone.
   LightRecording part(const std::vector<size_t>& rows) const;
 };
+
+// The curves of a recording, by their number in `sweep`, in the order in which they begin; where
+// there are several, each name says which it is.
+std::vector<LightRecording> sweeps_of(const LightRecording& recording);
+
+// The median of the finite values; NaN where there is none.
+double median_of(std::vector<double> values);
 
 // What rows have that do not say it themselves.
 struct UsualCircumstances {

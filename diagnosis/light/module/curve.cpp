@@ -15,17 +15,28 @@ constexpr double silicon_gap_eV = 1.121;
 // A fit may try numbers that no cell has; there it finds a bad curve and no error.
 CellParameters at_state(const ModuleCell& cell, const ModuleState& state) {
   const double T = std::clamp(state.temperature_K, 100.0, 800.0), T0 = cell.temperature_K,
-               n = std::clamp(cell.ideality, 0.05, 50.0);
+               light = std::max(state.light, 1e-6);
+  const Translation& by = cell.translation;
+  const auto power = [&](double of_light, double of_temperature) {
+    return std::exp(
+        std::clamp(of_light * std::log(light) + of_temperature * std::log(T / T0), -10.0, 10.0));
+  };
+  const double of_ideality = power(by.ideality_by_light, by.ideality_by_temperature),
+               n = std::clamp(cell.ideality * of_ideality, 0.05, 50.0);
+  const double at_reference_A = std::clamp(cell.saturation_A, 1e-60, 1e3),
+               open = std::log(std::clamp(cell.photocurrent_A, 1e-30, 1e9) / at_reference_A),
+               saturation_A = at_reference_A * std::exp(open * (1.0 - 1.0 / of_ideality));
   const double per_kelvin = silicon_gap_eV * elementary_charge_C / boltzmann_J_K / n;
   CellParameters p;
   p.temperature_K = T;
   p.ideality_1 = n;
   p.saturation_1_A = std::clamp(
-      cell.saturation_A * std::pow(T / T0, 3.0 / n) * std::exp(per_kelvin * (1.0 / T0 - 1.0 / T)),
-      1e-60, 1e3);
-  p.series_ohm = std::clamp(cell.series_ohm, 0.0, 1e6);
+      saturation_A * std::pow(T / T0, 3.0 / n) * std::exp(per_kelvin * (1.0 / T0 - 1.0 / T)), 1e-60,
+      1e3);
+  p.series_ohm =
+      std::clamp(cell.series_ohm * power(by.series_by_light, by.series_by_temperature), 0.0, 1e6);
   const double leak_S =
-      std::max(state.light, 1e-6) / std::max(cell.shunt_ohm, 1e-9) + state.shunt_S;
+      light / (std::max(cell.shunt_ohm, 1e-9) * power(by.shunt_by_light, 0.0)) + state.shunt_S;
   p.shunt_ohm = 1.0 / std::clamp(leak_S, 1e-12, 1e6);
   return p;
 }
@@ -117,6 +128,24 @@ ArrayCurve module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
     changes.bypass_shorted = {true};
   }
   return {module.wiring, std::move(module.laws), module.light_A, changes};
+}
+
+std::vector<ArrayCurve::SlopedPoint> module_points(const ModuleWiring& wiring,
+                                                   const ModuleCell& cell, const ModuleState& state,
+                                                   const std::vector<double>& voltage_V) {
+  auto points = module_curve(wiring, cell, state).at_voltages(voltage_V);
+  if (state.light_change == 0.0 && state.light_bend == 0.0) return points;
+  constexpr double step = 0.01;
+  ModuleState brighter = state;
+  brighter.light *= 1.0 + step;
+  const auto with_more = module_curve(wiring, cell, brighter).at_voltages(voltage_V);
+  for (size_t i = 0; i < points.size(); ++i) {
+    const double u = voltage_V[i] / voltage_V.back();
+    const double more =
+        state.light_change * (u - 0.5) + state.light_bend * (6.0 * u * u - 6.0 * u + 1.0);
+    points[i].current_A += (with_more[i].current_A - points[i].current_A) / step * more;
+  }
+  return points;
 }
 
 }  // namespace photorque

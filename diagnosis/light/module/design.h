@@ -6,15 +6,19 @@
 //   bypass_drop_V = 0.5
 //   reference_curve = "before.csv"   or a list of them: the nominal module, or
 //   [[module.datasheet]]             its datasheet, with the keys of fit-cell
-//   reference_temperature_K = 298.15 of the first reference
+//   reference_temperature_K = 298.15 of the references: one number, or one for each curve
+//   reference_irradiance_W_m2 = 1000 of the references as a sensor saw it, likewise
 //   temperature_K = 298.15           of the recordings, the reference's by default; {value, sigma}
 //   temperature_sigma_K = 2          how well that is known, of references as well
 //   current_noise_A, voltage_noise_V errors of a reading; found from the curves where not stated
 //
-// The irradiance may differ from curve to curve. [[effect]] with the kinds and keys of a diagnosis
-// states what is known to act on the recordings, and not on the references.
+// Files may say of each curve (`sweep`) its cell_temperature_K and irradiance_W_m2, which then
+// stand in the place of these keys. The irradiance may differ from curve to curve. [[effect]] with
+// the kinds and keys of a diagnosis states what is known to act on the recordings, and not on the
+// references; with the key `curve` on the curve of that name alone ("day.csv, sweep 6").
 #pragma once
 
+#include <map>
 #include <optional>
 
 #include "core/settings/keys.h"
@@ -25,21 +29,31 @@
 
 namespace photorque {
 
+struct ModuleActing {
+  ModuleState state;  // light and temperature aside
+  double warmer_K = 0.0;
+};
+
 struct ModuleDesign {
   int cells = 1;
   int bypass_every = 0;  // 0: no bypass diodes
   double bypass_drop_V = 0.5;
   std::vector<std::filesystem::path> reference_files;
-  std::vector<LightRecording> references;
+  std::vector<LightRecording> references;  // a curve each
+  // Of each reference, or empty: all have reference_temperature_K, and no sensor saw their light.
+  std::vector<double> reference_temperatures_K, reference_irradiances_W_m2;
   std::vector<RatedPoint> datasheet;
   TemperatureSlopes slopes;
   double reference_temperature_K = 298.15;
   double temperature_K = 298.15, temperature_sigma_K = 2.0;
   std::optional<double> current_noise_A;
   double voltage_noise_V = 0.0;  // 0: a ten-thousandth of the open-circuit voltage
-  ModuleState acting;            // on the recordings; light and temperature aside
-  double warmer_K = 0.0;
+  // What acts on the recordings, by the name of the curve; "": on all of them.
+  std::map<std::string, ModuleActing> acting;
 };
+
+// All that acts on a curve, whose name may begin with folders.
+ModuleActing acting_on(const ModuleDesign& design, const std::string& curve);
 
 // Reads [module] of an experiment whose files stand in `folder`. InputError for bad keys.
 ModuleDesign read_module(const Settings& root, const std::filesystem::path& folder);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 
 #include "core/constants.h"
 #include "core/errors.h"
@@ -18,6 +19,7 @@ using Eigen::Index, Eigen::VectorXd;
 
 struct ModuleData {
   std::vector<ModuleRun> train, held;
+  std::vector<ModuleRun> whole;  // every curve with all its points
   DataQuality quality;
 };
 
@@ -81,15 +83,19 @@ void require_current_forward(const LightRecording& r) {
       "reversed");
 }
 
+void require_curve(const LightRecording& r) {
+  if (r.kind == LightRecording::Kind::sweep) return;
+  throw InputError({r.name}, "header", "no columns voltage_V,current_A",
+                   "a current-voltage curve, for an experiment with [module]");
+}
+
 ModuleRun run_of(const LightRecording& r, const ModuleDesign& design, const ModuleNominal& nominal,
                  const ModuleDiagnoseOptions& options, DataQuality& quality) {
-  if (r.kind != LightRecording::Kind::sweep) {
-    throw InputError({r.name}, "header", "no columns voltage_V,current_A",
-                     "a current-voltage curve, for an experiment with [module]");
-  }
   int64_t dropped = 0;
   require_current_forward(r);
   ModuleRun run{module_sweep(r, design, options.max_points, &dropped)};
+  run.sweep.temperature_K = r.has_temperatures ? median_of(r.temperature_K) : design.temperature_K;
+  run.irradiance_W_m2 = median_of(r.irradiance_W_m2);
   require_plausible(run.sweep, design, nominal);
   run.sweep.light = light_of(run.sweep, nominal);
   run.sigma_A = point_sigma_A(nominal, run.sweep);
@@ -103,20 +109,56 @@ ModuleRun run_of(const LightRecording& r, const ModuleDesign& design, const Modu
   return run;
 }
 
-// Every fourth stretch of a curve, each a fortieth of it.
-std::pair<ModuleRun, ModuleRun> split_curve(const ModuleRun& run) {
+// The points of a curve in segments of `block` of them for which `is_held` says no, and the others.
+std::pair<ModuleRun, ModuleRun> split_curve(const ModuleRun& run, size_t block,
+                                            const std::function<bool(size_t segment)>& is_held) {
   ModuleRun train = run, held = run;
   for (ModuleRun* r : {&train, &held}) {
     r->sweep.voltage_V.clear();
     r->sweep.current_A.clear();
   }
-  const size_t rows = run.sweep.voltage_V.size(), stretch = std::max<size_t>(1, rows / 40);
-  for (size_t i = 0; i < rows; ++i) {
-    ModuleRun& to = (i / stretch) % 4 == 2 ? held : train;
+  for (size_t i = 0; i < run.sweep.voltage_V.size(); ++i) {
+    ModuleRun& to = is_held(i / block) ? held : train;
     to.sweep.voltage_V.push_back(run.sweep.voltage_V[i]);
     to.sweep.current_A.push_back(run.sweep.current_A[i]);
   }
   return {std::move(train), std::move(held)};
+}
+
+// Every fourth segment, each a fortieth of the curve.
+std::pair<ModuleRun, ModuleRun> split_curve(const ModuleRun& run) {
+  return split_curve(run, std::max<size_t>(1, run.sweep.voltage_V.size() / 40),
+                     [](size_t segment) { return segment % 4 == 2; });
+}
+
+// χ² of segments of the curves, each predicted from a fit that left out a fifth of the segments.
+// A segment holds several parts of every curve, because damage changes a part of a curve.
+std::vector<double> chi2_of_segments(const ModuleFitter& fitter, const ModuleHypothesis& h,
+                                     const ModuleTrial& trial, const std::vector<ModuleRun>& runs,
+                                     const Thresholds& limits) {
+  constexpr size_t folds = 5, parts = 3;
+  const size_t count = limits.discrepancy.stretches;
+  std::vector<double> chi2(count, 0.0);
+  const auto block_of = [&](const ModuleRun& run) {
+    return std::max<size_t>(1, run.sweep.voltage_V.size() / (count * parts));
+  };
+  for (size_t fold = 0; fold < folds; ++fold) {
+    std::vector<ModuleRun> rest;
+    for (const ModuleRun& run : runs) {
+      rest.push_back(split_curve(run, block_of(run), [&](size_t segment) {
+                       return segment % count % folds == fold;
+                     }).first);
+    }
+    const ModuleTrial others = fitter.fit(h, rest, &trial.shared);
+    for (size_t run = 0; run < runs.size(); ++run) {
+      const VectorXd r = fitter.residuals(h, ModuleFitter::numbers_of(others, run), runs[run]);
+      for (Index i = 0; i < r.size(); ++i) {
+        const size_t segment = static_cast<size_t>(i) / block_of(runs[run]) % count;
+        if (segment % folds == fold) chi2[segment] += r[i] * r[i];
+      }
+    }
+  }
+  return chi2;
 }
 
 struct ModuleAnswer {
@@ -125,10 +167,25 @@ struct ModuleAnswer {
   inference::Decision decision;
 };
 
+// What a fit leaves of its runs beyond noise [sigma].
+double excess_of(const ModuleFitter& fitter, const ModuleHypothesis& h, const ModuleTrial& trial,
+                 const std::vector<ModuleRun>& runs, const Thresholds& limits) {
+  std::vector<inference::ChannelResiduals> channels;
+  for (size_t run = 0; run < runs.size(); ++run) {
+    const VectorXd r = fitter.residuals(h, ModuleFitter::numbers_of(trial, run), runs[run]);
+    channels.push_back({{r.data(), r.data() + r.size()}});
+  }
+  const double samples = static_cast<double>(trial.fit.samples);
+  return std::max(inference::whiteness(channels, limits.noise).excess_sigma,
+                  (trial.fit.data_chi2 / samples - 1.0) / std::sqrt(2.0 / samples));
+}
+
+// `hypotheses`: the first is that nothing is missing.
 ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nominal,
-                            const ModuleData& data, const ModuleDiagnoseOptions& options) {
+                            std::vector<ModuleHypothesis> hypotheses, const ModuleData& data,
+                            const ModuleDiagnoseOptions& options) {
   ModuleAnswer answer;
-  answer.hypotheses = module_hypotheses(design, nominal);
+  answer.hypotheses = std::move(hypotheses);
   const ModuleFitter fitter(design, nominal, options.limits);
   std::vector<ModuleRun> everything = data.train;
   everything.insert(everything.end(), data.held.begin(), data.held.end());
@@ -158,28 +215,29 @@ ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nom
     p.sigma = (p.chi2_per_sample - 1.0) /
               std::sqrt(2.0 / held + 2.0 / static_cast<double>(train.fit.samples));
     if (i > 0) {
+      // Within the error of one diode and of its translation nothing can be said to act.
+      const bool leaves_more = all.data_chi2 > static_cast<double>(all.samples);
       train.significance = {std::sqrt(std::max(0.0, own.chi2 - train.fit.chi2))};
-      train.joint_significance = {std::sqrt(std::max(0.0, all.chi2 - joint.fit.chi2))};
+      train.joint_significance = {leaves_more ? std::sqrt(std::max(0.0, all.chi2 - joint.fit.chi2))
+                                              : 0.0};
     }
     train.holdout_chi2_per_sample = p.chi2_per_sample;
     train.predictive = p;
     train.log_evidence = joint.log_evidence;
   }
-  const auto excess = [&](size_t trial) {
-    std::vector<inference::ChannelResiduals> channels;
-    for (size_t run = 0; run < data.train.size(); ++run) {
-      const VectorXd r =
-          fitter.residuals(answer.hypotheses[trial],
-                           ModuleFitter::numbers_of(answer.trials[trial], run), data.train[run]);
-      channels.push_back({{r.data(), r.data() + r.size()}});
-    }
-    const inference::Fit& fit = answer.trials[trial].fit;
-    const double samples = static_cast<double>(fit.samples);
-    return std::max(inference::whiteness(channels, options.limits.noise).excess_sigma,
-                    (fit.data_chi2 / samples - 1.0) / std::sqrt(2.0 / samples));
+  const auto gain = [&](size_t trial, size_t) -> std::optional<double> {
+    const auto chi2 = [&](size_t of) {
+      return chi2_of_segments(fitter, answer.hypotheses[of], answer.joint[of], data.whole,
+                              options.limits);
+    };
+    return inference::gain_sigma(chi2(0), chi2(trial));
   };
-  answer.decision = inference::decide({answer.trials.begin(), answer.trials.end()}, traits, excess,
-                                      options.limits.decision);
+  const auto excess = [&](size_t trial) {
+    return excess_of(fitter, answer.hypotheses[trial], answer.trials[trial], data.train,
+                     options.limits);
+  };
+  answer.decision = inference::decide({answer.trials.begin(), answer.trials.end()}, traits,
+                                      {excess, gain}, options.limits.decision);
   return answer;
 }
 
@@ -213,13 +271,14 @@ FoundEffect found_in_module(const ModuleAnswer& answer, size_t chosen, const Thr
       by[k] += step;
       variance += std::pow((number.value(by) - number.value(x)) / step * errors[k], 2);
     }
-    effect.parameters.push_back({number.key, {number.value(x)}, {std::sqrt(variance)}});
+    if (effect.parameters.empty() || effect.parameters.back().key != number.key) {
+      effect.parameters.push_back({number.key, {}, {}});
+    }
+    effect.parameters.back().value.push_back(number.value(x));
+    effect.parameters.back().sigma.push_back(std::sqrt(variance));
   }
-  double sum = 0.0, same = 0.0;
   int fewest = h.count, most = h.count;
   for (size_t i = 0; i < answer.trials.size(); ++i) {
-    sum += answer.decision.probability[i];
-    if (answer.hypotheses[i].kind == h.kind) same += answer.decision.probability[i];
     const bool as_likely = answer.trials[i].log_evidence >
                            answer.trials[chosen].log_evidence - limits.search.min_log_evidence_gain;
     if (!as_likely || i == chosen || answer.hypotheses[i].kind.empty()) continue;
@@ -234,7 +293,7 @@ FoundEffect found_in_module(const ModuleAnswer& answer, size_t chosen, const Thr
     effect.texts.emplace_back("count_between",
                               std::to_string(fewest) + " and " + std::to_string(most));
   }
-  effect.probability = sum > 0.0 ? same / sum : 0.0;
+  effect.probability = answer.decision.names.front().probability;
   return effect;
 }
 
@@ -260,7 +319,7 @@ double squares_of(const ModuleFitter& fitter, const ModuleAnswer& answer, size_t
         data.held.size() == data.train.size() && data.train[run].sweep.name == sweep.name;
     const auto curve = fitter.curve(answer.hypotheses[trial],
                                     of_train ? answer.trials[trial] : answer.joint[trial],
-                                    of_train ? run : data.train.size() + run, sweep.voltage_V);
+                                    of_train ? run : data.train.size() + run, data.held[run]);
     for (size_t i = 0; i < curve.size(); ++i, ++points) {
       squares += std::pow(curve[i].current_A - sweep.current_A[i], 2);
     }
@@ -307,29 +366,10 @@ void judge_references(const ModuleDesign& design, const ModuleNominal& nominal,
               percent + " of its short-circuit current";
 }
 
-}  // namespace
-
-Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRecording>& recordings,
-                          const std::vector<LightRecording>& holdouts,
-                          const ModuleDiagnoseOptions& options) {
-  if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
-  const ModuleNominal nominal = nominal_module(design);
-  ModuleData data;
-  for (const LightRecording& r : recordings) {
-    data.train.push_back(run_of(r, design, nominal, options, data.quality));
-  }
-  for (const LightRecording& r : holdouts) {
-    data.held.push_back(run_of(r, design, nominal, options, data.quality));
-  }
-  if (data.held.empty()) {
-    for (ModuleRun& run : data.train) {
-      auto [train, held] = split_curve(run);
-      run = std::move(train);
-      data.held.push_back(std::move(held));
-    }
-  }
-  const ModuleAnswer answer = explain_module(design, nominal, data, options);
-  const ModuleFitter fitter(design, nominal, options.limits);
+// The answer to curves in words and numbers.
+Diagnosis described(const ModuleDesign& design, const ModuleNominal& nominal,
+                    const ModuleAnswer& answer, const ModuleData& data, const Thresholds& limits) {
+  const ModuleFitter fitter(design, nominal, limits);
   Diagnosis d;
   d.effect_table = "effect";
   d.verdict = verdict_of(answer.decision.finding);
@@ -337,7 +377,7 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
   d.because = answer.decision.because;
   const size_t chosen = answer.decision.chosen;
   if (d.verdict == Verdict::missing_physics) {
-    d.effects.push_back(found_in_module(answer, chosen, options.limits));
+    d.effects.push_back(found_in_module(answer, chosen, limits));
   }
   const double least = answer.trials.front().log_evidence;
   for (size_t i = 0; i < answer.trials.size(); ++i) {
@@ -368,12 +408,220 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
   held.explained_fraction =
       explained_fraction(held.chi2_per_sample_before, held.chi2_per_sample_after, held.samples);
   d.holdout = held;
-  d.data = data.quality;
+  if (!answer.decision.held_out_tests_names) d.warnings.push_back(untested_names(held));
   if (answer.decision.undecided) {
     d.warnings.push_back("something is missing, but not which effect it is: see the alternatives");
   }
+  return d;
+}
+
+// A curve alone.
+ModuleData of_one_curve(const ModuleRun& whole) {
+  ModuleData data;
+  auto [train, held] = split_curve(whole);
+  data.train.push_back(std::move(train));
+  data.held.push_back(std::move(held));
+  data.whole.push_back(whole);
+  return data;
+}
+
+// Every curve alone: the nominal model first, and all hypotheses where that leaves something.
+// `light`: of each over the reference, by the nominal model.
+std::vector<Diagnosis> each_curve(const ModuleDesign& design, const ModuleNominal& nominal,
+                                  const ModuleData& all, const ModuleDiagnoseOptions& options,
+                                  std::vector<double>& light) {
+  const std::vector<ModuleHypothesis> hypotheses = module_hypotheses(design, nominal);
+  std::vector<Diagnosis> each;
+  for (const ModuleRun& curve : all.whole) {
+    const ModuleData data = of_one_curve(curve);
+    ModuleAnswer answer = explain_module(design, nominal, {hypotheses.front()}, data, options);
+    light.push_back(std::exp(answer.trials.front().fit.at[0]));
+    const bool is_odd = answer.decision.finding != inference::Finding::nothing_missing;
+    if (is_odd) answer = explain_module(design, nominal, hypotheses, data, options);
+    each.push_back(described(design, nominal, answer, data, options.limits));
+    Diagnosis& d = each.back();
+    const std::string name = std::filesystem::path(curve.sweep.name).filename().string();
+    for (FoundEffect& effect : d.effects) effect.texts.emplace_back("curve", name);
+    for (Alternative& alternative : d.alternatives) alternative.of = name;
+    d.sentence = name + ": " + module_sentence(d);
+  }
+  return each;
+}
+
+// Root of the mean square of two, of so many samples each.
+void add_rms(const Holdout& more, Holdout& all) {
+  const auto mean = [&](double a, double b) {
+    const auto m = static_cast<double>(all.samples), n = static_cast<double>(more.samples);
+    return (m * a + n * b) / (m + n);
+  };
+  for (const auto member : {&Holdout::rms_before, &Holdout::rms_after}) {
+    double& rms = (all.*member)["current_A"];
+    rms = std::sqrt(mean(rms * rms, std::pow((more.*member).at("current_A"), 2)));
+  }
+  all.chi2_per_sample_before = mean(all.chi2_per_sample_before, more.chi2_per_sample_before);
+  all.chi2_per_sample_after = mean(all.chi2_per_sample_after, more.chi2_per_sample_after);
+  const bool is_worse =
+      more.predictive && (!all.predictive || more.predictive->sigma > all.predictive->sigma);
+  if (is_worse) all.predictive = more.predictive;
+  all.samples += more.samples;
+}
+
+// Curves that were diagnosed one by one, as one answer.
+Diagnosis of_all_curves(std::vector<Diagnosis> each) {
+  Diagnosis all;
+  all.effect_table = "effect";
+  all.confidence = 1.0;
+  all.holdout.emplace();
+  int64_t samples = 0;
+  size_t differing = 0;
+  for (Diagnosis& d : each) {
+    const auto n = static_cast<double>(d.samples), m = static_cast<double>(samples);
+    all.chi2_per_sample_before =
+        (m * all.chi2_per_sample_before + n * d.chi2_per_sample_before) / (m + n);
+    all.chi2_per_sample_after =
+        (m * all.chi2_per_sample_after + n * d.chi2_per_sample_after) / (m + n);
+    samples += d.samples;
+    add_rms(*d.holdout, *all.holdout);
+    all.confidence = std::min(all.confidence, d.confidence);
+    if (d.verdict == Verdict::consistent) continue;
+    ++differing;
+    all.sentence += (all.sentence.empty() ? "" : " ") + d.sentence;
+    if (d.verdict == Verdict::unexplained) {
+      all.verdict = Verdict::unexplained;
+      all.because = "of one curve or more: " + d.because;
+    } else if (all.verdict == Verdict::consistent) {
+      all.verdict = Verdict::missing_physics;
+    }
+    for (FoundEffect& effect : d.effects) all.effects.push_back(std::move(effect));
+    constexpr size_t most = 6;
+    d.alternatives.resize(std::min(most, d.alternatives.size()));
+    for (Alternative& a : d.alternatives) all.alternatives.push_back(std::move(a));
+    for (std::string& warning : d.warnings) all.warnings.push_back(std::move(warning));
+  }
+  all.samples = samples;
+  all.where.channels.push_back({"current_A", all.chi2_per_sample_before});
+  all.holdout->explained_fraction =
+      explained_fraction(all.holdout->chi2_per_sample_before, all.holdout->chi2_per_sample_after,
+                         all.holdout->samples);
+  const std::string count = std::to_string(each.size());
+  all.sentence = differing == 0
+                     ? "Nothing is missing in any of " + count +
+                           " curves: what differs is noise, or lies within what one diode and its "
+                           "translation to other light and temperature can describe."
+                     : std::to_string(differing) + " of " + count +
+                           " curves differ from the module as it was. " + all.sentence;
+  return all;
+}
+
+// Adds how the light of the curves goes with what a sensor saw: a line through the logarithm of
+// their ratio over the order of the curves, by Theil and Sen, which a few curves under a cloud do
+// not move. Without the irradiance of the reference the ratio counts from its median.
+void compare_with_sensor(const ModuleDesign& design, const std::vector<ModuleRun>& curves,
+                         const std::vector<double>& light, Diagnosis& d) {
+  std::vector<double> order, ratio;
+  for (size_t i = 0; i < curves.size(); ++i) {
+    if (!(curves[i].irradiance_W_m2 > 0.0)) continue;
+    order.push_back(static_cast<double>(i));
+    ratio.push_back(std::log(light[i] / curves[i].irradiance_W_m2));
+  }
+  constexpr size_t fewest = 5;
+  if (ratio.size() < fewest) return;
+  const std::vector<double>& stated = design.reference_irradiances_W_m2;
+  const bool is_absolute = !stated.empty() && stated.front() > 0.0;
+  const double unit = is_absolute ? -std::log(stated.front()) : median_of(ratio);
+  std::vector<double> slopes, off;
+  for (size_t i = 0; i < ratio.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) {
+      slopes.push_back((ratio[i] - ratio[j]) / (order[i] - order[j]));
+    }
+  }
+  const double slope = median_of(slopes);
+  for (size_t i = 0; i < ratio.size(); ++i) off.push_back(ratio[i] - slope * order[i]);
+  const double level = median_of(off);
+  for (double& x : off) x = std::abs(x - level);
+  constexpr double of_median = 0.6745;  // of a normal variable's standard deviation
+  const double scatter = median_of(off) / of_median;
+  const auto at = [&](double i) { return std::exp(level + slope * i - unit); };
+  // The error of the slope of a line through n points, one apart: scatter √(12/n³).
+  const auto n = static_cast<double>(ratio.size());
+  const double sigma = std::abs(slope) / std::max(1e-9, scatter * std::sqrt(12.0 / (n * n * n)));
+  char text[400];
+  std::snprintf(
+      text, sizeof text,
+      "light over irradiance_W_m2%s goes from %.3f at the first curve to %.3f at the last "
+      "(a line over their order, %.1f standard errors), and scatters by %.2g %%: angle of "
+      "incidence, dirt, spectrum or the sensor, not the cells",
+      is_absolute ? "" : ", over its median,", at(order.front()), at(order.back()), sigma,
+      100.0 * scatter);
+  d.warnings.emplace_back(text);
+  constexpr double beyond_doubt = 4.0, far = 6.0;
+  if (sigma > beyond_doubt) {
+    const double moved = std::abs(slope) * (order.back() - order.front());
+    d.where.depends_on.push_back({"time", moved / (moved + scatter)});
+  }
+  for (size_t i = 0; i < ratio.size(); ++i) {
+    if (off[i] < far * scatter) continue;
+    const ModuleRun& curve = curves[static_cast<size_t>(order[i])];
+    std::snprintf(text, sizeof text, "%s: light over irradiance_W_m2 is %.3f, off that line",
+                  std::filesystem::path(curve.sweep.name).filename().string().c_str(),
+                  std::exp(ratio[i] - unit));
+    d.warnings.emplace_back(text);
+  }
+}
+
+}  // namespace
+
+Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRecording>& recordings,
+                          const std::vector<LightRecording>& holdouts,
+                          const ModuleDiagnoseOptions& options) {
+  if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
+  const ModuleNominal nominal = nominal_module(design);
+  ModuleData data;
+  const auto read = [&](const std::vector<LightRecording>& files, std::vector<ModuleRun>& runs) {
+    for (const LightRecording& file : files) {
+      require_curve(file);
+      for (const LightRecording& curve : sweeps_of(file)) {
+        runs.push_back(run_of(curve, design, nominal, options, data.quality));
+        data.whole.push_back(runs.back());
+      }
+    }
+  };
+  read(recordings, data.train);
+  read(holdouts, data.held);
+  if (data.held.empty()) {
+    for (ModuleRun& run : data.train) {
+      auto [train, held] = split_curve(run);
+      run = std::move(train);
+      data.held.push_back(std::move(held));
+    }
+  }
+  // Curves of which some differ and others do not, or more than a joint fit is made for, are
+  // explained one by one.
+  constexpr size_t few = 4;
+  Diagnosis d;
+  bool is_done = false;
+  if (holdouts.empty() && data.whole.size() > 1) {
+    std::vector<double> light;
+    std::vector<Diagnosis> each = each_curve(design, nominal, data, options, light);
+    const auto differing = static_cast<size_t>(std::ranges::count_if(
+        each, [](const Diagnosis& one) { return one.verdict != Verdict::consistent; }));
+    const bool is_even = differing == 0 || differing == each.size();
+    is_done = !is_even || each.size() > few;
+    if (is_done) {
+      d = of_all_curves(std::move(each));
+      compare_with_sensor(design, data.whole, light, d);
+    }
+  }
+  if (!is_done) {
+    const ModuleAnswer answer =
+        explain_module(design, nominal, module_hypotheses(design, nominal), data, options);
+    d = described(design, nominal, answer, data, options.limits);
+    d.sentence = module_sentence(d);
+  }
+  d.data = data.quality;
+  const Verdict before = d.verdict;
   judge_references(design, nominal, recordings, d);
-  d.sentence = module_sentence(d);
+  if (d.verdict != before) d.sentence = module_sentence(d);
   return d;
 }
 

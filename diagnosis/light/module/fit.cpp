@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr Index of_curve = 2, of_module = 5;
+constexpr Index of_curve = 2, of_module = ModuleNominal::numbers, of_cell = 5;
 
 struct Acting {
   ModuleState state;
@@ -19,13 +19,13 @@ struct Acting {
 };
 
 Acting acting(const ModuleDesign& design, const ModuleNominal& nominal, const ModuleHypothesis& h,
-              const VectorXd& x) {
+              const ModuleSweep& sweep, const VectorXd& x) {
   Acting a;
-  a.state = design.acting;
+  const ModuleActing stated = acting_on(design, sweep.name);
+  a.state = stated.state;
   a.cell = moved(nominal, x.segment<of_module>(of_curve));
   a.state.light = std::exp(x[0]);
-  a.state.temperature_K =
-      design.temperature_K + design.warmer_K + design.temperature_sigma_K * x[1];
+  a.state.temperature_K = sweep.temperature_K + stated.warmer_K + design.temperature_sigma_K * x[1];
   const Index first = of_curve + of_module;
   h.act({x.data() + first, static_cast<size_t>(x.size() - first)}, a.state, a.cell);
   a.state.temperature_K = std::clamp(a.state.temperature_K, 100.0, 800.0);
@@ -36,9 +36,8 @@ Acting acting(const ModuleDesign& design, const ModuleNominal& nominal, const Mo
 
 VectorXd ModuleFitter::residuals(const ModuleHypothesis& h, const VectorXd& x,
                                  const ModuleRun& run) const {
-  const Acting a = acting(design_, nominal_, h, x);
-  const auto curve =
-      module_curve(wiring_of(design_), a.cell, a.state).at_voltages(run.sweep.voltage_V);
+  const Acting a = acting(design_, nominal_, h, run.sweep, x);
+  const auto curve = module_points(wiring_of(design_), a.cell, a.state, run.sweep.voltage_V);
   VectorXd r(static_cast<Index>(curve.size()));
   for (size_t i = 0; i < curve.size(); ++i) {
     const double sigma_A = std::hypot(run.sigma_A, curve[i].slope_S * nominal_.voltage_noise_V);
@@ -64,6 +63,10 @@ ModuleTrial ModuleFitter::fit_from(const ModuleHypothesis& h, const std::vector<
         std::clamp(from ? (*from)[of_module + static_cast<Index>(k)] : own[k], p.lowest, p.highest);
     parameters.shared.push_back(std::move(p));
   }
+  // At the reference's own condition nothing is translated.
+  constexpr double no_distance = 0.02;
+  const bool translates = std::ranges::any_of(
+      runs, [&](const ModuleRun& run) { return distance_of(nominal_, run.sweep) > no_distance; });
   const inference::ResidualModel model(parameters, [&](const VectorXd& x, Index run, VectorXd& r,
                                                        MatrixXd* slopes) {
     const ModuleRun& of = runs[static_cast<size_t>(run)];
@@ -71,8 +74,12 @@ ModuleTrial ModuleFitter::fit_from(const ModuleHypothesis& h, const std::vector<
     if (slopes == nullptr) return;
     slopes->resize(r.size(), x.size());
     for (Index k = 0; k < x.size(); ++k) {
-      // Away from a bound.
       const Index shared = k - of_curve;
+      if (!translates && shared >= of_cell && shared < of_module) {
+        slopes->col(k).setZero();
+        continue;
+      }
+      // Away from a bound.
       const double highest =
           shared < 0 ? inference::infinity : parameters.shared[static_cast<size_t>(shared)].highest;
       const double step = x[k] + 1e-5 < highest ? 1e-5 : -1e-5;
@@ -122,11 +129,11 @@ VectorXd ModuleFitter::numbers_of(const ModuleTrial& trial, size_t run) {
   return x;
 }
 
-std::vector<ArrayCurve::SlopedPoint> ModuleFitter::curve(
-    const ModuleHypothesis& h, const ModuleTrial& trial, size_t run,
-    const std::vector<double>& voltage_V) const {
-  const Acting a = acting(design_, nominal_, h, numbers_of(trial, run));
-  return module_curve(wiring_of(design_), a.cell, a.state).at_voltages(voltage_V);
+std::vector<ArrayCurve::SlopedPoint> ModuleFitter::curve(const ModuleHypothesis& h,
+                                                         const ModuleTrial& trial, size_t run,
+                                                         const ModuleRun& at) const {
+  const Acting a = acting(design_, nominal_, h, at.sweep, numbers_of(trial, run));
+  return module_points(wiring_of(design_), a.cell, a.state, at.sweep.voltage_V);
 }
 
 }  // namespace photorque

@@ -38,11 +38,12 @@ std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
 struct ModuleRun {
   ModuleSweep sweep;
   double sigma_A = 0.0;
+  double irradiance_W_m2 = std::numeric_limits<double>::quiet_NaN();  // by a sensor
 };
 
 struct ModuleTrial : inference::Explanation {
   inference::Fit fit;
-  Eigen::VectorXd shared;  // the nominal module's five, then the hypothesis' own
+  Eigen::VectorXd shared;  // those of the nominal module, then the hypothesis' own
 };
 
 class ModuleFitter {
@@ -54,10 +55,10 @@ class ModuleFitter {
   // From all starts of the hypothesis, or from one.
   ModuleTrial fit(const ModuleHypothesis& h, const std::vector<ModuleRun>& runs,
                   const Eigen::VectorXd* from = nullptr) const;
-  // Currents by a fit with the light and temperature that it found for a run.
+  // Currents by a fit with the light and temperature that it found for its run number `run`, at the
+  // voltages of `at`, a part of the same curve.
   std::vector<ArrayCurve::SlopedPoint> curve(const ModuleHypothesis& h, const ModuleTrial& trial,
-                                             size_t run,
-                                             const std::vector<double>& voltage_V) const;
+                                             size_t run, const ModuleRun& at) const;
   // Measured less predicted over their errors.
   Eigen::VectorXd residuals(const ModuleHypothesis& h, const Eigen::VectorXd& x,
                             const ModuleRun& run) const;

@@ -52,6 +52,42 @@ ModuleHypothesis shaded(int count, double alternatives) {
   return h;
 }
 
+// Of `count` of the substrings each has its own light.
+ModuleHypothesis substrings_shaded(const ModuleDesign& design, int count, int most) {
+  ModuleHypothesis h;
+  h.kind = "substring_shaded";
+  h.label = "substring_shaded (" + std::to_string(count) + ")";
+  h.explanation = "less light on all cells of " + std::to_string(count) +
+                  (count == 1 ? " bypass diode" : " bypass diodes") + " than on the others";
+  h.alternatives = most;
+  for (int k = 0; k < count; ++k) {
+    h.parameters.push_back(wide("factor", 0.8, 0.3, 0.0, 1.0));
+    h.numbers.push_back({"factor", [k](X x) { return x[static_cast<size_t>(k)]; }});
+  }
+  for (const double factor : {0.95, 0.8, 0.4}) {
+    h.starts.emplace_back(static_cast<size_t>(count), factor);
+    // Steps at different currents.
+    for (size_t k = 1; k < h.starts.back().size(); ++k) h.starts.back()[k] = 0.5 + 0.5 * factor;
+  }
+  h.act = [count, every = design.bypass_every](X x, ModuleState& state, ModuleCell&) {
+    for (int k = 0; k < count; ++k) state.shaded.push_back({every, x[static_cast<size_t>(k)]});
+  };
+  return h;
+}
+
+ModuleHypothesis unsteady_light() {
+  ModuleHypothesis h;
+  h.kind = h.label = "unsteady_light";
+  h.explanation = "the light changed while the curve was taken";
+  h.parameters = {wide("change", 0.0, 0.1, -0.8, 0.8), wide("bend", 0.0, 0.05, -0.4, 0.4)};
+  h.act = [](X x, ModuleState& state, ModuleCell&) {
+    state.light_change += x[0];
+    state.light_bend += x[1];
+  };
+  h.numbers = {{"change", [](X x) { return x[0]; }}, {"bend", [](X x) { return x[1]; }}};
+  return h;
+}
+
 ModuleHypothesis cracked(int count, double alternatives, double usual_ohm) {
   ModuleHypothesis h;
   h.kind = "cell_cracked";
@@ -139,7 +175,10 @@ std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
   all.push_back(of_one_number(
       "temperature", "cells warmer or colder than stated", "change_K", 30.0, -150.0, 150.0,
       [](double x, ModuleState& state) { state.temperature_K += x; }, [](double x) { return x; }));
+  all.push_back(unsteady_light());
   if (design.bypass_every > 0 && design.bypass_every < design.cells) {
+    const int others = std::min(2, design.cells / design.bypass_every - 1);
+    for (int k = 1; k <= others; ++k) all.push_back(substrings_shaded(design, k, others));
     ModuleHypothesis h;
     h.kind = h.label = "bypass_shorted";
     h.explanation = "a bypass diode that lets everything pass: its cells give no voltage";

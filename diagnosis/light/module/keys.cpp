@@ -32,8 +32,12 @@ Key module_table() {
                    .optional(),
                Key::tables("datasheet", rated_point_keys(), "the module as its maker rates it")},
               rated_slope_keys(),
-              {Key::number("reference_temperature_K", {1.0, 1000.0}, "of the references")
+              {Key::other("reference_temperature_K", Key::a_number | Key::an_array,
+                          "of the references, one for all or one for each")
                    .usually_is("298.15, or the first of the datasheet"),
+               Key::other("reference_irradiance_W_m2", Key::a_number | Key::an_array,
+                          "that a sensor saw at the references, likewise")
+                   .optional(),
                Key::uncertain("temperature_K", {1.0, 1000.0}, "of the curves that are diagnosed")
                    .usually_is("as the references"),
                Key::number_or("temperature_sigma_K", 2.0, Range::positive(),
@@ -45,23 +49,35 @@ Key module_table() {
 }
 
 std::vector<Key::Choice> module_effects() {
-  return {{"cell_shaded",
-           "cells in the shade",
-           {count_key(), Key::number("factor", Range::fraction(), "of the light"),
-            Key::number_or("breakdown_fraction", 0.0, {0.0, 7.0}, "a of the reverse conduction"),
-            Key::number_or("breakdown_V", -15.0, {-1e308, 0.0, false, true}, "V_br of it"),
-            Key::number_or("breakdown_exponent", 3.0, {1.0, 1e3}, "m of it")}},
-          {"cell_cracked",
-           "cells of which a part is reached through a resistance alone",
-           {count_key(), Key::number("fraction", {0.0, 1.0, true, true}, "of the area"),
-            resistance_key("in front of that part")}},
-          {"cell_shunted", "a cell with a short cut", {resistance_key("beside the cell")}},
-          {"shunt", "short cuts in every cell", {resistance_key("beside every cell")}},
-          {"series_resistance", "a resistance in series", {resistance_key("of the module")}},
-          {"temperature",
-           "warmer or colder than stated",
-           {Key::number("change_K", {-150.0, 150.0}, "of all cells")}},
-          {"bypass_shorted", "a bypass diode that conducts always", {}}};
+  std::vector<Key::Choice> kinds = {
+      {"cell_shaded",
+       "cells in the shade",
+       {count_key(), Key::number("factor", Range::fraction(), "of the light"),
+        Key::number_or("breakdown_fraction", 0.0, {0.0, 7.0}, "a of the reverse conduction"),
+        Key::number_or("breakdown_V", -15.0, {-1e308, 0.0, false, true}, "V_br of it"),
+        Key::number_or("breakdown_exponent", 3.0, {1.0, 1e3}, "m of it")}},
+      {"cell_cracked",
+       "cells of which a part is reached through a resistance alone",
+       {count_key(), Key::number("fraction", {0.0, 1.0, true, true}, "of the area"),
+        resistance_key("in front of that part")}},
+      {"cell_shunted", "a cell with a short cut", {resistance_key("beside the cell")}},
+      {"shunt", "short cuts in every cell", {resistance_key("beside every cell")}},
+      {"series_resistance", "a resistance in series", {resistance_key("of the module")}},
+      {"temperature",
+       "warmer or colder than stated",
+       {Key::number("change_K", {-150.0, 150.0}, "of all cells")}},
+      {"bypass_shorted", "a bypass diode that conducts always", {}},
+      {"substring_shaded",
+       "cells of whole bypass diodes in the shade",
+       {Key::other("factor", Key::a_number | Key::an_array, "of the light, of each")}},
+      {"unsteady_light",
+       "light that changes while the voltage rises",
+       {Key::number("change", {-1.0, 1.0}, "from the first point to the last"),
+        Key::number_or("bend", 0.0, {-1.0, 1.0}, "at the ends over the middle, two thirds of")}}};
+  for (Key::Choice& kind : kinds) {
+    kind.keys.push_back(Key::text("curve", "on which alone it acts").usually_is("all curves"));
+  }
+  return kinds;
 }
 
 }  // namespace photorque

@@ -21,9 +21,22 @@ double median(std::vector<double> values) {
   return *at;
 }
 
-ModuleCell cell_of(const VectorXd& logs, double temperature_K) {
-  return {std::exp(logs[0]), std::exp(logs[1]), std::exp(logs[2]),
-          std::exp(logs[3]), std::exp(logs[4]), temperature_K};
+// Sizes that are expected of the powers of Translation. A healthy module of 36 cells (pvlib, 12
+// curves from 580 to 1080 W/m² and 31 to 61 °C), translated from its brightest curve, asks for
+// R_s ∝ (T/T₀)^1.9 and n ∝ (T/T₀)^0.95 at no power of light, or S^0.27 and S^0.14 at none of
+// temperature; 25 curves of one of 60 cells (NIST) from 14 to 960 W/m² ask for less.
+constexpr double translation_sigma[] = {0.25, 2.5, 0.1, 1.0, 0.5};
+
+// From logarithms and powers, these in their expected sizes.
+ModuleCell cell_of(const VectorXd& x, double temperature_K) {
+  ModuleCell cell{std::exp(x[0]), std::exp(x[1]), std::exp(x[2]),
+                  std::exp(x[3]), std::exp(x[4]), temperature_K};
+  if (x.size() < ModuleNominal::numbers) return cell;
+  Translation& by = cell.translation;
+  double* const powers[] = {&by.series_by_light, &by.series_by_temperature, &by.ideality_by_light,
+                            &by.ideality_by_temperature, &by.shunt_by_light};
+  for (Index k = 0; k < 5; ++k) *powers[k] = translation_sigma[k] * x[5 + k];
+  return cell;
 }
 
 // From second differences, which a smooth curve hardly has.
@@ -71,6 +84,9 @@ inference::Parameters reference_parameters(const ModuleDesign& design,
     const double at = std::clamp(logs[static_cast<Index>(k)], low[k] + 1e-6, high[k] - 1e-6);
     parameters.shared.push_back({names[k], "ln", at, at, inference::infinity, low[k], high[k]});
   }
+  for (int k = 0; k < 5; ++k) {
+    parameters.shared.push_back({"translation", "", 0.0, 0.0, 1.0, -10.0, 10.0});
+  }
   for (const ModuleSweep& sweep : sweeps) {
     const bool is_first = &sweep == &first;
     const double light = std::log(sweep.current_A.front() / scale_A);
@@ -81,27 +97,31 @@ inference::Parameters reference_parameters(const ModuleDesign& design,
   return parameters;
 }
 
-ReferenceFit fit_references(const ModuleDesign& design) {
+// `noise`: of a point over the current of the first curve; `near`: where the fit begins, or
+// nullptr.
+ReferenceFit fit_references(const ModuleDesign& design, double noise, const ReferenceFit* near) {
   constexpr size_t most_points = 200;
   ReferenceFit result;
   for (const LightRecording& r : design.references) {
     result.sweeps.push_back(module_sweep(r, design, most_points, nullptr));
+    const size_t i = result.sweeps.size() - 1;
+    result.sweeps.back().temperature_K = i < design.reference_temperatures_K.size()
+                                             ? design.reference_temperatures_K[i]
+                                             : design.reference_temperature_K;
   }
   const double scale_A = result.sweeps.front().current_A.front();
   const inference::Parameters parameters = reference_parameters(design, result.sweeps);
   const ModuleWiring wiring = wiring_of(design);
-  constexpr double of_scale = 1e-3;
   const auto residuals = [&](const VectorXd& x, Index run) -> VectorXd {
     const ModuleSweep& sweep = result.sweeps[static_cast<size_t>(run)];
     ModuleState state;
     state.light = std::exp(x[0]);
-    state.temperature_K = design.reference_temperature_K + x[1];
-    const auto curve =
-        module_curve(wiring, cell_of(x.tail(5), design.reference_temperature_K), state)
-            .at_voltages(sweep.voltage_V);
+    state.temperature_K = sweep.temperature_K + x[1];
+    const ModuleCell cell = cell_of(x.tail(ModuleNominal::numbers), design.reference_temperature_K);
+    const auto curve = module_curve(wiring, cell, state).at_voltages(sweep.voltage_V);
     VectorXd r(static_cast<Index>(curve.size()));
     for (size_t i = 0; i < curve.size(); ++i) {
-      r[static_cast<Index>(i)] = (sweep.current_A[i] - curve[i].current_A) / (of_scale * scale_A);
+      r[static_cast<Index>(i)] = (sweep.current_A[i] - curve[i].current_A) / (noise * scale_A);
     }
     return r;
   };
@@ -120,15 +140,16 @@ ReferenceFit fit_references(const ModuleDesign& design) {
       });
   inference::Options options;
   options.max_iterations = 60;
-  result.fit = inference::fit(model, model.start(), options);
+  result.fit = inference::fit(model, near != nullptr ? near->fit.at : model.start(), options);
   if (!std::isfinite(result.fit.chi2)) {
     throw InputError({design.references.front().name}, "module.reference_curve",
                      "a curve that no diode fits", "a current-voltage curve of a lit module");
   }
   for (size_t run = 0; run < result.sweeps.size(); ++run) {
-    VectorXd x(own + 5);
-    x << result.fit.at.segment(own * static_cast<Index>(run), own), result.fit.at.tail(5);
-    result.residuals_A.push_back(of_scale * scale_A * residuals(x, static_cast<Index>(run)));
+    VectorXd x(own + ModuleNominal::numbers);
+    x << result.fit.at.segment(own * static_cast<Index>(run), own),
+        result.fit.at.tail(ModuleNominal::numbers);
+    result.residuals_A.push_back(noise * scale_A * residuals(x, static_cast<Index>(run)));
   }
   return result;
 }
@@ -147,9 +168,9 @@ double correlation_points(const VectorXd& r) {
 }
 
 // Of a covariance, cut to a factor of e where the curves leave something open.
-Eigen::Matrix<double, 5, 5> root_of(MatrixXd C) {
-  Eigen::Matrix<double, 5, 5> root = Eigen::Matrix<double, 5, 5>::Zero();
-  for (Index k = 0; k < 5; ++k) {
+MatrixXd root_of(MatrixXd C) {
+  MatrixXd root = MatrixXd::Zero(C.rows(), C.cols());
+  for (Index k = 0; k < C.rows(); ++k) {
     const double most = 1.0;
     if (!(C(k, k) < most)) {
       const double shrink = std::sqrt(most / C(k, k));
@@ -189,6 +210,7 @@ ModuleNominal nominal_of_datasheet(const ModuleDesign& design) {
     const Estimate& e = *of[k];
     nominal.root(k, k) = std::clamp(e.standard_error / e.value, alike, most);
   }
+  for (Index k = 0; k < 5; ++k) nominal.root(5 + k, 5 + k) = translation_sigma[k];
   const double open_V = design.datasheet.front().open_circuit_V;
   constexpr double one_diode = 3e-3;
   nominal.misfit = one_diode;
@@ -199,8 +221,17 @@ ModuleNominal nominal_of_datasheet(const ModuleDesign& design) {
 
 ModuleNominal nominal_of_references(const ModuleDesign& design) {
   ModuleNominal nominal;
-  const ReferenceFit reference = fit_references(design);
-  nominal.cell = cell_of(reference.fit.at.tail(5), design.reference_temperature_K);
+  constexpr double first_noise = 1e-3;
+  const ReferenceFit first = fit_references(design, first_noise, nullptr);
+  // Once more with the scatter that counts once in a length of correlation as its noise.
+  double length = 0.0;
+  for (const VectorXd& r : first.residuals_A) {
+    length += correlation_points(r) / static_cast<double>(first.residuals_A.size());
+  }
+  const double scatter = std::sqrt(std::max(first.fit.variance() * length, 1e-6));
+  const ReferenceFit reference = fit_references(design, first_noise * scatter, &first);
+  nominal.cell =
+      cell_of(reference.fit.at.tail(ModuleNominal::numbers), design.reference_temperature_K);
   double squares = 0.0, points = 0.0, noise2 = 0.0, length_V = 0.0;
   for (size_t run = 0; run < reference.sweeps.size(); ++run) {
     const ModuleSweep& sweep = reference.sweeps[run];
@@ -218,10 +249,8 @@ ModuleNominal nominal_of_references(const ModuleDesign& design) {
   nominal.correlation_V = length_V;
   const double open_V = reference.sweeps.front().voltage_V.back();
   nominal.voltage_noise_V = voltage_noise_of(design, open_V);
-  // The fit's errors, on the scatter that counts once in a length of correlation.
-  const double step_V = open_V / (points / static_cast<double>(reference.sweeps.size()));
-  const double repeated = std::max(1.0, length_V / step_V);
-  nominal.root = root_of(reference.fit.shared_posterior() * reference.fit.variance() * repeated);
+  nominal.root = root_of(reference.fit.shared_posterior());
+  for (Index k = 0; k < 5; ++k) nominal.root.row(5 + k) *= translation_sigma[k];
   return nominal;
 }
 
@@ -280,15 +309,26 @@ ModuleWiring wiring_of(const ModuleDesign& design) {
   return {design.cells, design.bypass_every, design.bypass_drop_V};
 }
 
-ModuleCell moved(const ModuleNominal& nominal, const Eigen::Matrix<double, 5, 1>& z) {
-  const Eigen::Matrix<double, 5, 1> by = nominal.root * z;
+ModuleCell moved(const ModuleNominal& nominal, const ModuleNominal::Numbers& z) {
+  const ModuleNominal::Numbers by = nominal.root * z;
   ModuleCell cell = nominal.cell;
   cell.photocurrent_A *= std::exp(by[0]);
   cell.saturation_A *= std::exp(by[1]);
   cell.ideality *= std::exp(by[2]);
   cell.series_ohm *= std::exp(by[3]);
   cell.shunt_ohm *= std::exp(by[4]);
+  cell.translation.series_by_light += by[5];
+  cell.translation.series_by_temperature += by[6];
+  cell.translation.ideality_by_light += by[7];
+  cell.translation.ideality_by_temperature += by[8];
+  cell.translation.shunt_by_light += by[9];
   return cell;
+}
+
+double distance_of(const ModuleNominal& nominal, const ModuleSweep& sweep) {
+  constexpr double step_K = 25.0;
+  return std::hypot(std::log(sweep.light),
+                    (sweep.temperature_K - nominal.cell.temperature_K) / step_K);
 }
 
 ModuleNominal nominal_module(const ModuleDesign& design) {
@@ -298,9 +338,14 @@ ModuleNominal nominal_module(const ModuleDesign& design) {
 double point_sigma_A(const ModuleNominal& nominal, const ModuleSweep& sweep) {
   const double step_V = (sweep.voltage_V.back() - sweep.voltage_V.front()) /
                         static_cast<double>(sweep.voltage_V.size() - 1);
-  // A part of it is the instrument's, and stays where there is less light.
+  // Per unit of distance, of the short-circuit current: what the powers of Translation leave of the
+  // two modules from which their sizes come.
+  constexpr double translation_misfit = 1.5e-3;
+  // One or two references show their misfit over few lengths of correlation, to a third.
+  constexpr double of_curves = 1.33;
   const double misfit_A =
-      nominal.misfit * std::max(sweep.current_A.front(), nominal.cell.photocurrent_A);
+      std::hypot(of_curves * nominal.misfit, translation_misfit * distance_of(nominal, sweep)) *
+      nominal.cell.photocurrent_A * sweep.light;
   const double repeated = std::max(1.0, nominal.correlation_V / step_V);
   return std::hypot(sweep.noise_A, misfit_A * std::sqrt(repeated));
 }

@@ -8,9 +8,10 @@
 
 namespace photorque {
 
-// A curve with the errors of its points.
+// A curve with its condition and the errors of its points.
 struct ModuleSweep {
   std::string name;
+  double temperature_K = 298.15;             // as stated
   std::vector<double> voltage_V, current_A;  // rising voltage
   double light = 1.0;                        // over the reference, from the currents at low voltage
   double noise_A = 0.0;                      // of a reading, from its neighbours where not stated
@@ -23,9 +24,11 @@ ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& de
 
 struct ModuleNominal {
   ModuleCell cell;
-  // Of the logarithms of photocurrent, saturation current, ideality, series and shunt resistance:
-  // all points within (log) + root · N(0, 1).
-  Eigen::Matrix<double, 5, 5> root = Eigen::Matrix<double, 5, 5>::Zero();
+  // Of the logarithms of photocurrent, saturation current, ideality, series and shunt resistance,
+  // and of the powers of Translation in their order: all within (number) + root · N(0, 1).
+  static constexpr Eigen::Index numbers = 10;
+  using Numbers = Eigen::Matrix<double, numbers, 1>;
+  Eigen::Matrix<double, numbers, numbers> root = Eigen::Matrix<double, numbers, numbers>::Zero();
   // What one diode leaves of the reference beyond its noise, over the short-circuit current, and
   // the voltage over which that changes.
   double misfit = 0.0, correlation_V = 0.0;
@@ -33,14 +36,19 @@ struct ModuleNominal {
 };
 
 ModuleWiring wiring_of(const ModuleDesign& design);
-// The cell with the logarithms moved by root · z.
-ModuleCell moved(const ModuleNominal& nominal, const Eigen::Matrix<double, 5, 1>& z);
+// The cell with its numbers moved by root · z.
+ModuleCell moved(const ModuleNominal& nominal, const ModuleNominal::Numbers& z);
+
+// How far a curve is from the reference: e-folds of light and steps of 25 K, as the root of their
+// squares.
+double distance_of(const ModuleNominal& nominal, const ModuleSweep& sweep);
 
 // InputError for references that no diode fits.
 ModuleNominal nominal_module(const ModuleDesign& design);
 
 // The standard deviation of each point of a sweep: the noise of its readings and what one diode
-// cannot describe, which changes slowly and so counts once in a length of correlation.
+// cannot describe, which changes slowly and so counts once in a length of correlation. It grows
+// with the distance from the reference, because the translation to another condition has an error.
 double point_sigma_A(const ModuleNominal& nominal, const ModuleSweep& sweep);
 
 }  // namespace photorque
