@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "inference/held_out.h"
 #include "tests/inference/linear_bench.h"
 
 namespace photorque::inference {
@@ -44,10 +45,13 @@ TEST(Expected, IsWhatLinesLeaveOnAverage) {
   const double carried = (30.0 * 899.0 / 12.0) / (10.0 * 99.0 / 12.0) / held_rows;
   std::mt19937_64 random(5);
   double sum = 0.0, squares = 0.0;
+  HeldOutPrediction predicted;
   for (int draw = 0; draw < draws; ++draw) {
     const std::vector<LinearRun> both = {line(random, 0.0, 10, 0.7), line(random, 50.0, 30, 0.7)};
     const Fit train = fitted({both[0]}), joint = fitted(both);
     ASSERT_NEAR(expected_chi2_per_sample(train, joint), 1.0 + carried, 1e-9);
+    predicted = predict_held_out(train, joint);
+    ASSERT_NEAR(predicted.chi2_per_sample, 1.0 + carried, 1e-9);
     const double left = chi2_of_held(both[1], train.at[1]) / held_rows;
     sum += left;
     squares += left * left;
@@ -57,6 +61,13 @@ TEST(Expected, IsWhatLinesLeaveOnAverage) {
   // The run's own offset takes one degree of freedom.
   EXPECT_NEAR(mean, 1.0 + carried - 1.0 / held_rows, 4.0 * error);
   EXPECT_GT(carried, 20.0 * error);  // it would be missed
+  // χ² is that of one degree of freedom times 1 + 30 · carried, and of the others: variances 2 x².
+  const double one = 1.0 + carried * held_rows,
+               deviation = std::sqrt(2.0 * (one * one + held_rows - 1.0)) / held_rows;
+  EXPECT_NEAR(predicted.standard_error, deviation, 1e-3 * deviation);
+  // The kurtosis of χ² of one degree is 15, so that a deviation is known to √(14/n)/2 of itself.
+  EXPECT_NEAR(std::sqrt(squares / draws - mean * mean), deviation,
+              4.0 * std::sqrt(14.0 / draws) / 2.0 * deviation);
 }
 
 TEST(Expected, IsUnknownWhereTheFitsDoNotShareTheirParameters) {
