@@ -67,7 +67,7 @@ std::vector<inference::ChannelResiduals> channels_of(const std::vector<Predictio
 double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
                     const Thresholds::Noise& limits) {
   // Where runs are short, a start that is fitted leaves no mean of many neighbours: their channels
-  // have as many means as show what is left beside it.
+  // have as many means as show the remainder beside it.
   constexpr size_t fewest_means = 6;
   try {
     const std::vector<inference::ChannelResiduals> channels = channels_of(residuals_of(fit, runs));

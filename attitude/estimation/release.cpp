@@ -88,7 +88,7 @@ LocalMotion local_motion(const AxisAngles& read, double reach_s, double step_s) 
   return result;
 }
 
-// What the one law leaves of the accelerations, over its usual scatter.
+// The residual of the accelerations under the one law, over its usual scatter.
 Eigen::VectorXd off_the_law(const Eigen::MatrixXd& motion) {
   constexpr int rounds = 20;
   constexpr double biweight = 4.685, alike = 1e-3;

@@ -102,7 +102,7 @@ void begin_anew_under_commands(const std::string& name, const Platform& platform
     if (count > 1) {
       warnings.push_back(
           written("%s: forces are commanded, which may answer the motion: %zu "
-                  "stretches with a start of their own each",
+                  "segments, each with its own initial state",
                   name.c_str(), count));
     }
   }

@@ -233,8 +233,8 @@ double steady_temperature_K(const PreparedArray& array, const LightBins& bins) {
 
 // Per kelvin of the cells in the same light; leaves the array as it was.
 Headline slope_of_headline(PreparedArray& array, const LightBins& bins) {
-  constexpr double step_K = 0.5;
   const double kelvin = array.temperature_K;
+  const double step_K = 1e-3 * kelvin;
   const auto at = [&](double other_K) {
     array.warm_to(other_K);
     prepare_tables(array, bins, true);

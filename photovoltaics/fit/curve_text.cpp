@@ -159,6 +159,7 @@ struct Header {
   std::array<std::optional<size_t>, columns> place;
   std::array<Unit, columns> unit;
   std::array<bool, columns> has_unit{};
+  std::array<std::string, columns> title;  // as written
 };
 
 std::optional<Header> header_of(std::string_view line, const InputLocation& where) {
@@ -185,6 +186,7 @@ std::optional<Header> header_of(std::string_view line, const InputLocation& wher
     }
     header.place[name.column] = i;
     header.has_unit[name.column] = name.unit.has_value();
+    header.title[name.column] = unquoted(cells[i]);
     if (name.unit) header.unit[name.column] = *name.unit;
   }
   if (!header.place[voltage] || !header.place[current]) return std::nullopt;
@@ -267,9 +269,7 @@ class Reader {
     const size_t place = *header_.place[column];
     const std::string cell = place < cells.size() ? plain(cells[place]) : "";
     if (is_missing(cell)) return std::nullopt;
-    static constexpr const char* what[] = {"voltage", "current", "irradiance", "temperature",
-                                           "curve"};
-    const double number = require_number(cell, lines_.where(), what[column]);
+    const double number = require_number(cell, lines_.where(), header_.title[column]);
     return (number + header_.unit[column].offset) * header_.unit[column].to_SI;
   }
 

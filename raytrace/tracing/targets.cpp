@@ -280,7 +280,7 @@ Targets::Targets(const ParallelLight& light, std::vector<AngleRange> ranges)
   for (AngleRange& range : ranges_) {
     const double part = (range.to - range.from) * range.cells.area_m2() / sum_m2;
     range.begin = before;
-    range.stretch = (range.to - range.from) / part;
+    range.scale = (range.to - range.from) / part;
     before += part;
   }
   fraction_ = sum_m2 / (pi * light.radius_m() * light.radius_m());
@@ -296,7 +296,7 @@ void Targets::emit(SampleBlock& samples, RayBlock& rays) const {
       while (k > 0 && draw < ranges_[k].begin) --k;
       range[i] = &ranges_[k];
       const double fraction = std::clamp(
-          ranges_[k].from + (draw - ranges_[k].begin) * ranges_[k].stretch, 0.0, ranges_[k].to);
+          ranges_[k].from + (draw - ranges_[k].begin) * ranges_[k].scale, 0.0, ranges_[k].to);
       samples.bits[2][i] = static_cast<uint32_t>(std::min(fraction * 0x1p32, 0x1p32 - 1.0));
     }
   }

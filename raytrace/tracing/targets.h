@@ -16,7 +16,7 @@ namespace photorque {
 // lies within |z| sin θ + ρ (1 − cos θ) of its place (ρ from the axis) along the axis. Triangles
 // with this margin are drawn onto a grid of bits, which is halved in both directions until few
 // cells are left. Light far from the axis has wide margins and little power, so directions are cut
-// into a few ranges of angles, each with cells of its own. Points and directions are drawn in
+// into a few ranges of angles, each with separate cells. Points and directions are drawn in
 // proportion to the cells' area times the range's power: every ray carries the same power, and the
 // light left out meets nothing. Exact: no result is biased.
 class Targets {
@@ -46,8 +46,8 @@ class Targets {
  private:
   // Directions between two fractions of the light, counted from the axis.
   struct AngleRange {
-    double from, to;        // fractions of the light
-    double begin, stretch;  // fraction = from + (draw − begin) · stretch
+    double from, to;      // fractions of the light
+    double begin, scale;  // fraction = from + (draw − begin) · scale
     Cells cells;
   };
 

@@ -223,8 +223,8 @@ TEST(ModuleDiagnosis, NamesNoDamageInAnotherLightAndTemperature) {
   EXPECT_TRUE(d.effects.empty());
 }
 
-// The same curve as a second reference leaves the translation no freedom: a shaded cell shows
-// there.
+// A second reference under the light of the curve leaves the translation no freedom: a shaded cell
+// shows there.
 LightRecording shaded_curve(double light, double factor, unsigned seed) {
   Network network(6, false);
   for (int i = 0; i < 6; ++i) network.light_A[static_cast<size_t>(i)] *= factor;

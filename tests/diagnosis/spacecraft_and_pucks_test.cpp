@@ -95,7 +95,7 @@ TEST(Pucks, AWallIsNoForce) {
 }
 
 // A platform that thrusters hold in its place, PD control, while it turns evenly: the commanded
-// force answers the place, and what is missing shows in the command alone. Between commands the
+// force answers the place, and the effects show in the command alone. Between commands the
 // acceleration is constant but for the force that turns along, which is taken at the middle.
 Recording held_in_place(double gain, const Vec2& lab_m_s2, const Vec2& body_m_s2, uint64_t seed) {
   constexpr double mass_kg = 12.0, turn_rad_s = 0.055, step_s = 0.1;
@@ -139,7 +139,7 @@ noise_arcsec = 31
   const Diagnosis d = diagnose(platform, runs, {});
   ASSERT_THAT(kinds_of(d), UnorderedElementsAre("actuator_gain", "table_slope", "body_force"))
       << d.sentence;
-  EXPECT_THAT(d.warnings, testing::Contains(HasSubstr("16 stretches")));
+  EXPECT_THAT(d.warnings, testing::Contains(HasSubstr("16 segments")));
   EXPECT_NEAR(parameter(d, "actuator_gain", "gain_error").value[0], gain - 1.0, 0.05);
   for (size_t k = 0; k < 2; ++k) {
     const auto at = static_cast<Eigen::Index>(k);

@@ -216,7 +216,7 @@ TEST(Gates, ANameThatLeftOutSegmentsDoNotNeedIsNotSaid) {
   EXPECT_EQ(judged(2.9, 8.0, mutant).finding, Finding::named);
 }
 
-// What a fit to all recordings explains, the fit to some of them may still have led away from.
+// A fit to all recordings may explain data that the fit to some of them led away from.
 TEST(Gates, AHeldOutChi2FarAboveItsPredictionIsUnknown) {
   std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0)};
   Thresholds::Decision limits, mutant;

@@ -15,7 +15,7 @@ cp -L /lib64/ld-linux-x86-64.so.2 "$root/lib64/"
 for library in c m dl rt pthread util resolv mvec nsl anl; do
   cp -L "/lib/x86_64-linux-gnu/lib$library.so".[0-9] "$root/lib/x86_64-linux-gnu/" 2>/dev/null || true
 done
-cp "$(command -v true)" "$root/tmp/true"
+cp "$(type -P true)" "$root/tmp/true"
 if ! "${enter[@]}" /tmp/true; then
   echo "Skipped: no rights to enter another root"
   exit 77

@@ -53,7 +53,7 @@ struct Heliostat {
   double focal_m;
 };
 
-// What a case's name says. Sun over north through east; shapes as the cases' list has them.
+// The parts of a case's name. Sun over north through east; shapes as the cases' list has them.
 struct Layout {
   SettingsNode::Table sun;  // its shape
   std::shared_ptr<const Lobe> slope_error;

@@ -155,7 +155,7 @@ TEST(SunShape, BuiesCircumsolarRatioAndLimbAreThePapers) {
   }
 }
 
-// What falls on a plane normal to the axis is what is stated: E = power/(π R²) times the mean
+// The irradiance on a plane normal to the axis is the stated one: E = power/(π R²) times the mean
 // cosine of the rays.
 TEST(SunShape, KeepsTheIrradiance) {
   for (const Beam& beam : {pillbox(20.0), gaussian(100.0), buie(0.3), table()}) {

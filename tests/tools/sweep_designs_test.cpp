@@ -127,7 +127,7 @@ TEST_F(SweepDesigns, TheBestKeepsToTheConstraintsAndRunsAsItStands) {
             (std::vector<std::vector<std::string>>{{"40.0"}, {"60.0"}}));
 }
 
-// What stands in a text of an axis is a text of best.toml.
+// A text of an axis is a text of best.toml.
 TEST_F(SweepDesigns, HostileTextsStayValues) {
   const std::string name = "a\"\n[evil]\nx = \"1\x1b[2J'''#";
   experiment(

@@ -9,7 +9,7 @@ namespace fit_key {
 inline constexpr TextsKey curves(
     "curves",
     "files of voltage and current, as `voltage_V,current_A`, `V,I`, `Voltage (V);Current (mA)`; "
-    "several are repeats under the same light, or have lights of their own; *or*",
+    "several are repeats under the same light, or have separate lights; *or*",
     {.optional = true});
 inline constexpr TablesKey curve("curve", "curves whose light or temperature is stated; *or*");
 inline constexpr TextKey curve_file("file", "one of `curves`");

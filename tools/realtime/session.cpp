@@ -172,6 +172,7 @@ ZeroOrderHold Session::tick(const LiveRow& row) {
 void Session::meet_client() {
   const int64_t give_up_ns = monotonic_ns() + in_ns(settings_.client_timeout_s);
   while ((settings_.wait_for_client || !is_paced()) && !gate_.client()) {
+    packets_of_tick_ = 0;  // no tick waits for these
     take_in(give_up_ns);
     if (monotonic_ns() > give_up_ns) {
       throw NumericalError("no client came to " + socket_.where() + " within " +

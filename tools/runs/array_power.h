@@ -32,7 +32,7 @@ ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known = nullptr);
 // deliver more than they absorb.
 ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const TraceResult& result);
 
-// The same array with its cells at the temperature of `result`, whatever the light.
+// `array` with its cells at the temperature of `result`, whatever the light.
 ArrayPower held_at(ArrayPower array, const ArrayResult& result);
 
 // "steady state: both faces in still air of 293.15 K, emissivity 0.84", or "as stated".

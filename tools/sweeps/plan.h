@@ -114,7 +114,7 @@ struct SweepPlan {
 // key.
 SweepPlan read_sweep_plan(const Settings& sweep);
 
-// What a plan lacks for a search of the best design; empty: nothing.
+// The keys that a plan lacks for a search of the best design; empty: none.
 std::string lacks_for_search(const SweepPlan& plan);
 
 }  // namespace photorque
