@@ -94,7 +94,7 @@ TEST(Joints, PositionsInterpolatePolynomials) {
 
 TEST(Joints, WrongOnesNameTheirKey) {
   using testing::HasSubstr;
-  EXPECT_THAT(error_of("{node=\"sail\", axis=[0,1,0]}"), HasSubstr("wing_1, wing_2"));
+  EXPECT_THAT(error_of("{node=\"sail\", axis=[0,1,0]}"), HasSubstr("\"wing_1\", \"wing_2\""));
   EXPECT_THAT(error_of("{node=\"wing_1\", axis=[0,0,0]}"), HasSubstr("a zero vector"));
   EXPECT_THAT(error_of("{axis=[0,1,0]}"), HasSubstr("one of node and nodes"));
   EXPECT_THAT(error_of("{node=\"wing_1\", axis=[0,1,0], towards_sun=[0,3,0]}"),
