@@ -29,7 +29,7 @@ mv "$root"/opt/photorque-* "$root/opt/photorque"
 cp -r "$source/docs/tutorials" "$root/work/tutorials"
 
 echo "== Main job"
-photorque=(env -i "PATH=$PATH" TMPDIR=/tmp "${enter[@]}" /opt/photorque/bin/photorque)
+photorque=(env -i "PATH=$PATH" HOME=/tmp TMPDIR=/tmp "${enter[@]}" /opt/photorque/bin/photorque)
 "${photorque[@]}" power /opt/photorque/share/photorque/scenes/stasis/nominal.toml --set trace.rays=65536 \
   --out /work/power --quiet 2>"$place/said"
 echo "from the archive to the first picture: $((($(date +%s%N) - begin) / 1000000)) ms"
