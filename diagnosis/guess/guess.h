@@ -31,7 +31,7 @@ struct GuessedColumn {
 };
 
 // The header of a CSV file: the last line before the first row of numbers that has as many cells.
-// A clock whose name states no unit is told by its steps. Of a CCSDS AEM: its quaternion.
+// A clock whose name states no unit is recognised by its steps. Of a CCSDS AEM: its quaternion.
 // InputError, naming the cure, for a file without such a header, with decimal commas, or in UTF-16.
 std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path);
 
