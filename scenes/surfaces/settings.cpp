@@ -163,11 +163,11 @@ void read_slope_error(const Settings& table, Bsdf& bsdf) {
   const SlopeShape shape =
       table.get(slope_error_shape) == 0 ? SlopeShape::gaussian : SlopeShape::pillbox;
   if (!table.raw(key).is_array()) {
+    const double slope_rad = table.get(key);
     if (table.has(slope_error_axis)) {
       throw table.error(slope_error_axis, "an axis for one size",
                         "two sizes: slope_error_mrad = [along it, across it]");
     }
-    const double slope_rad = table.get(key);
     bsdf.specular = photorque::slope_error(slope_rad, shape);
     bsdf.description = words("slope error in mrad", 1e3 * slope_rad);
     return;
