@@ -53,6 +53,9 @@ RigidTransform lab_from_body_at(double tilt_rad, double heading_rad);
 // At `direction` = −z it is the half turn about x.
 RigidTransform frame_looking_along(const Vec3& direction, const Vec3& origin_m);
 
+// The shortest rotation that takes the direction of `from` to that of `to` (any lengths but zero).
+Quat rotation_between(const Vec3& from, const Vec3& to);
+
 // Rotations as rotation vectors: what filters and least squares over attitudes need.
 
 // The rotation by a rotation vector [rad].

@@ -1,9 +1,9 @@
 #include "attitude/camera/pose.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
 
+#include "core/numerics/linear.h"
 #include "core/transform.h"
 #include "inference/estimator/fit.h"
 
@@ -115,9 +115,8 @@ std::optional<Answer> answer_of(const TrackingCamera& camera, const Pose& pose) 
   if (!(scale.minCoeff() > 0.0)) return {};
   const Eigen::MatrixXd even =
       scale.cwiseInverse().asDiagonal() * own * scale.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(even);
   constexpr double singular = 1e-10;
-  if (solver.info() != Eigen::Success || solver.eigenvalues()[0] < singular) return {};
+  if (!(symmetric_eigen(even).values[0] >= singular)) return {};
   const Eigen::MatrixXd covariance =
       scale.cwiseInverse().asDiagonal() * even.inverse() * scale.cwiseInverse().asDiagonal();
   Answer answer;

@@ -1,9 +1,10 @@
 #include "attitude/estimation/free_inertia.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "core/numerics/linear.h"
 
 namespace photorque {
 namespace {
@@ -176,10 +177,10 @@ std::optional<FreeInertia> free_inertia(const std::vector<Observation>& pieces, 
   MatrixXd X = all(Eigen::all, free);
   const VectorXd length = X.colwise().norm();
   X = X * length.cwiseInverse().asDiagonal();
-  const Eigen::ColPivHouseholderQR<MatrixXd> factors(X);
-  if (factors.rank() < X.cols()) return std::nullopt;
   const VectorXd y = -all.col(unit);
-  const VectorXd solved = factors.solve(y);
+  const LeastSquares fit = least_squares(X, y);
+  if (fit.rank < X.cols()) return std::nullopt;
+  const VectorXd solved = fit.solution;
   const VectorXd residual = y - X * solved;
   const auto freedom = static_cast<double>(std::max<Index>(1, X.rows() - X.cols()));
   const MatrixXd covariance =

@@ -1,11 +1,10 @@
 #include "attitude/estimation/release.h"
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "core/constants.h"
+#include "core/numerics/linear.h"
 
 namespace photorque {
 namespace {
@@ -77,7 +76,7 @@ LocalMotion local_motion(const AxisAngles& read, double reach_s, double step_s) 
       powers.row(i) << 1.0, since, since * since, since * since * since;
       angles[i] = read.angle_rad[k];
     }
-    const Eigen::Vector4d c = powers.householderQr().solve(angles);
+    const Eigen::Vector4d c = least_squares(powers, angles).solution;
     all.emplace_back(c[0], c[1] / reach_s, 2.0 * c[2] / (reach_s * reach_s));
     result.row.push_back(read.row[at]);
   }
@@ -101,10 +100,9 @@ Eigen::VectorXd off_the_law(const Eigen::MatrixXd& motion) {
   law.colwise().normalize();
   Eigen::VectorXd weight = Eigen::VectorXd::Ones(motion.rows()), off;
   for (int round = 0; round < rounds; ++round) {
-    Eigen::JacobiSVD<Eigen::MatrixXd> svd(weight.asDiagonal() * law,
-                                          Eigen::ComputeThinU | Eigen::ComputeThinV);
-    svd.setThreshold(alike);
-    off = motion.col(2) - law * svd.solve(weight.cwiseProduct(motion.col(2)));
+    off = motion.col(2) -
+          law * least_squares(weight.asDiagonal() * law, weight.cwiseProduct(motion.col(2)), alike)
+                    .solution;
     std::vector<double> sizes(off.size());
     for (Eigen::Index i = 0; i < off.size(); ++i) sizes[static_cast<size_t>(i)] = std::abs(off[i]);
     // The median of |x| of a Gaussian is 0.6745 σ.

@@ -76,7 +76,7 @@ std::vector<Quat> attitudes_by_fields(const AttitudeModel& model, const Observat
   if (has_weight && has_field) return {attitude_from_two(up_lab, field_lab, *force, *field)};
   if (!has_weight && !has_field) return {};
   const Quat found =
-      has_weight ? Quat::FromTwoVectors(*force, up_lab) : Quat::FromTwoVectors(*field, field_lab);
+      has_weight ? rotation_between(*force, up_lab) : rotation_between(*field, field_lab);
   const Vec3 about = has_weight ? up_lab.normalized() : field_lab.normalized();
   constexpr int headings = 4;
   std::vector<Quat> all;

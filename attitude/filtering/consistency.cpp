@@ -1,8 +1,8 @@
 #include "attitude/filtering/consistency.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
+#include "core/numerics/linear.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -29,11 +29,8 @@ NormalisedError normalised_error(const AttitudeEstimate& estimate, const TruthAt
   if (truth.rate_body_rad_s) put(*truth.rate_body_rad_s - estimate.rate_body_rad_s, 3);
   if (errors.empty()) return {};
   const VecX error = Eigen::Map<VecX>(errors.data(), static_cast<Eigen::Index>(errors.size()));
-  const MatX covariance = estimate.covariance(places, places);
-  const VecX scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
-  const MatX even = scale.asDiagonal() * covariance * scale.asDiagonal();
-  const VecX scaled = scale.cwiseProduct(error);
-  return {scaled.dot(even.ldlt().solve(scaled)), static_cast<int>(errors.size())};
+  return {squared_distance(error, estimate.covariance(places, places)),
+          static_cast<int>(errors.size())};
 }
 
 double attitude_error_rad(const AttitudeEstimate& estimate, const TruthAtRow& truth) {

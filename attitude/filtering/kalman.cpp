@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/constants.h"
+#include "core/numerics/linear.h"
 
 namespace photorque {
 
@@ -28,7 +29,7 @@ MatX solved_by(const MatX& covariance, const MatX& right) {
   for (Eigen::Index i = 0; i < even.rows(); ++i) {
     if (scale[i] == 0.0) even(i, i) = 1.0;
   }
-  return scale.asDiagonal() * even.ldlt().solve(scale.asDiagonal() * right);
+  return scale.asDiagonal() * solve_symmetric(even, scale.asDiagonal() * right);
 }
 
 void update(const MotionModel& model, FilterState& state, const Measurement& read,

@@ -1,9 +1,10 @@
 #include "core/numerics/sphere_series.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "core/numerics/linear.h"
 
 namespace photorque {
 namespace {
@@ -79,12 +80,13 @@ SphereSeries SphereSeries::fit(int degree, std::span<const double> azimuth_rad,
       basis.row(e) =
           weights[e] * legendre(degree, m, elevation_rad[static_cast<size_t>(e)]).transpose();
     }
-    const auto solver = basis.colPivHouseholderQr();
     const Eigen::Index first = first_of(degree, m), count = count_of(degree, m);
-    series.coefficients_.middleRows(first, count) = solver.solve(weights.asDiagonal() * cosines);
+    Eigen::MatrixXd both(rings, cosines.cols() + sines.cols());
+    both << cosines, sines;
+    const Eigen::MatrixXd solved = least_squares(basis, weights.asDiagonal() * both).solution;
+    series.coefficients_.middleRows(first, count) = solved.leftCols(cosines.cols());
     if (m == 0) continue;
-    series.coefficients_.middleRows(kind + first, count) =
-        solver.solve(weights.asDiagonal() * sines);
+    series.coefficients_.middleRows(kind + first, count) = solved.rightCols(sines.cols());
   }
   return series;
 }

@@ -1,13 +1,12 @@
 #include "diagnosis/attitude/refine.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "attitude/estimation/fit.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/numerics/linear.h"
 
 namespace photorque {
 namespace {
@@ -180,7 +179,7 @@ Series fitted_series(const std::vector<double>& at_s, const Eigen::MatrixXd& val
   }
   Series series;
   series.period_s = period_s;
-  series.coefficients = (terms.transpose() * terms).ldlt().solve(terms.transpose() * values);
+  series.coefficients = solve_symmetric(terms.transpose() * terms, terms.transpose() * values);
   series.left = (values - terms * series.coefficients).squaredNorm();
   return series;
 }

@@ -1,10 +1,10 @@
 #include "diagnosis/light/account.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "core/numerics/linear.h"
 #include "core/settings/settings.h"
 
 namespace photorque {
@@ -224,7 +224,7 @@ std::vector<Where::Dependence> light_dependences(const LightTrial& about,
       g += J.transpose() * s.residuals;
     }
     H.diagonal() *= 1.0 + 1e-9;
-    const double gain = g.dot(H.ldlt().solve(g)) - static_cast<double>(g.size());
+    const double gain = g.dot(solve_symmetric(H, g).col(0)) - static_cast<double>(g.size());
     if (std::isfinite(gain)) {
       strength[c.variable] = std::max(strength[c.variable], std::clamp(gain / beyond, 0.0, 1.0));
     }

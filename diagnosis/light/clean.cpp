@@ -1,9 +1,10 @@
 #include "diagnosis/light/diagnose.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "core/numerics/linear.h"
 
 namespace photorque {
 namespace {
@@ -45,7 +46,7 @@ bool leaves_plane(const std::vector<Vec2>& at, const std::vector<double>& value,
     A.row(static_cast<Eigen::Index>(k)) << 1.0, at[k].x(), at[k].y();
     b[static_cast<Eigen::Index>(k)] = value[k];
   }
-  const Eigen::VectorXd x = A.colPivHouseholderQr().solve(b);
+  const Eigen::VectorXd x = least_squares(A, b).solution;
   const double scatter = std::sqrt((A * x - b).squaredNorm() / static_cast<double>(at.size() - 3));
   constexpr double of_scatter = 4.0;
   return std::abs(own - x[0]) > allowed + of_scatter * scatter;

@@ -1,10 +1,10 @@
 #include "diagnosis/light/account.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "core/numerics/linear.h"
 #include "core/parallel.h"
 #include "diagnosis/light/domain.h"
 
@@ -28,7 +28,7 @@ Eigen::VectorXd unlike(const LightTrial& about, const LightCandidates& all,
     const Eigen::MatrixXd inner = H.topLeftCorner(fitted, fitted),
                           cross = H.bottomLeftCorner(H.rows() - fitted, fitted);
     H = Eigen::MatrixXd(H.bottomRightCorner(H.rows() - fitted, H.cols() - fitted) -
-                        cross * inner.ldlt().solve(cross.transpose()));
+                        cross * solve_symmetric(inner, cross.transpose()));
   }
   std::vector<double> strengths;
   const LightCandidate& named = all[terms.front().candidate];
@@ -49,7 +49,7 @@ Eigen::VectorXd unlike(const LightTrial& about, const LightCandidates& all,
       Eigen::MatrixXd S = H.block(at, at, n, n);
       S.diagonal() *= 1.0 + 1e-9;
       const Eigen::VectorXd shared = H.block(at, 0, n, own) * theta;
-      const double taken = shared.dot(S.ldlt().solve(shared));
+      const double taken = shared.dot(solve_symmetric(S, shared).col(0));
       if (std::isfinite(taken)) left[static_cast<Eigen::Index>(t)] -= taken;
     }
     at += n;

@@ -1,10 +1,10 @@
 #include "diagnosis/light/scan.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "core/numerics/linear.h"
 #include "core/parallel.h"
 
 namespace photorque {
@@ -69,7 +69,7 @@ double gain_alone(const LightCandidate& c, const std::vector<double>& start,
     g += J.transpose() * l.residuals;
   }
   H.diagonal().array() *= 1.0 + 1e-9;
-  const double gain = g.dot(H.ldlt().solve(g));
+  const double gain = g.dot(solve_symmetric(H, g).col(0));
   return std::isfinite(gain) ? gain : 0.0;
 }
 

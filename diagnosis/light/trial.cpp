@@ -1,10 +1,10 @@
 #include "diagnosis/light/trial.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/numerics/linear.h"
 #include "inference/estimator/evidence.h"
 #include "inference/estimator/forward_model.h"
 
@@ -210,10 +210,7 @@ double significance_of(const LightTrial& trial, const LightCandidates& all, size
   const Eigen::MatrixXd C = Eigen::MatrixXd(trial.fit.shared_posterior())(at, at);
   const Eigen::Map<const Eigen::VectorXd> theta(value.data(),
                                                 static_cast<Eigen::Index>(value.size()));
-  const Eigen::VectorXd unit = C.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd correlation = unit.asDiagonal() * C * unit.asDiagonal();
-  const Eigen::VectorXd scaled = unit.cwiseProduct(theta);
-  return std::sqrt(std::max(0.0, scaled.dot(correlation.ldlt().solve(scaled))));
+  return std::sqrt(std::max(0.0, squared_distance(theta, C)));
 }
 
 void judge(LightTrial& trial, const LightCandidates& all) {

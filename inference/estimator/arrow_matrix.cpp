@@ -1,8 +1,11 @@
 #include "inference/estimator/arrow_matrix.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
 
+#include "core/numerics/linear.h"
 #include "inference/estimator/covariance.h"
 
 namespace photorque::inference {
@@ -131,14 +134,14 @@ Eigen::VectorXd ArrowMatrix::solve(const Eigen::VectorXd& x) const {
   Eigen::VectorXd right = x.tail(shared_.rows());
   std::vector<Eigen::MatrixXd> columns;
   for (size_t run = 0; run < own_.size(); ++run) {
-    const auto factors = factors_of(run);
+    const Eigen::LDLT<Eigen::MatrixXd> factors(own_[run]);
     columns.push_back(eliminated(factors, cross_[run]));
     part(y, run) = factors.solve(Eigen::VectorXd(part(x, run)));
     left -= cross_[run] * columns.back();
     right -= cross_[run] * part(y, run);
   }
   if (shared_.rows() == 0) return y;
-  const Eigen::VectorXd tail = left.ldlt().solve(right);
+  const Eigen::VectorXd tail = solve_symmetric(left, right);
   for (size_t run = 0; run < own_.size(); ++run) part(y, run) -= columns[run] * tail;
   y.tail(shared_.rows()) = tail;
   return y;
@@ -155,7 +158,7 @@ double ArrowMatrix::log_determinant() const {
 Eigen::MatrixXd ArrowMatrix::shared_information() const {
   Eigen::MatrixXd left = shared_;
   for (size_t run = 0; run < own_.size(); ++run) {
-    left -= cross_[run] * eliminated(factors_of(run), cross_[run]);
+    left -= cross_[run] * eliminated(own_[run].ldlt(), cross_[run]);
   }
   return left;
 }
@@ -164,7 +167,7 @@ NormalSums ArrowMatrix::shared_sums(const Eigen::VectorXd& gradient, double chi2
                                     int64_t samples) const {
   NormalSums sums{shared_, gradient.tail(shared_.rows()), chi2, samples};
   for (size_t run = 0; run < own_.size(); ++run) {
-    const auto factors = factors_of(run);
+    const Eigen::LDLT<Eigen::MatrixXd> factors(own_[run]);
     sums.matrix -= cross_[run] * eliminated(factors, cross_[run]);
     sums.gradient -= cross_[run] * factors.solve(Eigen::VectorXd(part(gradient, run)));
   }

@@ -1,7 +1,6 @@
 // The normal equations of least squares over several runs.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <cstdint>
 #include <vector>
@@ -97,9 +96,6 @@ class ArrowMatrix {
   NormalSums shared_sums(const Eigen::VectorXd& gradient, double chi2, int64_t samples) const;
 
  private:
-  Eigen::LDLT<Eigen::MatrixXd> factors_of(size_t run) const {
-    return Eigen::LDLT<Eigen::MatrixXd>(own_[run]);
-  }
   auto part(Eigen::VectorXd& x, size_t run) const {
     return x.segment(static_cast<Index>(run) * per_run_, per_run_);
   }

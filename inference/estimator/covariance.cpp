@@ -1,10 +1,10 @@
 #include "inference/estimator/covariance.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "core/numerics/linear.h"
 #include "inference/estimator/parameter.h"
 
 namespace photorque::inference {
@@ -22,20 +22,20 @@ Eigen::VectorXd scale_of(const Eigen::MatrixXd& information) {
 // diagonal. With no parameter undetermined the matrix is left empty.
 Covariance without_unknown(const Eigen::MatrixXd& scaled) {
   const Eigen::Index n = scaled.rows();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  const SymmetricEigen eigen = symmetric_eigen(scaled);
   const double least = rounding * static_cast<double>(n);
   // How much of each parameter lies in the unknown combinations.
   Eigen::VectorXd unknown = Eigen::VectorXd::Zero(n), inverse = Eigen::VectorXd::Zero(n);
   for (Eigen::Index k = 0; k < n; ++k) {
-    if (eigen.eigenvalues()[k] > least) {
-      inverse[k] = 1.0 / eigen.eigenvalues()[k];
+    if (eigen.values[k] > least) {
+      inverse[k] = 1.0 / eigen.values[k];
     } else {
-      unknown += eigen.eigenvectors().col(k).cwiseAbs2();
+      unknown += eigen.vectors.col(k).cwiseAbs2();
     }
   }
   Covariance result;
   if (unknown.isZero(0.0)) return result;
-  result.matrix = eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+  result.matrix = eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose();
   // An eigenvector is good to rounding over the gap between eigenvalues.
   constexpr double takes_part = 1e-6;
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -87,7 +87,7 @@ Eigen::MatrixXd posterior_of(const Eigen::MatrixXd& information) {
   const Eigen::VectorXd scale = scale_of(information);
   const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
   const Eigen::MatrixXd inverse =
-      scaled.ldlt().solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));
+      solve_symmetric(scaled, Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));
   return scale.asDiagonal() * inverse * scale.asDiagonal();
 }
 

@@ -1,10 +1,10 @@
 #include "inference/estimator/evidence.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "core/numerics/linear.h"
 #include "inference/estimator/covariance.h"
 
 namespace photorque::inference {
@@ -47,10 +47,7 @@ double log_strength_evidence(const Strengths& s, const Eigen::MatrixXd& covarian
       const double w = width(chosen[s.owner[static_cast<size_t>(a)]]);
       sum(a, a) += w * w;
     }
-    const Eigen::VectorXd unit = sum.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd scaled = unit.asDiagonal() * sum * unit.asDiagonal();
-    const Eigen::VectorXd off = unit.cwiseProduct(theta);
-    return -0.5 * (log_determinant(sum) + off.dot(scaled.ldlt().solve(off)));
+    return -0.5 * (log_determinant(sum) + squared_distance(theta, sum));
   };
   // Effect by effect, the others at their best width.
   for (const bool last : {false, true}) {

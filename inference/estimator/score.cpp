@@ -1,7 +1,8 @@
 #include "inference/estimator/score.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+
+#include "core/numerics/linear.h"
 
 namespace photorque::inference {
 
@@ -12,17 +13,16 @@ Score solve_score(const Eigen::MatrixXd& S, const Eigen::VectorXd& s,
   constexpr double rounding = 1e-8;
   const Eigen::VectorXd scale =
       before.cwiseSqrt().unaryExpr([](double root) { return root > 0.0 ? 1.0 / root : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-      Eigen::MatrixXd(scale.asDiagonal() * S * scale.asDiagonal()));
-  const Eigen::VectorXd rotated = eigen.eigenvectors().transpose() * scale.cwiseProduct(s);
+  const SymmetricEigen eigen = symmetric_eigen(scale.asDiagonal() * S * scale.asDiagonal());
+  const Eigen::VectorXd rotated = eigen.vectors.transpose() * scale.cwiseProduct(s);
   Eigen::VectorXd solved = Eigen::VectorXd::Zero(s.size());
   for (Eigen::Index i = 0; i < s.size(); ++i) {
-    const double lambda = eigen.eigenvalues()[i];
+    const double lambda = eigen.values[i];
     if (!(lambda > rounding)) continue;
     solved[i] = rotated[i] / lambda;
     score.gain += rotated[i] * solved[i];
   }
-  score.estimate = scale.cwiseProduct(eigen.eigenvectors() * solved);
+  score.estimate = scale.cwiseProduct(eigen.vectors * solved);
   score.information = S;
   return score;
 }

@@ -185,7 +185,7 @@ RigidTransform displaced_pose(const Beam& beam, const Vec2& aim, const Vec3& shi
     return e.norm() > 1e-9 ? Vec3(e.normalized()) : Vec3(Vec3::Zero());
   };
   const Vec3 turned_to = d + aim.x() * across(Vec3::UnitX()) + aim.y() * across(Vec3::UnitY());
-  pose.rotation = (Quat::FromTwoVectors(d, turned_to) * pose.rotation).normalized();
+  pose.rotation = (rotation_between(d, turned_to) * pose.rotation).normalized();
   return pose;
 }
 

@@ -201,7 +201,7 @@ void show_nodes(const OpticalRun& run, const std::vector<Direction>& all, size_t
 }  // namespace
 
 RigidTransform SunLight::lab_from_body(const Vec3& towards_body) const {
-  return {Quat::FromTwoVectors(towards_body, towards_lab), Vec3::Zero()};
+  return {rotation_between(towards_body, towards_lab), Vec3::Zero()};
 }
 
 std::vector<RigidTransform> fresh_directions(size_t count, const SunLight& sun) {

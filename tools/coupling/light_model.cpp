@@ -270,7 +270,7 @@ std::shared_ptr<const RotationTable> LightModel::make_table(const Console& conso
   }
   RotationTableOptions options;
   if (sun_direction_lab_) {
-    options.axis_from_lab = Quat::FromTwoVectors(*sun_direction_lab_, Vec3::UnitZ());
+    options.axis_from_lab = rotation_between(*sun_direction_lab_, Vec3::UnitZ());
   }
   options.max_angle_rad = max_angle_rad;
   options.tolerance = settings_.tolerance;

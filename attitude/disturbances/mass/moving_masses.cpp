@@ -1,9 +1,9 @@
 #include "attitude/disturbances/mass/moving_masses.h"
 
-#include <Eigen/QR>
 #include <cmath>
 
 #include "core/constants.h"
+#include "core/numerics/linear.h"
 
 namespace photorque {
 
@@ -38,9 +38,7 @@ BalanceCommand steps_that_remove(const Vec3& offset_body_m, const std::vector<Mo
   for (size_t i = 0; i < masses.size(); ++i) {
     shift_m.col(static_cast<Eigen::Index>(i)) = masses[i].com_step_m(platform_mass_kg);
   }
-  const Eigen::VectorXd wanted =
-      shift_m.completeOrthogonalDecomposition().solve((-offset_body_m).eval());
-  Eigen::VectorXd steps = wanted.array().round().matrix();
+  Eigen::VectorXd steps = least_squares(shift_m, -offset_body_m).solution.array().round().matrix();
   Vec3 left_m = offset_body_m + shift_m * steps;
   // Each pass makes the rest strictly shorter, by at least a part in 1e12: it ends.
   for (bool better = true; better;) {

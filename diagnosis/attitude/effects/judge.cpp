@@ -1,12 +1,11 @@
 #include "diagnosis/attitude/effects/judge.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "core/numerics/linear.h"
 #include "inference/estimator/evidence.h"
 
 namespace photorque {
@@ -146,10 +145,7 @@ double significance(const Trial& trial, const Candidates& all, size_t which) {
           covariance(linear[static_cast<size_t>(a)].first, linear[static_cast<size_t>(b)].first);
     }
   }
-  const Eigen::VectorXd scale = C.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd correlation = scale.asDiagonal() * C * scale.asDiagonal();
-  const Eigen::VectorXd scaled = scale.cwiseProduct(theta);
-  return std::sqrt(std::max(0.0, scaled.dot(correlation.ldlt().solve(scaled))));
+  return std::sqrt(std::max(0.0, squared_distance(theta, C)));
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include "diagnosis/attitude/effects/scan.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -10,6 +9,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/numerics/linear.h"
 #include "diagnosis/attitude/effects/flexible_mode.h"
 #include "diagnosis/attitude/effects/screen.h"
 
@@ -188,12 +188,12 @@ std::vector<Start> sinusoid_starts(const Candidate& c, const Trial& parent,
     Eigen::Matrix<double, 3, 2> amplitude;
     amplitude.col(0) = scores[i].estimate.head<3>();
     amplitude.col(1) = scores[i].estimate.tail<3>();
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(amplitude,
-                                                Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const Vec3 vector = svd.singularValues()[0] * svd.matrixU().col(0);
+    // The direction in which the swing is largest: the last eigenvector of A Aᵀ.
+    const Vec3 along = symmetric_eigen(amplitude * amplitude.transpose()).vectors.col(2);
+    const Vec2 parts = amplitude.transpose() * along;
     Disturbance d = groups[i].disturbances.front();
-    set_vector(d, strength, vector);
-    parameter_of(d, "phase").value = std::atan2(svd.matrixV()(1, 0), svd.matrixV()(0, 0));
+    set_vector(d, strength, parts.norm() * along);
+    parameter_of(d, "phase").value = std::atan2(parts.y(), parts.x());
     starts.push_back({d, scores[i].gain});
   }
   return starts;
