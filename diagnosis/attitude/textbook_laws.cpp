@@ -1,5 +1,6 @@
 #include "diagnosis/attitude/textbook_laws.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "diagnosis/attitude/domain.h"
@@ -23,12 +24,19 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
   }
   if (members.empty()) return std::nullopt;
   const Trial nominal = nominal_trial(nominal_fit, all);
-  const auto [pieces, parted] = inference::near_pieces(domain, nominal, data.train);
-  const inference::Effort patient = inference::patient(all.limits);
-  Trial found = domain.assemble(parted, members, pieces.runs, patient);
-  inference::Effort growing = patient;
-  growing.windows = {0.05, 0.1, 0.2, 0.4, 0.7, 1.0};
-  found = domain.refit(found, data.train, domain.seen_begins(found, data.train), growing);
+  inference::Effort growing = inference::patient(all.limits);
+  growing.windows = {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0};
+  Trial found = nominal;
+  // Of rates alone a piece does not show the angle that it begins with; the whole does.
+  const bool sees_angle = std::ranges::all_of(
+      data.train, [](const Observation& seen) { return seen.sees_some_attitude(); });
+  if (sees_angle) {
+    const auto [pieces, parted] = inference::near_pieces(domain, nominal, data.train);
+    found = domain.assemble(parted, members, pieces.runs, inference::patient(all.limits));
+    found = domain.refit(found, data.train, domain.seen_begins(found, data.train), growing);
+  } else {
+    found = domain.assemble(nominal, members, data.train, growing);
+  }
   if (!(found.fit.chi2 < nominal_fit.chi2)) return std::nullopt;
   return found;
 }
