@@ -133,9 +133,18 @@ class Contest {
     return {trial, stretches_.chi2(trial), chi2, static_cast<double>(held.fit.samples)};
   }
 
+  // What turns about three axes bends to anything: there a name has to account for half of what is
+  // left of what was held out.
+  bool tells_enough(const Contender& without, const Contender& with) const {
+    const Platform& platform = answer_.trials.front().fit.best.model.platform;
+    return platform.turns_about_one_axis() || platform.slides() ||
+           with.held_chi2 < answer_.all.limits.decision.max_held_out_fraction * without.held_chi2;
+  }
+
   // By how many standard errors a name is missed by the stretches; not at all where it leads away
   // from what was held out.
   double missed(const Contender& without, const Contender& with) const {
+    if (!tells_enough(without, with)) return 0.0;
     constexpr double by_chance = 3.0;
     const double scatter = std::sqrt(2.0 * with.held_samples);
     if (with.held_chi2 > limits_.max_held_growth * without.held_chi2 + by_chance * scatter) {
