@@ -37,6 +37,19 @@ double middle_of(std::vector<double> values) {
   return *middle;
 }
 
+// Without what it rests at the end: from where it stays as near to its last angle as a swing hardly
+// shows.
+void leave_out_rest(AxisAngles& read) {
+  constexpr double hardly = 0.01;
+  const auto [least, most] = std::minmax_element(read.angle_rad.begin(), read.angle_rad.end());
+  const double near_rad = hardly * (*most - *least), end_rad = read.angle_rad.back();
+  size_t count = read.row.size();
+  while (count > 0 && std::abs(read.angle_rad[count - 1] - end_rad) <= near_rad) --count;
+  read.row.resize(count);
+  read.time_s.resize(count);
+  read.angle_rad.resize(count);
+}
+
 // Twice the median time between passages through the median angle; 0 where there are few.
 double period_s(const AxisAngles& read) {
   constexpr size_t fewest_passages = 6;
@@ -87,10 +100,12 @@ LocalMotion local_motion(const AxisAngles& read, double reach_s, double step_s) 
   return result;
 }
 
-// The residual of the accelerations under the one law, over its usual scatter.
-Eigen::VectorXd off_the_law(const Eigen::MatrixXd& motion) {
+// The residual of the accelerations under the one law, over its usual scatter; over a twentieth of
+// the largest acceleration within half a period where that is more, because local cubics are off by
+// such a part.
+Eigen::VectorXd off_the_law(const Eigen::MatrixXd& motion, Eigen::Index half_period) {
   constexpr int rounds = 20;
-  constexpr double biweight = 4.685, alike = 1e-3;
+  constexpr double biweight = 4.685, alike = 1e-3, part = 0.05 / 3.0;
   Eigen::MatrixXd law(motion.rows(), 7);
   for (Eigen::Index i = 0; i < motion.rows(); ++i) {
     const double angle = motion(i, 0), rate = motion(i, 1);
@@ -106,8 +121,12 @@ Eigen::VectorXd off_the_law(const Eigen::MatrixXd& motion) {
     std::vector<double> sizes(off.size());
     for (Eigen::Index i = 0; i < off.size(); ++i) sizes[static_cast<size_t>(i)] = std::abs(off[i]);
     // The median of |x| of a Gaussian is 0.6745 σ.
-    off *= 0.6745 / std::max(middle_of(sizes), 1e-300);
+    const double scatter = std::max(middle_of(sizes) / 0.6745, 1e-300);
     for (Eigen::Index i = 0; i < off.size(); ++i) {
+      const Eigen::Index from = std::max<Eigen::Index>(0, i - half_period),
+                         to = std::min(off.size(), i + half_period + 1);
+      const double largest = motion.col(2).segment(from, to - from).cwiseAbs().maxCoeff();
+      off[i] /= std::max(scatter, part * largest);
       const double x = off[i] / biweight;
       weight[i] = std::max(0.0, 1.0 - x * x);
     }
@@ -121,14 +140,16 @@ size_t released_at(const Observation& rows, const Vec3& axis, size_t first, size
   constexpr size_t fewest_readings = 200;
   constexpr int steps_per_period = 32;
   constexpr double usual = 3.0;
-  const AxisAngles read = angles_about(rows, axis, first, last);
+  AxisAngles read = angles_about(rows, axis, first, last);
+  if (read.row.size() < fewest_readings) return first;
+  leave_out_rest(read);
   if (read.row.size() < fewest_readings) return first;
   const double whole_s = period_s(read);
   if (!(whole_s > 0.0)) return first;
   const LocalMotion local =
       local_motion(read, 2.0 * whole_s / steps_per_period, whole_s / steps_per_period);
   if (local.row.size() < 3 * steps_per_period) return first;
-  const Eigen::VectorXd off = off_the_law(local.motion);
+  const Eigen::VectorXd off = off_the_law(local.motion, steps_per_period / 2);
   int lawful = 0;
   for (size_t i = 0; i < local.row.size() / 4; ++i) {
     lawful = std::abs(off[static_cast<Eigen::Index>(i)]) < usual ? lawful + 1 : 0;

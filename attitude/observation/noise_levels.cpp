@@ -68,12 +68,36 @@ double difference(const std::vector<ReadingAt>& x, size_t first, size_t order) {
   return sum / std::sqrt(squares);
 }
 
+double median(std::vector<double>& of) {
+  const auto middle = of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2);
+  std::nth_element(of.begin(), middle, of.end());
+  return *middle;
+}
+
+// Whether `order` + 1 readings from the one at `first` are the same to the last digit: a counter
+// that stands still says nothing of its noise.
+bool stands_still(const std::vector<ReadingAt>& x, size_t first, size_t order) {
+  constexpr double rounding = 1e-12;
+  for (size_t k = first + 1; k <= first + order; ++k) {
+    const double moved = std::abs(x[k].value - x[first].value);
+    if (moved > rounding * std::max(1.0, std::abs(x[first].value))) return false;
+  }
+  return true;
+}
+
 // Differences of readings, and differences of these: multiples of the last digit, and the smaller
-// ones of both where something moves steadily. Less than rounding leaves is none.
+// ones of both where something moves steadily. Less than what rounding to the digits of a file
+// leaves is none.
 void collect_steps(const std::vector<ReadingAt>& x, std::vector<double>& steps) {
   double largest = 0.0;
   for (const ReadingAt& reading : x) largest = std::max(largest, std::abs(reading.value));
-  const double rounding = 1e-12 * largest;
+  std::vector<double> firsts;
+  for (size_t i = 1; i < x.size(); ++i) {
+    if (x[i].value != x[i - 1].value) firsts.push_back(std::abs(x[i].value - x[i - 1].value));
+  }
+  constexpr double of_largest = 1e-5, of_usual = 1e-2;
+  const double rounding =
+      firsts.empty() ? 0.0 : std::min(of_largest * largest, of_usual * median(firsts));
   for (size_t i = 1; i < x.size(); ++i) {
     const double step = x[i].value - x[i - 1].value;
     if (std::abs(step) > rounding) steps.push_back(std::abs(step));
@@ -83,31 +107,29 @@ void collect_steps(const std::vector<ReadingAt>& x, std::vector<double>& steps) 
   }
 }
 
-double median(std::vector<double>& of) {
-  const auto middle = of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2);
-  std::nth_element(of.begin(), middle, of.end());
-  return *middle;
-}
-
 }  // namespace
 
 std::optional<double> reading_level(const std::vector<Observation>& runs, int channel) {
   constexpr size_t lowest_order = 3, highest_order = 6, fewest = 10;
   std::vector<std::vector<double>> sizes(highest_order + 1);
   std::vector<double> steps;
+  size_t windows = 0;
   for (const Observation& seen : runs) {
     const std::vector<ReadingAt> x = readings_of(seen, channel);
+    windows += x.size() - std::min(x.size(), lowest_order);
     const double one = std::sqrt(mean_rows(seen, channel));
     for (size_t order = lowest_order; order <= highest_order; ++order) {
       for (size_t i = 0; i + order < x.size(); ++i) {
+        if (stands_still(x, i, order)) continue;
         sizes[order].push_back(one * std::abs(difference(x, i, order)));
       }
     }
     collect_steps(x, steps);
   }
-  if (sizes[lowest_order].size() < fewest) return std::nullopt;
+  if (windows < fewest) return std::nullopt;
   // The median of |x| of a Gaussian is 0.6745 σ.
-  double level = median(sizes[lowest_order]) / 0.6745;
+  const bool moves = sizes[lowest_order].size() >= fewest;
+  double level = moves ? median(sizes[lowest_order]) / 0.6745 : 0.0;
   // White noise is alike at every order. Where the next is quieter by half, what this one holds is
   // motion that the readings follow too coarsely.
   constexpr double quieter = 0.5;

@@ -13,6 +13,7 @@
 #include "diagnosis/attitude/holdout.h"
 #include "diagnosis/attitude/locate.h"
 #include "diagnosis/attitude/refine.h"
+#include "diagnosis/attitude/textbook_laws.h"
 #include "inference/search.h"
 #include "inference/weigh.h"
 
@@ -25,8 +26,10 @@ void tell(const DiagnoseOptions& options, const std::string& what) {
 namespace {
 
 bool is_among(const Candidate& c, Among among) {
-  const bool is_torque = !c.empirical() && c.start.stage != Stage::measurement;
-  return among == Among::all || (c.is_linear() && (is_torque || among == Among::unscanned));
+  if (among == Among::all) return true;
+  const bool is_known = among == Among::unscanned || !c.empirical();
+  return c.is_linear() && is_known &&
+         (among != Among::torques || c.start.stage != Stage::measurement);
 }
 
 }  // namespace
@@ -68,22 +71,27 @@ void prefer_simpler(const Thresholds& limits, Answer& a) {
 
 }  // namespace
 
-Answer searched(const NominalModel& nominal, const Fit& nominal_fit, const RecordedData& data,
-                const DiagnoseOptions& options, Among among, const Trial* near) {
-  Answer a;
-  a.all = all_candidates(nominal, data.train, options.limits);
-  // Those of the narrower choice first, so that a trial of theirs means the same among more.
-  for (const Among first : {Among::unscanned, Among::torques}) {
-    std::ranges::stable_partition(a.all.list,
-                                  [&](const Candidate& c) { return is_among(c, first); });
+Candidates candidates_among(Among among, const NominalModel& nominal,
+                            const std::vector<Observation>& runs, const Thresholds& limits) {
+  Candidates all = all_candidates(nominal, runs, limits);
+  for (const Among first : {Among::unscanned, Among::catalogue, Among::torques}) {
+    std::ranges::stable_partition(all.list, [&](const Candidate& c) { return is_among(c, first); });
   }
   // An inertia that is uncertain has its error already; a second one leaves all torques without a
   // scale.
   const bool has_error = nominal.uncertain_inertia.has_value();
-  std::erase_if(a.all.list, [&](const Candidate& c) {
+  std::erase_if(all.list, [&](const Candidate& c) {
     const bool is_second = has_error && c.effect.how.inertia_change_kg_m2 != nullptr;
-    return !is_among(c, among) || (among == Among::torques && is_second);
+    return !is_among(c, among) ||
+           ((among == Among::torques || among == Among::catalogue) && is_second);
   });
+  return all;
+}
+
+Answer searched(const NominalModel& nominal, const Fit& nominal_fit, const RecordedData& data,
+                const DiagnoseOptions& options, Among among, const Trial* near) {
+  Answer a;
+  a.all = candidates_among(among, nominal, data.train, options.limits);
   const AttitudeDomain domain(a.all);
   const Trial base = nominal_trial(nominal_fit, a.all);
   std::optional<Trial> begin;
@@ -197,8 +205,23 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
       return fine;
     }
   }
+  std::optional<Trial> laws;
+  if (is_far) {
+    tell(options, "fitting the laws of a textbook together");
+    laws = fit_textbook_laws(
+        nominal_fit,
+        candidates_among(among_beside_the_rest(nominal, data), nominal, data.train, limits), data);
+  }
+  if (laws && leaves_only_noise(laws->fit, data)) {
+    fine = at_noise_of_readings(nominal, data, options, nominal_fit, &*laws);
+    if (!fine.decision.leaves_more) {
+      describe(data, options, fine);
+      return fine;
+    }
+  }
   RecordedData rough = data;
-  std::optional<Answer> named = named_beside_the_rest(nominal, rough, options);
+  std::optional<Answer> named =
+      named_beside_the_rest(nominal, rough, options, laws ? &*laws : nullptr);
   if (named && is_far && leaves_only_noise(named->chosen().fit, data)) {
     return at_noise_of_readings(nominal, data, options, nominal_fit, &named->chosen());
   }

@@ -133,9 +133,18 @@ class Contest {
     return {trial, stretches_.chi2(trial), chi2, static_cast<double>(held.fit.samples)};
   }
 
+  // What turns about three axes bends to anything: there a name has to account for half of what is
+  // left of what was held out.
+  bool tells_enough(const Contender& without, const Contender& with) const {
+    const Platform& platform = answer_.trials.front().fit.best.model.platform;
+    return platform.turns_about_one_axis() || platform.slides() ||
+           with.held_chi2 < answer_.all.limits.decision.max_held_out_fraction * without.held_chi2;
+  }
+
   // By how many standard errors a name is missed by the stretches; not at all where it leads away
   // from what was held out.
   double missed(const Contender& without, const Contender& with) const {
+    if (!tells_enough(without, with)) return 0.0;
     constexpr double by_chance = 3.0;
     const double scatter = std::sqrt(2.0 * with.held_samples);
     if (with.held_chi2 > limits_.max_held_growth * without.held_chi2 + by_chance * scatter) {
@@ -265,6 +274,17 @@ void decide_beside_the_rest(Answer& a) {
 
 }  // namespace
 
+Among among_beside_the_rest(const NominalModel& nominal, const RecordedData& data) {
+  const Vec3& axis = nominal.model.platform.axis;
+  const bool sees_both = std::ranges::all_of(data.train, [&](const Observation& seen) {
+    const bool has_rate = std::ranges::any_of(
+        seen.gyro_rows, [&](const Vec3& rows) { return rows.dot(axis.cwiseAbs()) > 0.0; });
+    return seen.sees_some_attitude() && has_rate;
+  });
+  return nominal.model.platform.turns_about_one_axis() && sees_both ? Among::catalogue
+                                                                    : Among::torques;
+}
+
 bool leaves_only_noise(const Fit& fit, const RecordedData& data) {
   constexpr double as_noise = 1.5;  // χ² per sample
   const Fit at_readings = propagate_model(fit, data.train, {});
@@ -272,11 +292,11 @@ bool leaves_only_noise(const Fit& fit, const RecordedData& data) {
 }
 
 std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, RecordedData& data,
-                                            const DiagnoseOptions& options) {
+                                            const DiagnoseOptions& options, const Trial* laws) {
   const NoiseLevels own = data.train.front().noise;
   std::optional<Answer> best;
   use_noise(patient_noise(data.train, own), data);
-  Fit left_by = fit_nominal(nominal, data.train, options.limits);
+  Fit left_by = laws != nullptr ? laws->fit : fit_nominal(nominal, data.train, options.limits);
   for (int round = 0; round < options.limits.discrepancy.max_rounds; ++round) {
     if (!std::isfinite(left_by.chi2)) break;
     const NoiseLevels noise =
@@ -285,7 +305,7 @@ std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, Recorde
     use_noise(noise, data);
     tell(options, "naming what stands out, with the rest counted as noise");
     Answer next = searched(nominal, fit_nominal(nominal, data.train, options.limits), data, options,
-                           Among::torques, nullptr);
+                           among_beside_the_rest(nominal, data), laws);
     Contest contest(next, data, stretches_of(next, data, own), options.threads);
     Contender won = contest.winner();
     Trial fitted = fitted_beside_the_rest(won.trial, next.all, own, data);

@@ -147,7 +147,10 @@ NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
   const bool is_seen = std::any_of(
       data.train.begin(), data.train.end(),
       [&](const Observation& seen) { return seen.feels_attitude(stated.model.platform); });
-  nominal.model.holds_attitude = !is_seen && !depends_on_attitude(stated.model);
+  const Platform& platform = nominal.model.platform;
+  // A twisted line pulls back to an angle that a rate alone shows as well.
+  const bool may_twist = platform.turns_about_one_axis() && std::abs(platform.axis.z()) > 0.5;
+  nominal.model.holds_attitude = !is_seen && !may_twist && !depends_on_attitude(stated.model);
   return nominal;
 }
 

@@ -109,6 +109,53 @@ void begin_anew_under_commands(const std::string& name, const Platform& platform
   all = std::move(result);
 }
 
+// The value of a channel at a block; of attitudes a component of the rotation vector.
+double value_at(const Observation& seen, int channel, size_t block) {
+  if (channel >= vector_channels) {
+    return seen.scalar[static_cast<size_t>(channel - vector_channels)].value[block];
+  }
+  if (channel >= 3) return seen.gyro_rad_s[block][channel - 3];
+  return rotation_vector(seen.attitude[block])[channel];
+}
+
+void leave_out_block(int channel, size_t block, Observation& seen) {
+  if (channel >= vector_channels) {
+    seen.scalar[static_cast<size_t>(channel - vector_channels)].rows[block] = 0.0;
+  } else if (channel >= 3) {
+    seen.gyro_rows[block][channel - 3] = 0.0;
+  } else {
+    seen.attitude_rows[block] = 0.0;
+  }
+}
+
+// A counter that stands still repeats one rounding, however often it is read: of a longer
+// repetition to the last digit a few readings, evenly, are as many as count.
+void thin_repetitions(Observation& seen) {
+  constexpr size_t most = 10;
+  constexpr double rounding = 1e-12;
+  for (int channel = 0; channel < channel_count; ++channel) {
+    std::vector<size_t> read;
+    for (size_t i = 0; i < seen.blocks(); ++i) {
+      if (seen.rows_of(i, channel) > 0.0) read.push_back(i);
+    }
+    for (size_t first = 0; first < read.size();) {
+      const double value = value_at(seen, channel, read[first]);
+      size_t last = first + 1;
+      while (last < read.size() && std::abs(value_at(seen, channel, read[last]) - value) <=
+                                       rounding * std::max(1.0, std::abs(value))) {
+        ++last;
+      }
+      const size_t count = last - first;
+      for (size_t k = 0; count > most && k < count; ++k) {
+        if (k * most / count == (k + 1) * most / count) {
+          leave_out_block(channel, read[first + k], seen);
+        }
+      }
+      first = last;
+    }
+  }
+}
+
 // The stretches of each recording.
 std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecording>& recordings,
                                                   const NominalModel& nominal,
@@ -137,6 +184,7 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
         if (!is_declared(nominal.sensors, s)) seen.scalar[static_cast<size_t>(s)] = {};
       }
       seen.fields = field_instruments(nominal.sensors);
+      if (platform.turns_about_one_axis() || platform.slides()) thin_repetitions(seen);
     }
     std::string of_rates = repair_conventions(segments.all);
     if (!platform.has_bearing())

@@ -335,6 +335,141 @@ per_recording = true
   EXPECT_NEAR(drag.value[0], 1.2e-4, std::max(5.0 * drag.sigma[0], 0.01 * 1.2e-4));
 }
 
+// θ'' = −k sin θ − d sign θ' − c θ' − q θ' |θ'| by the classical Runge–Kutta rule, at rest for good
+// where the weight no longer overcomes d at a turning point.
+struct Swing {
+  double k, dry, viscous, form;
+
+  std::vector<double> from(double angle_rad, double interval_s, int rows) const {
+    constexpr int parts = 50;
+    const double h = interval_s / parts;
+    double rate = 0.0, sign = angle_rad > 0.0 ? -1.0 : 1.0;
+    bool rests = false;
+    const auto acceleration = [&](double a, double w) {
+      return -k * std::sin(a) - dry * sign - viscous * w - form * w * std::abs(w);
+    };
+    std::vector<double> all;
+    for (int i = 0; i < rows; ++i) {
+      all.push_back(angle_rad);
+      for (int part = 0; part < parts && !rests; ++part) {
+        const double a1 = rate, w1 = acceleration(angle_rad, rate), a2 = rate + 0.5 * h * w1,
+                     w2 = acceleration(angle_rad + 0.5 * h * a1, a2), a3 = rate + 0.5 * h * w2,
+                     w3 = acceleration(angle_rad + 0.5 * h * a2, a3), a4 = rate + h * w3,
+                     w4 = acceleration(angle_rad + h * a3, a4);
+        angle_rad += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+        rate += h / 6.0 * (w1 + 2.0 * w2 + 2.0 * w3 + w4);
+        if (rate * sign >= 0.0) continue;
+        // What it turned back with since the turning point it did under the old sign.
+        const double old = acceleration(angle_rad, 0.0);
+        sign = -sign;
+        rests = std::abs(k * std::sin(angle_rad)) <= dry;
+        rate *= rests ? 0.0 : acceleration(angle_rad, 0.0) / old;
+      }
+    }
+    return all;
+  }
+};
+
+// As counts of an encoder, written with seven digits.
+Channel counted(std::vector<double> angle_rad, int counts_a_turn) {
+  for (double& a : angle_rad) {
+    const double step = 2.0 * pi / counts_a_turn;
+    a = 1e-7 * std::round(1e7 * step * std::round(a / step));
+  }
+  return {"angle_rad", std::move(angle_rad)};
+}
+
+std::string pendulum_toml(double offset_m) {
+  return "[platform]\ntopology = \"one_axis\"\naxis = \"x\"\n[[disturbance]]\n"
+         "kind = \"static_unbalance\"\noffset_m = { value = [0, 0, " +
+         std::to_string(offset_m) + "], sigma = [0, 0.3, 0.5] }\n";
+}
+
+void expect_near_truth(const Diagnosis& d, const std::string& kind, const std::string& key,
+                       double truth, double part) {
+  const FittedParameter& p = parameter(d, kind, key);
+  EXPECT_NEAR(p.value[0], truth, std::max(5.0 * p.sigma[0], part * truth)) << kind;
+}
+
+// Without friction the model is half a swing ahead after ten periods. In the end it rests, and the
+// encoder repeats one count.
+TEST(Machines, APendulumThatComesToRestIsFollowedBySwingAndCount) {
+  const Channel angle = counted(Swing{55.0, 0.9, 0.15, 0.0}.from(1.6, 0.01, 2400), 4096);
+  const Diagnosis d =
+      diagnose(machine(pendulum_toml(-5.6)), {{"swing.csv", recording_of(0.01, {angle})}}, {});
+  EXPECT_EQ(d.verdict, Verdict::missing_physics) << d.sentence;
+  ASSERT_THAT(kinds_of(d), UnorderedElementsAre("dry_friction", "bearing_drag"));
+  expect_near_truth(d, "dry_friction", "torque_N_m", 0.9, 0.01);
+  expect_near_truth(d, "bearing_drag", "coefficient_N_m_s", 0.15, 0.02);
+}
+
+// Swings whose period depends on their size, with no weight and no friction in the experiment.
+TEST(Machines, LargeSwingsAreNamedByWeightAndDrag) {
+  const Channel angle = counted(Swing{30.0, 0.0, 0.0, 0.012}.from(2.3, 0.01, 2500), 4096);
+  const Diagnosis d = diagnose(machine("[platform]\ntopology = \"one_axis\"\naxis = \"x\"\n"),
+                               {{"swing.csv", recording_of(0.01, {angle})}}, {});
+  EXPECT_EQ(d.verdict, Verdict::missing_physics) << d.sentence;
+  ASSERT_THAT(kinds_of(d), UnorderedElementsAre("static_unbalance", "air_pressure_drag"));
+  expect_near_truth(d, "air_pressure_drag", "coefficient_N_m_s2", 0.012, 0.02);
+  EXPECT_NEAR(parameter(d, "static_unbalance", "offset_m").value[2], -30.0 / standard_gravity_m_s2,
+              1e-3);
+}
+
+// Small swings by their closed form, θ = A e^(−c t/2) cos ω t. A drag that depends on a heading
+// that never changes is no rival of a drag.
+TEST(Machines, ADragHasNoRivalsInAHeadingThatNeverChanges) {
+  constexpr double k = 8.0, c = 0.05, noise_rad = 0.003;
+  std::mt19937_64 random(29);
+  std::normal_distribution<double> noise(0.0, noise_rad);
+  Channel angle{"angle_rad", {}};
+  for (int i = 0; i < 1200; ++i) {
+    const double t = i / 30.0;
+    angle.values.push_back(0.05 * std::exp(-0.5 * c * t) * std::cos(std::sqrt(k) * t) +
+                           noise(random));
+  }
+  const Diagnosis d = diagnose(machine(pendulum_toml(-k / standard_gravity_m_s2)),
+                               {{"swing.csv", recording_of(1.0 / 30.0, {angle})}}, {});
+  ASSERT_THAT(kinds_of(d), ElementsAre("bearing_drag")) << d.sentence;
+  EXPECT_GT(d.confidence, 0.7);
+  expect_near_truth(d, "bearing_drag", "coefficient_N_m_s", c, 0.0);
+}
+
+// θ = A e^(−c t/2) cos(ω t), ω² = k − c²/4, its rate alone: nobody knows from which angle the line
+// pulls back, and it turns more than once about it.
+TEST(Machines, ATwistedLineIsFoundByTheRateAlone) {
+  constexpr double k = 0.16, c = 0.012, largest_rad = 8.0, noise_rad_s = 0.01;
+  const double omega = std::sqrt(k - 0.25 * c * c);
+  std::mt19937_64 random(31);
+  std::normal_distribution<double> noise(0.0, noise_rad_s);
+  Channel rate{"rate_rad_s", {}};
+  for (int i = 0; i < 2000; ++i) {
+    const double t = 0.1 * i;
+    rate.values.push_back(-largest_rad * std::exp(-0.5 * c * t) *
+                              (0.5 * c * std::cos(omega * t) + omega * std::sin(omega * t)) +
+                          noise(random));
+  }
+  const Diagnosis d = diagnose(machine("[platform]\ntopology = \"one_axis\"\naxis = \"z\"\n"),
+                               {{"line.csv", recording_of(0.1, {rate})}}, {});
+  EXPECT_EQ(d.verdict, Verdict::missing_physics) << d.sentence;
+  ASSERT_THAT(kinds_of(d), UnorderedElementsAre("tether", "bearing_drag"));
+  expect_near_truth(d, "tether", "stiffness_N_m_per_rad", k, 0.0);
+  expect_near_truth(d, "bearing_drag", "coefficient_N_m_s", c, 0.0);
+}
+
+// The scatter of what moves, not of what rests, and no less than the step.
+TEST(Machines, AnEncoderAtRestSaysNothingOfItsNoise) {
+  Platform axle;
+  axle.topology = Topology::one_axis;
+  constexpr int counts = 4096;
+  const Channel angle = counted(Swing{55.0, 0.9, 0.15, 0.0}.from(1.6, 0.01, 6000), counts);
+  const Segments cut = observe_segments(recording_of(0.01, {angle}), "swing.csv", axle);
+  // About z. Rounding is uniform: step/√12.
+  const double rounding = 2.0 * pi / counts / std::sqrt(12.0);
+  ASSERT_TRUE(reading_level(cut.all, 2));
+  EXPECT_GT(*reading_level(cut.all, 2), 0.9 * rounding);
+  EXPECT_LT(*reading_level(cut.all, 2), 2.0 * rounding);
+}
+
 TEST(Machines, ReadingsTellTheirOwnNoise) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> noise(0.0, 0.02);

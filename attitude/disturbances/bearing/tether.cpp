@@ -5,7 +5,7 @@
 // half a turn, as the catalogue has it. A cable that is wound up remembers it: with true, whole
 // turns about body z count besides, T = −k (r + 2π n z), so that the torque about z goes on
 // growing; what a tilt adds to r changes side there still. The run begins with less than half a
-// turn.
+// turn. About one axis the angle about that axis counts, always with its whole turns.
 #include <array>
 #include <cmath>
 
@@ -19,7 +19,9 @@ constexpr ScalarKey stiffness("stiffness_N_m_per_rad", Range::not_negative(),
                               "k in T = −k φ; φ is the shortest way and jumps at half a turn");
 
 namespace key {
-constexpr FlagKey winds_up("winds_up", false, "true: whole turns about body z count, φ + 2π n z");
+constexpr FlagKey winds_up(
+    "winds_up", false,
+    "true: whole turns about body z count, φ + 2π n z; about one axis they always do");
 }  // namespace key
 // The angle about body z since the start; counts whole turns, so its accuracy hardly matters.
 constexpr StateKey twist{"tether_twist_rad"};
@@ -41,11 +43,18 @@ T nearest_whole(const T& x) {
 
 class Tether final : public TorqueLaw<Tether> {
  public:
-  explicit Tether(bool winds_up) : winds_up_(winds_up) {}
+  Tether(bool winds_up, bool about_one_axis)
+      : winds_up_(winds_up), about_one_axis_(about_one_axis) {}
 
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const QuatOf<T>& q = now.attitude;
+    if (about_one_axis_) {
+      const Vec3Of<T> axis = now.platform.axis.template cast<T>();
+      own.rate_of(twist) = axis.dot(now.rate_body_rad_s);
+      return -own[stiffness] * whole_turns(own, T(2.0 * atan2(T(axis.dot(q.vec())), T(q.w())))) *
+             axis;
+    }
     // q and −q are the same attitude; the one with w ≥ 0 is the short way.
     const T side = where_at_least(q.w(), 0.0, T(1.0), T(-1.0));
     const Vec3Of<T> v = side * q.vec();
@@ -54,21 +63,29 @@ class Tether final : public TorqueLaw<Tether> {
     if (winds_up_) {
       own.rate_of(twist) = twist_rate(q, now.rate_body_rad_s);
       const T from_attitude = 2.0 * atan2(T(side * q.z()), T(side * q.w()));
-      wound[2] += 2.0 * pi * nearest_whole(T((own.state(twist) - from_attitude) / (2.0 * pi)));
+      wound[2] += whole_turns(own, from_attitude) - from_attitude;
     }
     return -own[stiffness] * wound;
   }
 
  private:
-  bool winds_up_;
+  // The angle, and as many turns as bring it nearest to the twist.
+  template <class T>
+  T whole_turns(const ParametersAndStates<T>& own, const T& angle) const {
+    return angle + 2.0 * pi * nearest_whole(T((own.state(twist) - angle) / (2.0 * pi)));
+  }
+
+  bool winds_up_, about_one_axis_;
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  const bool winds_up = settings.get(key::winds_up);
+Disturbance read(const Settings& settings, const DisturbanceContext& context) {
+  const bool about_one_axis = context.platform.turns_about_one_axis(),
+             winds_up = settings.get(key::winds_up) || about_one_axis;
   Disturbance d = make_disturbance<Tether>(
       {scalar_parameter(settings, stiffness)}, Stage::torque,
-      winds_up ? std::vector<ExtraState>{{twist.name}} : std::vector<ExtraState>{}, winds_up);
-  d.is_abrupt = true;
+      winds_up ? std::vector<ExtraState>{{twist.name}} : std::vector<ExtraState>{}, winds_up,
+      about_one_axis);
+  d.is_abrupt = !about_one_axis;
   return d;
 }
 
@@ -80,7 +97,7 @@ DisturbanceKind kind() {
           .read = read,
           .screening = {.parametrisations = {{"a cable pulls the platform back to zero attitude",
                                               {EffectKey::not_negative(stiffness.name, 1e-5)}}},
-                        .needs = Requirement::air_bearing},
+                        .needs = Requirement::bearing},
           .keys = {stiffness, key::winds_up}};
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "attitude/propagation/run.h"
+#include "core/constants.h"
 #include "diagnosis/attitude/effects/trial.h"
 
 namespace photorque {
@@ -412,6 +413,29 @@ std::optional<double> braking_power(const Candidate& candidate, AttitudeModel mo
   return std::log2(faster / forward);
 }
 
+bool pulls_back(const Candidate& candidate, AttitudeModel model) {
+  if (candidate.empirical() || candidate.start.stage == Stage::measurement ||
+      !model.platform.turns_about_one_axis() || is_force(candidate.effect.how.needs)) {
+    return false;
+  }
+  Disturbance acting = candidate.start;
+  for (size_t p = 0; p < acting.parameters.size(); ++p) {
+    if (candidate.is_strength(p)) acting.parameters[p].value += candidate.scale[p];
+  }
+  model.disturbances = {std::move(acting)};
+  const Vec3& axis = model.platform.axis;
+  const auto torque = [&](double angle_rad, double rate_rad_s) {
+    PlatformState state = Dynamics(model).initial_state(rate_rad_s * axis);
+    state.lab_from_body = Quat(Eigen::AngleAxisd(angle_rad, axis));
+    return axis.dot(disturbance_torques_body_N_m(model, state).front());
+  };
+  constexpr double near_rad = pi / 3.0, far_rad = 2.0 * pi / 3.0, alike = 1e-6;
+  const double near = torque(near_rad, 0.0) - torque(-near_rad, 0.0),
+               far = torque(far_rad, 0.0) - torque(-far_rad, 0.0),
+               of_rate = torque(near_rad, 1.0) - torque(near_rad, 0.0);
+  return near * far > 0.0 && std::abs(of_rate) < alike * std::abs(near);
+}
+
 Candidates all_candidates(const NominalModel& nominal, const std::vector<Observation>& runs,
                           const Thresholds& limits) {
   const DisturbanceContext context = nominal.context();
@@ -493,6 +517,22 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
       const bool turns_along =
           !always && c.effect.how.needs == Requirement::plane && needs_attitude(c, nominal.model);
       return c.variable == "heading" || c.variable == "tilt" || turns_along;
+    });
+  }
+  if (context.platform.turns_about_one_axis()) {
+    // About a level axis the direction of body x in the plane is always the same, and so is the
+    // tilt about an upright one: a law of it would be another law once more.
+    const bool is_level = std::abs(context.platform.axis.z()) < 0.5;
+    std::erase_if(all.list, [&](const Candidate& c) {
+      return c.variable == (is_level ? "heading" : "tilt");
+    });
+    // A weight pulls back about a level axis, and a twisted line would do so nearly alike.
+    const bool has_weight = std::ranges::any_of(all.list, [&](const Candidate& c) {
+      return c.effect.how.needs == Requirement::gravity && pulls_back(c, nominal.model);
+    });
+    std::erase_if(all.list, [&](const Candidate& c) {
+      return has_weight && c.effect.how.needs == Requirement::bearing &&
+             pulls_back(c, nominal.model);
     });
   }
   // What rubs brakes with a steady torque as well, and its sign is known.

@@ -66,6 +66,10 @@ struct Candidate {
 // Nothing where it does anything else. `model`: of the platform.
 std::optional<double> braking_power(const Candidate& candidate, AttitudeModel model);
 
+// Whether a candidate pulls what turns about one axis back to an angle, as a weight or a twisted
+// line does, whatever the rate: alike a sixth of a turn and a third of a turn away from it.
+bool pulls_back(const Candidate& candidate, AttitudeModel model);
+
 // Where the fit of a candidate starts.
 struct Start {
   Disturbance disturbance;
