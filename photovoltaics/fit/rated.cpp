@@ -162,23 +162,6 @@ double predictive_error(const Figures& figures, double guess_V, const inference:
   return squares / count;
 }
 
-// E₀ with which V_oc changes as the datasheet says, over the next 10 kelvin, while the light's
-// current grows by `growth_1_K`.
-double gap_eV(const CellModel& model, double light_A, double growth_1_K, double slope_V_K) {
-  constexpr double step_K = 10.0;
-  const double temperature_K = model.reference.temperature_K;
-  const double wanted_V = CellCurve(model.reference).open_circuit_V(light_A) + step_K * slope_V_K;
-  double low = 0.01, high = 20.0;
-  for (int i = 0; i < 60; ++i) {
-    CellModel trial = model;
-    trial.gap_eV = std::midpoint(low, high);
-    const double v = CellCurve(parameters_at(trial, 1.0, temperature_K + step_K))
-                         .open_circuit_V(light_A * (1.0 + step_K * growth_1_K));
-    (v > wanted_V ? low : high) = trial.gap_eV;
-  }
-  return std::midpoint(low, high);
-}
-
 // Of the photocurrent over the irradiance: least squares of their logarithms about the first point;
 // 1 where all points have one irradiance.
 double light_exponent(const VectorXd& x, const Figures& figures) {
@@ -206,8 +189,8 @@ RatedFit described(const VectorXd& x, const Figures& figures, const TemperatureS
   result.model.reference = result.diode.parameters(first.temperature_K);
   const double light_A = CellCurve(result.model.reference).photocurrent_A(first.short_circuit_A);
   result.diode.photocurrent_A = {light_A, 0.0};
-  result.model.gap_eV = gap_eV(result.model, light_A, slopes.short_circuit_1_K,
-                               slopes.open_circuit_1_K * first.open_circuit_V);
+  result.model.gap_eV = gap_of_voltage_slope_eV(result.model, light_A, slopes.short_circuit_1_K,
+                                                slopes.open_circuit_1_K * first.open_circuit_V);
   result.model.photocurrent_slope_1_K = slopes.short_circuit_1_K;
   if (figures.law == ShuntLaw::inverse) result.model.reference.shunt_light_A = light_A;
   result.first_W_m2 = first.irradiance_W_m2;
