@@ -1,4 +1,4 @@
-// What files say of the columns that [recording] columns names, for recordings of any kind.
+// The columns that [recording] columns names, and whole texts, for recordings of any kind.
 #pragma once
 
 #include <filesystem>

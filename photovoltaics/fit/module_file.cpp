@@ -231,7 +231,8 @@ ListedModule of_pan(const Listing& pan) {
   CellParameters& p = m.cell.reference;
   p.shunt_dark_ohm = pan.number("Rp_0", 0.0, 1e9) * m.strings / N;
   if (pan.has("Rp_Exp")) p.shunt_exponent = pan.number("Rp_Exp", 0.01, 100.0);
-  const double growth_1_K = pan.number("muISC", -1e5, 1e5) * 1e-3 / photocurrent_A;
+  constexpr double ampere_of_mA = 1e-3;
+  const double growth_1_K = ampere_of_mA * pan.number("muISC", -1e5, 1e5) / photocurrent_A;
   m.cell.photocurrent_slope_1_K = growth_1_K;
   // The open circuit of PVsyst's equations, warmer.
   constexpr double step_K = 10.0;

@@ -75,7 +75,7 @@ void read_effect(const Settings& s, ModuleDesign& design) {
           {count(), s.number("fraction", {0.0, 1.0, true, true}), resistance()});
       break;
     case 2:
-      state.shunted.push_back({1, 1.0 / resistance()});
+      state.shunted.push_back({count(), 1.0 / resistance()});
       break;
     case 3:
       state.shunt_S += 1.0 / resistance();
