@@ -8,6 +8,7 @@
 #include "attitude/recordings/aem.h"
 #include "attitude/recordings/cleaning.h"
 #include "attitude/recordings/keys.h"
+#include "attitude/recordings/named_columns.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/files.h"
 #include "core/numerics/steady_stretches.h"
@@ -377,17 +378,34 @@ Recording read_recording(const std::filesystem::path& path, const RecordingOptio
 }
 
 void refuse_absent_columns(const Settings& settings, const std::vector<const Recording*>& of) {
-  if (!settings.has(recording_key::columns)) return;
-  const Settings columns = settings.table(recording_key::columns);
+  std::vector<std::set<std::string>> absent_columns;
+  for (const Recording* one : of) absent_columns.push_back(one->report.absent_columns);
+  refuse_absent_columns(settings, absent_columns);
+}
+
+void refuse_absent_columns(const Settings& recording,
+                           const std::vector<std::set<std::string>>& absent_columns) {
+  if (!recording.has(recording_key::columns)) return;
+  const Settings columns = recording.table(recording_key::columns);
   for (const std::string& channel : columns.keys()) {
     const std::string written = columns.text(channel);
     const bool absent = std::ranges::all_of(
-        of, [&](const Recording* one) { return one->report.absent_columns.contains(written); });
+        absent_columns, [&](const std::set<std::string>& one) { return one.contains(written); });
     if (absent) {
       throw columns.error(channel, in_quotes(written) + ", which the recording has not",
                           "one of its columns");
     }
   }
+}
+
+std::string whole_text(const std::filesystem::path& path) {
+  TextLines lines(path);
+  std::string text;
+  for (std::string_view line; lines.next(line);) {
+    text += line;
+    text += '\n';
+  }
+  return text;
 }
 
 Schedule read_command_file(const std::filesystem::path& path) {

@@ -26,11 +26,11 @@ struct Task {
   std::vector<CurveAt> curves;
   SweepNoise noise;
   ShuntLaw law = ShuntLaw::constant;
-  double first_A = 1.0;  // about the first photocurrent
+  double first_A = 1.0;         // about the first photocurrent
+  double reference_K = 298.15;  // of the shared values
   bool fits_gap = false;
+  bool holds_shared = false;      // fits the photocurrents only
   std::vector<VectorXd> error_A;  // of each reading of each curve
-
-  double reference_K() const { return curves[0].temperature_K; }
 };
 
 // The circuit of a curve at its values (photocurrent, then shared), and d ln I₀/d gap.
@@ -44,7 +44,7 @@ struct Circuit {
 };
 
 Circuit circuit_of(const Task& task, Index run, const VectorXd& x) {
-  const double T = task.curves[static_cast<size_t>(run)].temperature_K, T0 = task.reference_K();
+  const double T = task.curves[static_cast<size_t>(run)].temperature_K, T0 = task.reference_K;
   const VectorXd s = x.tail(Index{shared_count});
   const double per_K = elementary_charge_C / boltzmann_J_K;
   const double by_gap = per_K * (1.0 / T0 - (1.0 + silicon_gap_slope_1_K * (T - T0)) / T);
@@ -136,6 +136,12 @@ inference::Parameters parameters_from(const Task& task, const VectorXd& at) {
       {"n V_t", "ln V", s[scale]},
       {"series", "ln ohm", s[series]},
       {"shunt", "ln S", s[shunt]}};
+  constexpr double held = 1e-9;
+  for (inference::Parameter& p : all.shared) {
+    if (!task.holds_shared) break;
+    p.mean = p.value;
+    p.sigma = held;
+  }
   const SweepEnds ends = sweep_ends(task.curves[0].sweep);
   bound_resistances(ends.open_circuit_V / ends.short_circuit_A, all.shared[series],
                     all.shared[shunt]);
@@ -197,9 +203,79 @@ inference::Fit best_fit(Task& task, const VectorXd& start, std::vector<OutlierRe
   return fit;
 }
 
+// Squares of a curve's residuals, of the current over its photocurrent, summed; at its values.
+double relative_squares(const Task& task, Index run, const VectorXd& at) {
+  const Circuit c = circuit_of(task, run, values_of(at, run));
+  const CellCurve cell = c.cell();
+  const IvSweep& sweep = task.curves[static_cast<size_t>(run)].sweep;
+  double sum = 0.0;
+  for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
+    const double off = sweep.current_A[i] - cell.current_A(c.photocurrent_A, sweep.voltage_V[i]);
+    sum += off * off;
+  }
+  return sum / (c.photocurrent_A * c.photocurrent_A);
+}
+
+// Of each curve, the mean square residual by a fit that left it out with a fifth of all (of less
+// than five curves, alone); only its photocurrent is fitted to it. Infinite where that fails.
+std::vector<double> predicted_squares(const Task& task, const VectorXd& start) {
+  const size_t count = task.curves.size(), folds = std::min<size_t>(5, count);
+  std::vector<size_t> by_light(count);
+  std::iota(by_light.begin(), by_light.end(), size_t{0});
+  std::ranges::stable_sort(by_light, {}, [&](size_t k) { return start[static_cast<Index>(k)]; });
+  // The curves of one fold, or all others, with their lights and the shared values.
+  const auto part = [&](size_t fold, bool others, const VectorXd& shared) {
+    std::pair<Task, VectorXd> result{task, VectorXd(static_cast<Index>(count) + shared_count)};
+    auto& [some, at] = result;
+    some.curves.clear();
+    for (size_t rank = 0; rank < count; ++rank) {
+      if ((rank % folds == fold) == others) continue;
+      at[static_cast<Index>(some.curves.size())] = start[static_cast<Index>(by_light[rank])];
+      some.curves.push_back(task.curves[by_light[rank]]);
+    }
+    at.conservativeResize(static_cast<Index>(some.curves.size()) + shared_count);
+    at.tail(Index{shared_count}) = shared;
+    return result;
+  };
+  std::vector<double> squares(count, inference::infinity);
+  for (size_t fold = 0; fold < folds; ++fold) {
+    std::vector<OutlierReading> outliers;
+    auto [others, at] = part(fold, true, start.tail(Index{shared_count}));
+    const inference::Fit fit = best_fit(others, at, outliers);
+    if (!std::isfinite(fit.chi2)) continue;
+    auto [left_out, guess] = part(fold, false, fit.at.tail(Index{shared_count}));
+    left_out.holds_shared = true;
+    const inference::Fit lit = best_fit(left_out, guess, outliers);
+    if (!std::isfinite(lit.chi2)) continue;
+    for (size_t k = 0; k < left_out.curves.size(); ++k) {
+      squares[by_light[fold + k * folds]] =
+          relative_squares(left_out, static_cast<Index>(k), lit.at) /
+          static_cast<double>(left_out.curves[k].sweep.voltage_V.size());
+    }
+  }
+  return squares;
+}
+
+// Whether the other law predicts curves better that were left out: the mean logarithm of the ratio
+// of their squares by more than two standard errors, else the simple one stands.
+bool predicts_better(const std::vector<double>& simple, const std::vector<double>& other) {
+  double sum = 0.0, squares = 0.0;
+  for (size_t k = 0; k < simple.size(); ++k) {
+    if (!std::isfinite(other[k])) return false;
+    if (!std::isfinite(simple[k])) return true;
+    constexpr double rounding = 1e-24;
+    const double gain = std::log((simple[k] + rounding) / (other[k] + rounding));
+    sum += gain;
+    squares += gain * gain;
+  }
+  const auto n = static_cast<double>(simple.size());
+  const double variance = std::max(0.0, squares / n - sum / n * sum / n) / (n - 1.0);
+  return sum / n > 2.0 * std::sqrt(variance);
+}
+
 void describe_light(const Task& task, ConditionsFit& result) {
   // ln(I_L/G) = c + α (T − T₀) by least squares.
-  const double T0 = task.reference_K();
+  const double T0 = task.reference_K;
   double n = 0.0, sum_t = 0.0, sum_tt = 0.0, sum_y = 0.0, sum_ty = 0.0, sum_yy = 0.0;
   for (size_t k = 0; k < task.curves.size(); ++k) {
     const CurveAt& curve = task.curves[k];
@@ -238,7 +314,7 @@ ConditionsFit described(const Task& task, const inference::Fit& fit,
   result.diode.scale_V = exponential(s[scale], e[scale]);
   result.diode.series_ohm = exponential(s[series], e[series]);
   result.diode.shunt_ohm = {1.0 / first.shunt_S, e[shunt] / first.shunt_S};
-  result.model.reference = result.diode.parameters(task.reference_K());
+  result.model.reference = result.diode.parameters(task.reference_K);
   if (task.law == ShuntLaw::inverse) {
     result.model.reference.shunt_light_A = first.photocurrent_A;
   }
@@ -249,17 +325,13 @@ ConditionsFit described(const Task& task, const inference::Fit& fit,
   result.points = static_cast<size_t>(fit.samples);
   double squares = 0.0;
   for (Index run = 0; run < curves; ++run) {
-    const Circuit c = circuit_of(task, run, values_of(at, run));
-    const CellCurve cell = c.cell();
-    const IvSweep& sweep = task.curves[static_cast<size_t>(run)].sweep;
-    double sum = 0.0;
-    for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
-      const double off = sweep.current_A[i] - cell.current_A(c.photocurrent_A, sweep.voltage_V[i]);
-      sum += off * off;
-    }
-    squares += sum / (c.photocurrent_A * c.photocurrent_A);
-    result.curves.push_back({exponential(at[run], error[run]),
-                             std::sqrt(sum / static_cast<double>(sweep.voltage_V.size()))});
+    const double sum = relative_squares(task, run, at);
+    const double light_A = std::exp(at[run]);
+    const auto readings =
+        static_cast<double>(task.curves[static_cast<size_t>(run)].sweep.voltage_V.size());
+    squares += sum;
+    result.curves.push_back(
+        {exponential(at[run], error[run]), light_A * std::sqrt(sum / readings)});
   }
   result.rms = std::sqrt(squares / static_cast<double>(result.points));
   std::vector<NamedBound> named = resistance_bounds(series, shunt);
@@ -279,6 +351,7 @@ ConditionsFit fit_conditions(std::span<const CurveAt> curves, const SweepNoise& 
   Task task;
   task.curves.assign(curves.begin(), curves.end());
   task.noise = noise;
+  task.reference_K = curves[0].temperature_K;
   const auto [coldest, warmest] = std::ranges::minmax(curves, {}, &CurveAt::temperature_K);
   constexpr double least_K = 5.0;
   task.fits_gap = warmest.temperature_K - coldest.temperature_K >= least_K;
@@ -295,8 +368,9 @@ ConditionsFit fit_conditions(std::span<const CurveAt> curves, const SweepNoise& 
     other.law = ShuntLaw::inverse;
     std::vector<OutlierReading> other_outliers;
     inference::Fit trial = best_fit(other, start, other_outliers);
-    // By the mean, since either may have left readings out.
-    if (std::isfinite(trial.chi2) && !(best.chi2_per_sample() <= trial.chi2_per_sample())) {
+    if (std::isfinite(trial.chi2) &&
+        (!std::isfinite(best.chi2) ||
+         predicts_better(predicted_squares(task, start), predicted_squares(other, start)))) {
       best = std::move(trial);
       outliers = std::move(other_outliers);
       fitted = std::move(other);

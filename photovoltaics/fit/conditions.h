@@ -38,8 +38,9 @@ struct ConditionsFit {
 
 // I₀, n, R_s and R_sh shared by all curves, and a photocurrent for each; between temperatures I₀
 // follows the gap (model.h, with De Soto's slope of silicon), which is fitted where temperatures
-// differ by 5 K or more. The shunt follows `shunt_law`; without one, both are tried where the
-// photocurrents differ by a fifth or more, and the one that leaves less is taken. Errors of single
+// differ by 5 K or more. The shunt follows `shunt_law`; without one it is constant, unless the
+// photocurrents differ by a fifth or more and the inverse law predicts curves better that were left
+// out of the fit, by more than two standard errors over the curves. Errors of single
 // readings are independent of each other. Outliers are left out as by fit_sweeps(). Throws
 // InputError as fit_sweeps() does.
 ConditionsFit fit_conditions(std::span<const CurveAt> curves, const SweepNoise& noise,

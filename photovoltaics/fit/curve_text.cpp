@@ -60,17 +60,39 @@ std::span<const Unit> units_of(Column column) {
   }
 }
 
+// In English, German, French, Spanish, Italian, Portuguese, Dutch, Polish, Czech, Swedish, Russian,
+// Chinese and Japanese; small letters.
 std::span<const std::string_view> names_of(Column column) {
-  static constexpr std::array<std::string_view, 5> voltages = {"voltage", "volts", "volt", "v",
-                                                               "u"};
-  static constexpr std::array<std::string_view, 6> currents = {"current", "amps",   "amp",
-                                                               "amperes", "ampere", "i"};
-  static constexpr std::array<std::string_view, 3> irradiances = {"irradiance", "g",
-                                                                  "plane of array irradiance"};
-  static constexpr std::array<std::string_view, 8> temperatures = {
-      "temperature",        "temp",   "t",     "cell temperature",
-      "module temperature", "t cell", "tcell", "cell temp"};
-  static constexpr std::array<std::string_view, 2> numbers = {"sweep", "curve"};
+  static constexpr std::string_view voltages[] = {
+      "voltage",        "volts",    "volt",       "v",        "u",
+      "module voltage", "spannung", "tension",    "tensión",  "voltaje",
+      "tensione",       "tensão",   "tensao",     "spanning", "napięcie",
+      "napětí",         "spänning", "напряжение", "电压",     "電圧"};
+  static constexpr std::string_view currents[] = {
+      "current", "amps",        "amp",     "amperes",   "ampere",    "i",        "module current",
+      "strom",   "stromstärke", "courant", "intensité", "corriente", "corrente", "stroom",
+      "prąd",    "proud",       "ström",   "ток",       "电流",      "電流"};
+  static constexpr std::string_view irradiances[] = {"irradiance",    "g",
+                                                     "poa",           "plane of array irradiance",
+                                                     "einstrahlung",  "bestrahlungsstärke",
+                                                     "éclairement",   "irradiancia",
+                                                     "irraggiamento", "irradiância"};
+  static constexpr std::string_view temperatures[] = {"temperature",
+                                                      "temp",
+                                                      "t",
+                                                      "cell temperature",
+                                                      "module temperature",
+                                                      "t cell",
+                                                      "tcell",
+                                                      "cell temp",
+                                                      "module temp",
+                                                      "temperatur",
+                                                      "zelltemperatur",
+                                                      "modultemperatur",
+                                                      "température",
+                                                      "temperatura",
+                                                      "temperatuur"};
+  static constexpr std::string_view numbers[] = {"sweep", "curve"};
   switch (column) {
     case voltage:
       return voltages;
@@ -162,7 +184,16 @@ struct Header {
   std::array<std::string, columns> title;  // as written
 };
 
-std::optional<Header> header_of(std::string_view line, const InputLocation& where) {
+// The name of a column: that of `columns` whose name in the file it is, else as it stands.
+std::string_view known_as(std::string_view cell, const CurveColumns& columns) {
+  for (const auto& [name, written] : columns) {
+    if (written == cell) return name;
+  }
+  return cell;
+}
+
+std::optional<Header> header_of(std::string_view line, const InputLocation& where,
+                                const CurveColumns& columns_named) {
   Header header;
   for (const char separator : {'\t', ';', ',', ' '}) {
     header.separator = separator;
@@ -171,7 +202,7 @@ std::optional<Header> header_of(std::string_view line, const InputLocation& wher
   header.unit.fill({"", 1.0, 0.0});
   const std::vector<std::string_view> cells = split(line, header.separator);
   for (size_t i = 0; i < cells.size(); ++i) {
-    const Named name = named(unquoted(cells[i]));
+    const Named name = named(known_as(unquoted(cells[i]), columns_named));
     if (name.column == columns) continue;
     const bool needed = name.column == voltage || name.column == current;
     if (!name.unknown_unit.empty()) {
@@ -193,9 +224,45 @@ std::optional<Header> header_of(std::string_view line, const InputLocation& wher
   return header;
 }
 
+// Whether all that a header names belongs to a curve; a log of a motor has more than that.
+bool is_of_curve(std::string_view line, const Header& header) {
+  static constexpr std::string_view beside[] = {
+      "power", "p",     "leistung", "puissance", "potencia", "potenza", "time",
+      "zeit",  "temps", "tiempo",   "tempo",     "date",     "index",   "point",
+      "no",    "nr",    "number",   "id",        "rep",      "/",       "in"};
+  for (const std::string_view cell : split(line, header.separator)) {
+    std::string text = lower(unquoted(cell));
+    if (text.empty() || named(text).column != columns) continue;
+    std::ranges::replace(text, '_', ' ');
+    text = text.substr(0, text.find_first_of(" ([/", 1));
+    if (text.starts_with('[') || text.starts_with('(')) continue;
+    if (std::ranges::find(beside, text) == std::end(beside)) return false;
+  }
+  return true;
+}
+
+// Of a curve with the current counted into the device: the signs of its currents are changed.
+bool reverse_negative(IvSweep& sweep) {
+  double nearest_V = 1e300, short_circuit_A = 0.0, highest_V = -1e300, last_A = 0.0;
+  for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
+    if (std::abs(sweep.voltage_V[i]) < nearest_V) {
+      nearest_V = std::abs(sweep.voltage_V[i]);
+      short_circuit_A = sweep.current_A[i];
+    }
+    if (sweep.voltage_V[i] > highest_V) {
+      highest_V = sweep.voltage_V[i];
+      last_A = sweep.current_A[i];
+    }
+  }
+  if (!(short_circuit_A < 0.0 && highest_V > 0.0 && last_A > 0.5 * short_circuit_A)) return false;
+  for (double& current : sweep.current_A) current = -current;
+  return true;
+}
+
 class Reader {
  public:
-  Reader(std::string_view text, const std::string& file) : lines_(text, file), file_(file) {}
+  Reader(std::string_view text, const std::string& file, const CurveColumns& columns_named)
+      : lines_(text, file), file_(file), columns_named_(columns_named) {}
 
   std::vector<MeasuredCurve> read() {
     find_header();
@@ -227,14 +294,15 @@ class Reader {
     std::string_view line;
     std::string first;
     while (lines_.next(line)) {
-      if (const auto header = header_of(line, lines_.where())) {
+      if (const auto header = header_of(line, lines_.where(), columns_named_)) {
         header_ = *header;
         return;
       }
       if (first.empty()) first = std::string(line.substr(0, 60));
     }
     throw InputError({file_, 1}, "", first.empty() ? "nothing" : in_quotes(first),
-                     "a header that names a voltage and a current: voltage_V,current_A");
+                     "a header that names a voltage and a current: add the line "
+                     "voltage_V,current_A above the numbers");
   }
 
   // A row of units below the header.
@@ -260,7 +328,7 @@ class Reader {
   // A decimal comma, where none separates.
   std::string plain(std::string_view cell) const {
     std::string text(unquoted(cell));
-    const bool may_be_comma = header_.separator == ';' || header_.separator == '\t';
+    const bool may_be_comma = header_.separator != ',';
     if (may_be_comma && text.find('.') == std::string::npos) std::ranges::replace(text, ',', '.');
     return text;
   }
@@ -279,7 +347,7 @@ class Reader {
     for (const auto& place : header_.place) used = std::max(used, place ? *place + 1 : 0);
     if (header_.separator == ',' && cells.size() > used && used == 2 && cells.size() == 4) {
       throw InputError(lines_.where(), "", "a row of 4 cells",
-                       "2, as in the header; numbers have a point, no comma");
+                       "2, as in the header: separate decimal commas by semicolons");
     }
     const double number =
         header_.place[curve_number] ? value(curve_number, cells).value_or(0.0) : 0.0;
@@ -310,11 +378,13 @@ class Reader {
     };
     rows.curve.irradiance_W_m2 = mean(irradiance);
     rows.curve.temperature_K = mean(temperature);
+    rows.curve.is_reversed = reverse_negative(rows.curve.sweep);
     return std::move(rows.curve);
   }
 
   DataLines lines_;
   std::string file_;
+  const CurveColumns& columns_named_;
   Header header_;
   std::map<double, Rows> curves_;
   std::vector<double> order_;
@@ -375,8 +445,18 @@ size_t take_spikes(IvSweep& sweep) {
 }  // namespace
 }  // namespace curve_text
 
-std::vector<MeasuredCurve> curves_in(std::string_view text, const std::string& file) {
-  return curve_text::Reader(text, file).read();
+std::vector<MeasuredCurve> curves_in(std::string_view text, const std::string& file,
+                                     const CurveColumns& columns) {
+  return curve_text::Reader(text, file, columns).read();
+}
+
+bool is_curve_header(std::string_view line, const CurveColumns& columns) {
+  try {
+    const auto header = curve_text::header_of(line, {}, columns);
+    return header && (!columns.empty() || curve_text::is_of_curve(line, *header));
+  } catch (const InputError&) {
+    return true;  // names them, but in a way that the reader refuses
+  }
 }
 
 CurveCleaning clean_curve(IvSweep& sweep) {

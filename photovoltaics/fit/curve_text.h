@@ -1,6 +1,7 @@
 // Current-voltage curves as instruments and spreadsheets write them.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,27 +11,36 @@
 
 namespace photorque {
 
+// Names of columns in a file by what they stand for: {"voltage_V", "U_mod"}, {"current_mA", "I2"}.
+using CurveColumns = std::map<std::string, std::string>;
+
 // One curve of a file, with the circumstances that its rows state: means over them.
 struct MeasuredCurve {
   IvSweep sweep;
   std::optional<double> irradiance_W_m2, temperature_K;
+  bool is_reversed = false;  // its currents were negative in light; they are positive here
   size_t unread = 0;  // rows without a number: empty, "NaN", "OL", or an instrument's overflow
 };
 
 // The curves of a text, which `file` names in messages.
 //
 // Cells are separated by tabs, semicolons, commas or blanks, the first of these that the header
-// has; between tabs and semicolons numbers may have a decimal comma. Lines before the header, and
-// those that begin with #, are skipped. The header names a voltage ("voltage_V", "Voltage (V)",
-// "Volts", "V", "U [mV]") and a current ("current_A", "Current (mA)", "Amps", "I"); it may name an
-// irradiance ("irradiance_W_m2", "G (W/m2)"), a temperature with its unit ("temperature_K",
+// has; but between commas numbers may have a decimal comma. Lines before the header, and those that
+// begin with #, are skipped. The header names a voltage ("voltage_V", "Voltage (V)", "Volts", "V",
+// "U [mV]", "Spannung / V") and a current ("current_A", "Current (mA)", "Amps", "I"); it may name
+// an irradiance ("irradiance_W_m2", "G (W/m2)"), a temperature with its unit ("temperature_K",
 // "cell_temperature_K", "T (°C)"), and a column "sweep" or "curve" whose number tells the curves of
 // one file apart. Voltages and currents without a unit are V and A; a row below the header may
-// state the units instead.
+// state the units instead. Currents that are negative in light are counted the other way round.
 //
 // InputError with the line where there is no such header, a unit is unknown, or a cell is neither a
 // number nor a sign of a missing one.
-std::vector<MeasuredCurve> curves_in(std::string_view text, const std::string& file);
+std::vector<MeasuredCurve> curves_in(std::string_view text, const std::string& file,
+                                     const CurveColumns& columns = {});
+
+// Whether a line is such a header and all that it names belongs to a curve (power, time and numbers
+// of points may stand beside), or names come from `columns`.
+bool is_curve_header(std::string_view line, const CurveColumns& columns = {});
 
 // What was left out of a curve because no cell gives it.
 struct CurveCleaning {

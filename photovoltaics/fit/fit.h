@@ -123,12 +123,13 @@ struct RatedFit {
   SingleDiode diode;  // photocurrent, and shunt, at the first point
   ShuntLaw shunt_law = ShuntLaw::constant;
   std::vector<BoundReached> bounds;
-  CellModel model;                    // of the whole device, reference_area_m2 = 1
-  double gap_error_eV = 0.0;          // standard error of the model's gap
-  double short_circuit_A_m2_W = 0.0;  // short-circuit current over irradiance at the first point
-  double rms = 0.0;                   // relative, over V_oc, I_mp and V_mp of the points given
-  double other_rms = 0.0;             // under the other law of the shunt; 0 where it was not tried
-  double rms_over_known = 0.0;        // root mean square of the same over how well each is known
+  CellModel model;              // of the whole device, reference_area_m2 = 1
+  double gap_error_eV = 0.0;    // standard error of the model's gap
+  double first_W_m2 = 0.0;      // irradiance of the first point
+  double light_exponent = 1.0;  // of the photocurrent over the irradiance, by the points
+  double rms = 0.0;             // relative, over V_oc, I_mp and V_mp of the points given
+  double other_rms = 0.0;       // under the other law of the shunt; 0 where it was not tried
+  double rms_over_known = 0.0;  // root mean square of the same over how well each is known
 
   // What the device gives under other conditions.
   RatedPoint predict(double irradiance_W_m2, double temperature_K) const;
@@ -146,8 +147,10 @@ struct RatedFit {
 // there are more figures than parameters. What one diode cannot describe at all is in neither, nor
 // is, for one point alone, that the ideality was assumed.
 //
-// The shunt follows `shunt_law`; without one it is constant, unless points at several irradiances
-// leave less than half by the inverse law.
+// The shunt follows `shunt_law`; without one it is constant, unless the inverse law predicts each
+// of three or more points from the others with less than half the rms error. Of two points the
+// errors of the fits are compared. Predictions follow the measured short-circuit currents: the
+// photocurrent is a power of the irradiance (IEC 60904-10 calls the departure nonlinearity).
 RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureSlopes& slopes,
                           double ideality_guess_V, const RatedTolerance& tolerance = {},
                           std::optional<ShuntLaw> shunt_law = ShuntLaw::constant);

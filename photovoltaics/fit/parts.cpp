@@ -27,6 +27,23 @@ CellParameters SingleDiode::parameters(double temperature_K) const {
                       temperature_K);
 }
 
+double gap_of_voltage_slope_eV(const CellModel& model, double light_A, double growth_1_K,
+                               double slope_V_K) {
+  constexpr double step_K = 10.0;
+  const double temperature_K = model.reference.temperature_K;
+  const double wanted_V = CellCurve(model.reference).open_circuit_V(light_A) + step_K * slope_V_K;
+  double low = 0.01, high = 20.0;
+  for (int i = 0; i < 60; ++i) {
+    CellModel trial = model;
+    trial.gap_eV = std::midpoint(low, high);
+    const double v =
+        CellCurve(parameters_at(trial, model.reference_area_m2, temperature_K + step_K))
+            .open_circuit_V(light_A * (1.0 + step_K * growth_1_K));
+    (v > wanted_V ? low : high) = trial.gap_eV;
+  }
+  return std::midpoint(low, high);
+}
+
 void check_sweep(const IvSweep& sweep) {
   constexpr size_t fewest = 6;  // one more than parameters
   const size_t points = sweep.voltage_V.size();

@@ -32,6 +32,11 @@ inline bool reasonable(const Eigen::VectorXd& x) {
   return x.allFinite() && (x.array().abs() < 300.0).all();
 }
 
+// E₀ in (0.01, 20) eV with which V_oc of the device changes by `slope_V_K` over the next 10 K above
+// the model's temperature, while the light's current `light_A` grows by `growth_1_K`.
+double gap_of_voltage_slope_eV(const CellModel& model, double light_A, double growth_1_K,
+                               double slope_V_K);
+
 // Throws InputError for too few points, unequal columns or numbers that are not finite.
 void check_sweep(const IvSweep& sweep);
 

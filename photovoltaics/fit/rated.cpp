@@ -21,20 +21,37 @@ using Eigen::Index, Eigen::VectorXd;
 
 enum Parameter { saturation, scale, series, shunt, count };
 
-// The points, and how the shunt changes between them.
+// The points, and how the shunt changes from that at the short-circuit current of the first.
 struct Figures {
   std::span<const RatedPoint> points;
   ShuntLaw law = ShuntLaw::constant;
-
-  // Of the shunt's conductance over that at the first point.
-  double shunt_factor(const RatedPoint& p) const {
-    return law == ShuntLaw::constant ? 1.0 : p.irradiance_W_m2 / points[0].irradiance_W_m2;
-  }
+  double first_A = points[0].short_circuit_A;
 };
 
-CellCurve circuit(const VectorXd& x, double shunt_factor) {
-  return CellCurve(single_diode(std::exp(x[saturation]), std::exp(x[scale]), std::exp(x[series]),
-                                std::exp(-x[shunt]) / shunt_factor));
+// A point's circuit, and the photocurrent that gives its short circuit.
+struct Circuit {
+  CellCurve cell;
+  double light_A;
+};
+
+// Of the shunt's conductance, by the photocurrent over that of the first point: 0 = I_L − D(I_sc
+// R_s) − f G I_sc R_s − I_sc with I_L = f I_L1 gives f.
+Circuit circuit_of(const VectorXd& x, const Figures& figures, const RatedPoint& point) {
+  const double series_ohm = std::exp(x[series]), shunt_S = std::exp(x[shunt]);
+  const auto with_shunt = [&](double conductance_S) {
+    return CellCurve(
+        single_diode(std::exp(x[saturation]), std::exp(x[scale]), series_ohm, 1.0 / conductance_S));
+  };
+  CellCurve cell = with_shunt(shunt_S);
+  if (figures.law == ShuntLaw::constant) return {cell, cell.photocurrent_A(point.short_circuit_A)};
+  const double first_A = cell.photocurrent_A(figures.first_A);
+  const double leak_A = shunt_S * series_ohm * point.short_circuit_A;
+  double factor = (cell.photocurrent_A(point.short_circuit_A) - leak_A) / (first_A - leak_A);
+  // Only of resistances that no fit ends at.
+  if (!(factor > 0.0) || !std::isfinite(factor)) {
+    factor = point.short_circuit_A / figures.first_A;
+  }
+  return {with_shunt(factor * shunt_S), factor * first_A};
 }
 
 void check(std::span<const RatedPoint> points) {
@@ -77,8 +94,7 @@ VectorXd relative_errors(const Figures& figures, const VectorXd& x) {
   if (!reasonable(x)) return errors;
   Index row = 0;
   for (const RatedPoint& p : figures.points) {
-    const CellCurve cell = circuit(x, figures.shunt_factor(p));
-    const double light_A = cell.photocurrent_A(p.short_circuit_A);
+    const auto [cell, light_A] = circuit_of(x, figures, p);
     const CellOperatingPoint best = cell.maximum_power(light_A);
     errors[row++] = 1.0 - cell.open_circuit_V(light_A) / p.open_circuit_V;
     errors[row++] = 1.0 - best.current_A / p.maximum_A;
@@ -128,21 +144,36 @@ inference::Fit best_fit(const Figures& figures, double guess_V) {
   return best;
 }
 
-// E₀ with which V_oc changes as the datasheet says, over the next 10 kelvin, while the light's
-// current grows by `growth_1_K`.
-double gap_eV(const CellModel& model, double light_A, double growth_1_K, double slope_V_K) {
-  constexpr double step_K = 10.0;
-  const double temperature_K = model.reference.temperature_K;
-  const double wanted_V = CellCurve(model.reference).open_circuit_V(light_A) + step_K * slope_V_K;
-  double low = 0.01, high = 20.0;
-  for (int i = 0; i < 60; ++i) {
-    CellModel trial = model;
-    trial.gap_eV = std::midpoint(low, high);
-    const double v = CellCurve(parameters_at(trial, 1.0, temperature_K + step_K))
-                         .open_circuit_V(light_A * (1.0 + step_K * growth_1_K));
-    (v > wanted_V ? low : high) = trial.gap_eV;
+// Mean square error of each point as a fit of the other ones predicts it; of two points, whose
+// single ones determine no ideality, that of the fit itself, `fitted`.
+double predictive_error(const Figures& figures, double guess_V, const inference::Fit& fitted) {
+  const auto count = static_cast<double>(3 * figures.points.size());
+  if (figures.points.size() < 3) return fitted.chi2 / count;
+  double squares = 0.0;
+  for (size_t left_out = 0; left_out < figures.points.size(); ++left_out) {
+    std::vector<RatedPoint> others(figures.points.begin(), figures.points.end());
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(left_out));
+    const inference::Fit fit = best_fit({others, figures.law, figures.first_A}, guess_V);
+    if (fit.at.size() == 0) return inference::infinity;
+    squares +=
+        relative_errors({figures.points.subspan(left_out, 1), figures.law, figures.first_A}, fit.at)
+            .squaredNorm();
   }
-  return std::midpoint(low, high);
+  return squares / count;
+}
+
+// Of the photocurrent over the irradiance: least squares of their logarithms about the first point;
+// 1 where all points have one irradiance.
+double light_exponent(const VectorXd& x, const Figures& figures) {
+  const RatedPoint& first = figures.points[0];
+  const double first_A = circuit_of(x, figures, first).light_A;
+  double squares = 0.0, products = 0.0;
+  for (const RatedPoint& p : figures.points) {
+    const double light = std::log(p.irradiance_W_m2 / first.irradiance_W_m2);
+    squares += light * light;
+    products += light * std::log(circuit_of(x, figures, p).light_A / first_A);
+  }
+  return squares > 0.0 ? products / squares : 1.0;
 }
 
 // Without errors.
@@ -158,11 +189,12 @@ RatedFit described(const VectorXd& x, const Figures& figures, const TemperatureS
   result.model.reference = result.diode.parameters(first.temperature_K);
   const double light_A = CellCurve(result.model.reference).photocurrent_A(first.short_circuit_A);
   result.diode.photocurrent_A = {light_A, 0.0};
-  result.model.gap_eV = gap_eV(result.model, light_A, slopes.short_circuit_1_K,
-                               slopes.open_circuit_1_K * first.open_circuit_V);
+  result.model.gap_eV = gap_of_voltage_slope_eV(result.model, light_A, slopes.short_circuit_1_K,
+                                                slopes.open_circuit_1_K * first.open_circuit_V);
   result.model.photocurrent_slope_1_K = slopes.short_circuit_1_K;
   if (figures.law == ShuntLaw::inverse) result.model.reference.shunt_light_A = light_A;
-  result.short_circuit_A_m2_W = first.short_circuit_A / first.irradiance_W_m2;
+  result.first_W_m2 = first.irradiance_W_m2;
+  result.light_exponent = light_exponent(x, figures);
   result.rms = std::sqrt(relative_errors(figures, x).squaredNorm() /
                          (3.0 * static_cast<double>(figures.points.size())));
   return result;
@@ -336,7 +368,9 @@ RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureS
     inference::Fit trial = best_fit(inverse, ideality_guess_V);
     other_chi2 = trial.chi2;
     constexpr double decisive = 0.25;  // half the rms
-    if (trial.chi2 < decisive * best.chi2) {
+    if (std::isfinite(trial.chi2) &&
+        predictive_error(inverse, ideality_guess_V, trial) <
+            decisive * predictive_error(figures, ideality_guess_V, best)) {
       other_chi2 = best.chi2;
       figures = inverse;
       best = std::move(trial);
@@ -372,23 +406,14 @@ RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureS
 }
 
 RatedPoint RatedFit::predict(double irradiance_W_m2, double temperature_K) const {
-  using namespace rated_points;
-  const double first_W_m2 =
-      CellCurve(model.reference).short_circuit_A(diode.photocurrent_A.value) / short_circuit_A_m2_W;
-  const CellParameters warm = parameters_at(model, 1.0, temperature_K);
-  const double suns = irradiance_W_m2 / first_W_m2;
-  const CellCurve cell(in_light(warm, warm.shunt_light_A * suns));
-  double short_circuit_A =
-      short_circuit_A_m2_W * irradiance_W_m2 * photocurrent_factor(model, temperature_K);
-  double light_A = cell.photocurrent_A(short_circuit_A);
-  if (shunt_law == ShuntLaw::inverse) {
-    // The photocurrent is proportional to the light; what the shunt takes of it is not.
-    light_A = warm.shunt_light_A * suns;
-    short_circuit_A = cell.short_circuit_A(light_A);
-  }
+  const double light_A = diode.photocurrent_A.value *
+                         std::pow(irradiance_W_m2 / first_W_m2, light_exponent) *
+                         photocurrent_factor(model, temperature_K);
+  const CellCurve cell(in_light(parameters_at(model, 1.0, temperature_K), light_A));
   const CellOperatingPoint best = cell.maximum_power(light_A);
-  return {irradiance_W_m2, temperature_K, short_circuit_A, cell.open_circuit_V(light_A),
-          best.current_A,  best.voltage_V};
+  return {
+      irradiance_W_m2, temperature_K, cell.short_circuit_A(light_A), cell.open_circuit_V(light_A),
+      best.current_A,  best.voltage_V};
 }
 
 }  // namespace photorque

@@ -156,6 +156,40 @@ TEST(LightRecordings, LampsWithoutAnyCurrentAreRefused) {
   EXPECT_THROW(read_light_recording(file, {}), InputError);
 }
 
+TEST(LightRecordings, SweepsAreReadAsInstrumentsWriteThem) {
+  const auto german =
+      read_light_recording(light_file("german.csv",
+                                      "Modul 17\nSpannung [V];Strom [mA];Zelltemperatur [°C]\n"
+                                      "0,1;500;24\n0,2;NaN;24\n0,3;400;26\n"),
+                           {});
+  EXPECT_EQ(german.kind, LightRecording::Kind::sweep);
+  ASSERT_EQ(german.rows(), 2u);
+  EXPECT_NEAR(german.voltage_V[1], 0.3, 1e-15);
+  EXPECT_NEAR(german.current_A[0], 0.5, 1e-15);
+  EXPECT_TRUE(german.has_temperatures);
+  EXPECT_NEAR(german.temperature_K[0], 298.15, 1e-9);
+  EXPECT_EQ(german.rejected.at("unreadable number"), 1);
+  const auto several = read_light_recording(
+      light_file("several.csv", "Curve\tVolts\tAmps\n7\t0\t5\n7\t30\t0\n9\t0\t4\n"), {});
+  EXPECT_EQ(several.sweep, (std::vector{0, 0, 1}));
+}
+
+TEST(LightRecordings, ColumnsMayHaveNamesOfTheFiles) {
+  const fs::path file = light_file("named.csv", "ch1,ch2,ref\n0.1,500,900\n0.2,400,900\n");
+  EXPECT_FALSE(is_light_recording(file));
+  const LightColumns columns = {
+      {"voltage_V", "ch1"}, {"current_mA", "ch2"}, {"irradiance_W_m2", "ref"}};
+  EXPECT_TRUE(is_light_recording(file, columns));
+  const auto sweep = read_light_recording(file, {}, columns);
+  ASSERT_EQ(sweep.rows(), 2u);
+  EXPECT_NEAR(sweep.current_A[1], 0.4, 1e-15);
+  EXPECT_EQ(sweep.irradiance_W_m2[0], 900.0);
+  EXPECT_TRUE(sweep.absent_columns.empty());
+  LightColumns misspelt = columns;
+  misspelt["irradiance_W_m2"] = "reff";
+  EXPECT_TRUE(read_light_recording(file, {}, misspelt).absent_columns.contains("reff"));
+}
+
 TEST(LightRecordings, OthersAreRefused) {
   const fs::path motion =
       light_file("motion.csv", "t_s,q_w,q_x,q_y,q_z,gyro_x_rad_s\n0,1,0,0,0,0\n");

@@ -136,6 +136,19 @@ TEST(ModuleDiagnosis, NamesACellInTheShadeAndItsLight) {
   EXPECT_LT(d.holdout->rms_after.at("current_A"), 4e-3);
 }
 
+// Leaks that grow along the string, as of potential-induced degradation.
+TEST(ModuleDiagnosis, NamesNoCrackWhereManyCellsLeak) {
+  Network network(0, false);
+  for (int i = 0; i < 8; ++i) {
+    CellParameters p = parameters_of(usual);
+    p.shunt_ohm = 0.3 * std::pow(1.6, i);
+    network.tables[static_cast<size_t>(i)] = table_of(p);
+  }
+  const Diagnosis d = diagnose_module(design_with_reference(), {measured(network.curve(), 2)}, {});
+  EXPECT_NE(d.verdict, Verdict::consistent);
+  for (const FoundEffect& effect : d.effects) EXPECT_EQ(effect.kind, "cell_shunted");
+}
+
 TEST(ModuleDiagnosis, NamesNothingInOtherLight) {
   Network network(0, false);
   for (double& light : network.light_A) light *= 0.8;

@@ -333,13 +333,17 @@ TEST(PhotovoltaicFit, TwoPointsPredictTheRestOfEveryMeasuredModule) {
         "    %-16s rms error of P_mp %5.2f %% (fit %.2f %%), better shunt law (%s) %5.2f %%\n",
         module.name.c_str(), 100 * all.back(), 100 * fit.rms,
         best.shunt_law == ShuntLaw::inverse ? "inverse" : "constant", 100 * by_best_law.back());
+    // The law that is taken is never the worse one for the conditions that were left out.
+    EXPECT_LE(by_best_law.back(), all.back()) << module.name;
+    if (module.name.starts_with("aSi")) {
+      EXPECT_LT(by_best_law.back(), 0.075) << module.name;
+    }
   }
   std::ranges::sort(by_best_law);
   std::ranges::sort(all);
   std::printf("    median %.2f %%, worst %.2f %%; by the better law %.2f %%, %.2f %%\n",
               100 * all[all.size() / 2], 100 * all.back(), 100 * by_best_law[all.size() / 2],
               100 * by_best_law.back());
-  EXPECT_LT(by_best_law[all.size() / 2], all[all.size() / 2] * 1.05);
   EXPECT_EQ(all.size(), 20u);
   // The measurements themselves are good to 2.8 % (their authors).
   EXPECT_LT(all[all.size() / 2], 0.028);
@@ -473,6 +477,13 @@ TEST(PhotovoltaicFit, FilesOfInstrumentsAreRead) {
            {"V I\n 0.1   0.5\n 0.2   0.4\n", {}, {}},
            {"voltage,current\nV,mA\n0.1,500\n0.2,400\n", {}, {}},
            {"Time;U / V;I / A\n08:00;0.1;0.5\n08:01;0.2;0.4\n", {}, {}},
+           {"Spannung [V];Strom [mA]\n0,1;500\n0,2;400\n", {}, {}},
+           {"Tensión (V)\tCorriente (A)\n0,1\t0,5\n0,2\t0,4\n", {}, {}},
+           {"tension courant\n0,1 0,5\n0,2 0,4\n", {}, {}},
+           {"电压(V),电流(A)\n0.1,0.5\n0.2,0.4\n", {}, {}},
+           {"Spannung in V;Strom in mA;Einstrahlung in W/m2;Zelltemperatur in °C\n"
+            "0,1;500;900;24\n0,2;400;1100;26\n",
+            1000.0, 298.15},
            {"voltage_mV,current_mA\n100,500\n150,NaN\n200,400\n250,9.91E37\n", {}, {}},
            {"voltage_V,current_A,irradiance_W_m2,Temperature "
             "(C)\n0.1,0.5,900,24\n0.2,0.4,1100,26\n",
@@ -491,6 +502,20 @@ TEST(PhotovoltaicFit, FilesOfInstrumentsAreRead) {
       EXPECT_NEAR(curves[0].temperature_K.value_or(0.0), *w.temperature_K, 1e-9);
     }
   }
+  // Names of the file's own.
+  const CurveColumns columns = {{"voltage_mV", "ch1"}, {"current_A", "ch2"}};
+  const auto named = curves_in("ch2;ch1\n0,5;100\n0,4;200\n", "x", columns);
+  EXPECT_NEAR(named[0].sweep.voltage_V[1], 0.2, 1e-15);
+  EXPECT_TRUE(is_curve_header("ch2;ch1", columns));
+  EXPECT_FALSE(is_curve_header("ch2;ch1"));
+  // Curves have nothing but what belongs to them.
+  EXPECT_TRUE(is_curve_header("Index;Spannung [V];Strom [A];Leistung [W];Zeit"));
+  EXPECT_FALSE(is_curve_header("t,angle,voltage,current"));
+  // The current counted into the device.
+  const auto into = curves_in("V,I\n0,-0.5\n0.3,-0.4\n0.6,0.1\n", "x");
+  EXPECT_TRUE(into[0].is_reversed);
+  EXPECT_NEAR(into[0].sweep.current_A[0], 0.5, 1e-15);
+  EXPECT_FALSE(curves_in("V,I\n0,0.5\n0.3,0.4\n0.6,-0.1\n", "x")[0].is_reversed);
   EXPECT_EQ(curves_in("V,I,sweep\n0,1,3\n0,2,4\n1,1,3\n", "x").size(), 2u);
   const auto message = [](const char* text) -> std::string {
     try {
@@ -564,6 +589,49 @@ TEST(PhotovoltaicFit, CurvesUnderSeveralConditionsShareOneSetOfParameters) {
     EXPECT_NEAR(fit.curves[2].photocurrent_A.value, 1.0, 1e-6);
     EXPECT_LT(fit.rms, 1e-7);
   }
+}
+
+// Curves of two diodes and a constant shunt, which neither law of one diode describes: the law that
+// is taken predicts the curves between, which no fit has seen, at least as well as the other.
+TEST(PhotovoltaicFit, TheShuntLawIsChosenByCurvesThatAreLeftOut) {
+  CellParameters truth = ivcurves::Truth{8.0, 5e-10, 0.3, 120.0, 1.0, 60}.parameters();
+  truth.saturation_2_A = 2e-5;
+  truth.ideality_2 = 2.0 * truth.ideality_1;
+  const CellCurve cell(truth);
+  const auto curve = [&](double light_A) {
+    CurveAt one;
+    const double open_V = cell.open_circuit_V(light_A);
+    for (int i = 0; i <= 50; ++i) {
+      one.sweep.voltage_V.push_back(open_V * i / 50.0);
+      one.sweep.current_A.push_back(cell.current_A(light_A, one.sweep.voltage_V.back()));
+    }
+    return one;
+  };
+  std::vector<CurveAt> seen, kept;
+  for (const double light_A : {8.0, 5.0, 2.5, 1.2, 0.6}) seen.push_back(curve(light_A));
+  for (const double light_A : {6.5, 3.5, 1.7, 0.8}) kept.push_back(curve(light_A));
+  const auto off = [&](std::optional<ShuntLaw> law) {
+    const ConditionsFit fit = fit_conditions(seen, {}, law);
+    double squares = 0.0;
+    for (const CurveAt& one : kept) {
+      const double isc = one.sweep.current_A.front();
+      double best = 1e300;
+      for (double light_A = 0.999 * isc; light_A < 1.02 * isc; light_A += 1e-4 * isc) {
+        const CellCurve fitted(in_light(fit.model.reference, light_A));
+        double sum = 0.0;
+        for (size_t i = 0; i < one.sweep.voltage_V.size(); ++i) {
+          const double r =
+              fitted.current_A(light_A, one.sweep.voltage_V[i]) - one.sweep.current_A[i];
+          sum += r * r / (isc * isc);
+        }
+        best = std::min(best, sum);
+      }
+      squares += best;
+    }
+    return squares;
+  };
+  const double constant = off(ShuntLaw::constant), inverse = off(ShuntLaw::inverse);
+  EXPECT_LE(off(std::nullopt), 1.02 * std::min(constant, inverse));
 }
 
 TEST(PhotovoltaicFit, WrongDataAreRefused) {

@@ -22,6 +22,12 @@ inline constexpr ChoiceKey shunt(
     "R_sh in any light, or inversely proportional to the irradiance (De Soto, CEC); `best`: of "
     "several lights, what describes them better");
 inline constexpr TablesKey datasheet("datasheet", "one to several points at one temperature");
+inline constexpr TextKey module_file(
+    "module_file", "*or* instead: a library of modules of SAM (CSV), or a PAN file of PVsyst",
+    {.optional = true});
+inline constexpr TextKey module_name("module_name",
+                                     "the Name of one of a library, or a part that no other has",
+                                     {.optional = true});
 inline constexpr IntegerKey cells_in_series("cells_in_series", 1, 1, 2000, "of the device");
 inline constexpr NumberKey temperature(
     "temperature_K", 298.15, {1.0, 1000.0},

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/recordings/text_lines.h"
+#include "attitude/recordings/named_columns.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/files.h"
@@ -24,20 +24,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string text_of(const fs::path& file) {
-  TextLines lines(file);
-  std::string text;
-  for (std::string_view line; lines.next(line);) {
-    text += line;
-    text += '\n';
-  }
-  return text;
-}
-
 // The curves of a file, cleaned; what was left out goes to the notes.
 void add_curves(const fs::path& file, std::optional<double> irradiance_W_m2,
                 std::optional<double> temperature_K, FitTask& task) {
-  std::vector<MeasuredCurve> curves = curves_in(text_of(file), file.string());
+  std::vector<MeasuredCurve> curves = curves_in(whole_text(file), file.string());
   for (size_t k = 0; k < curves.size(); ++k) {
     MeasuredCurve& curve = curves[k];
     const std::string name =
@@ -47,6 +37,9 @@ void add_curves(const fs::path& file, std::optional<double> irradiance_W_m2,
       task.notes.push_back(name + ": left out " + std::to_string(count) + " " + what);
     };
     note(curve.unread, "rows without a reading");
+    if (curve.is_reversed) {
+      task.notes.push_back(name + ": currents are negative in light; counted the other way round");
+    }
     const CurveCleaning cleaning = clean_curve(curve.sweep);
     note(cleaning.spikes, "readings far from both neighbours");
     note(cleaning.clipped, "points from " + show(cleaning.clipped_from_V) +
@@ -130,9 +123,18 @@ FitTask read_fit_task(const Settings& root, const fs::path& folder) {
   task.cells_in_series = static_cast<int>(s.get(fit_key::cells_in_series));
   task.temperature_K = s.get(fit_key::temperature);
   const bool has_curves = s.has(fit_key::curves) || s.has(fit_key::curve);
-  if (has_curves == s.has(fit_key::datasheet)) {
-    throw s.error(fit_key::curves, has_curves ? "curves and a datasheet" : "neither",
-                  "either curves = [\"sweep.csv\"], [[fit.curve]] or [[fit.datasheet]]");
+  const int sources = has_curves + s.has(fit_key::datasheet) + s.has(fit_key::module_file);
+  if (sources != 1) {
+    throw s.error(fit_key::curves, sources == 0 ? "nothing to fit" : "several things to fit",
+                  "one of curves = [\"sweep.csv\"], [[fit.curve]], [[fit.datasheet]] and "
+                  "module_file = \"library.csv\"");
+  }
+  if (s.has(fit_key::module_file)) {
+    task.files.push_back(folder / s.get(fit_key::module_file));
+    task.module = module_in(whole_text(task.files[0]), task.files[0].string(),
+                            s.has(fit_key::module_name) ? s.get(fit_key::module_name) : "");
+    root.finish();
+    return task;
   }
   const size_t law = s.get(fit_key::shunt);
   if (law > 0) task.shunt_law = law == 1 ? ShuntLaw::constant : ShuntLaw::inverse;
@@ -422,6 +424,48 @@ Product fit_uneven_light(const FitTask& task, const Console& console) {
   return product;
 }
 
+// The cell of a module in a library, as keys, and what it is rated at beside what it gives.
+Product list_module(const ListedModule& module, const Console& console) {
+  const CellParameters& p = module.cell.reference;
+  const RatedPoint& rated = module.rated;
+  const RatedPoint gives = module.predict(rated.irradiance_W_m2, rated.temperature_K);
+  const double listed_W = rated.maximum_A * rated.maximum_V;
+  const double given_W = gives.maximum_A * gives.maximum_V;
+  console.heading(module.name);
+  console.line("  " + std::to_string(module.cells_in_series) + " cells in series" +
+               (module.strings > 1 ? ", " + std::to_string(module.strings) + " in parallel" : ""));
+  console.line("  maximum power " + show(given_W) + " W, listed " + show(listed_W) + " W, at " +
+               show(rated.irradiance_W_m2) + " W/m² and " + show(rated.temperature_K) + " K");
+  constexpr double usual = 0.01;
+  if (std::abs(given_W - listed_W) > usual * listed_W) {
+    console.line("  warning: the circuit and the listed maximum power differ by " +
+                 show_percent(given_W / listed_W - 1.0));
+  }
+  const bool has_area = module.area_m2 > 0.0, is_exponential = std::isfinite(p.shunt_dark_ohm);
+  std::vector<CellRow> rows = {{"saturation_1_A", {p.saturation_1_A}},
+                               {"ideality_1", {p.ideality_1}},
+                               {"series_ohm", {p.series_ohm}},
+                               {"shunt_ohm", {p.shunt_ohm}},
+                               {"shunt_photocurrent_A", {p.shunt_light_A}}};
+  if (is_exponential) rows.push_back({"shunt_dark_ohm", {p.shunt_dark_ohm}});
+  if (is_exponential) rows.push_back({"shunt_exponent", {p.shunt_exponent}});
+  rows.push_back({"gap_eV", {module.cell.gap_eV}});
+  rows.push_back({"gap_slope_per_K", {module.cell.gap_slope_1_K}});
+  rows.push_back({"photocurrent_slope_per_K", {module.cell.photocurrent_slope_1_K}});
+  rows.push_back({"reference_temperature_K", {p.temperature_K}});
+  if (has_area) rows.push_back({"reference_area_m2", {module.cell.reference_area_m2}});
+  console.heading("One cell, for [array.cell_parameters]");
+  for (const CellRow& row : rows) print_key(console, row.name.c_str(), row.estimate.value);
+  if (!has_area) console.line("  reference_area_m2 =   # to be filled in: the area of one cell");
+  rows.push_back({"photocurrent_A", {module.photocurrent_A}});
+  rows.push_back({"maximum_power_W", {given_W}});
+  Product product = parameter_product(rows);
+  const double at_cell_A = module.photocurrent_A;
+  const CellCurve cell(in_light(p, at_cell_A));
+  add_fit_plot({}, cell_points(cell, at_cell_A), {best_point(cell, at_cell_A)}, product);
+  return product;
+}
+
 FitTask task_of(const RunOptions& options, const std::string& text) {
   SettingsNode root = parse_toml(text, options.experiment.string());
   for (const std::string& assignment : options.overrides) apply_override(root, assignment);
@@ -434,6 +478,7 @@ FitTask task_of(const RunOptions& options, const std::string& text) {
 std::string what_fit_asks(const RunOptions& options) {
   const FitTask task = task_of(options, options.experiment_text());
   const std::string cells = std::to_string(task.cells_in_series) + " in series";
+  if (task.module) return "a module of a library: " + task.module->name;
   if (!task.datasheet.empty()) {
     return std::to_string(task.datasheet.size()) + " point(s) of a datasheet, cells: " + cells;
   }
@@ -451,7 +496,8 @@ RunResult run_fit_cell(const RunOptions& options, const Console& console) {
   for (const fs::path& file : task.files) {
     provenance.inputs.emplace_back(file.filename().string(), content_hash(read_file(file)));
   }
-  Product product = !task.datasheet.empty()    ? fit_datasheet(task, console)
+  Product product = task.module                ? list_module(*task.module, console)
+                    : !task.datasheet.empty()  ? fit_datasheet(task, console)
                     : task.substrings > 0      ? fit_uneven_light(task, console)
                     : !task.conditions.empty() ? fit_several_conditions(task, console)
                                                : fit_even_light(task, console);

@@ -9,6 +9,7 @@
 #include "core/product.h"
 #include "photovoltaics/fit/conditions.h"
 #include "photovoltaics/fit/fit.h"
+#include "photovoltaics/fit/module_file.h"
 #include "photovoltaics/network/curve.h"
 #include "tools/runs/console.h"
 
@@ -24,6 +25,7 @@ struct FitTask {
   std::vector<std::string> notes;  // what was left out of them
   std::optional<ShuntLaw> shunt_law;
   std::vector<RatedPoint> datasheet;
+  std::optional<ListedModule> module;
   TemperatureSlopes slopes;
   RatedTolerance tolerance;
   SweepNoise noise;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <unordered_set>
 
+#include "attitude/recordings/named_columns.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
@@ -15,6 +16,7 @@
 #include "core/settings/settings.h"
 #include "core/text/parse.h"
 #include "core/transform.h"
+#include "photovoltaics/fit/curve_text.h"
 
 namespace photorque {
 namespace {
@@ -29,12 +31,15 @@ struct LightColumn {
 
 class LightHeader {
  public:
-  explicit LightHeader(std::string_view line) {
+  LightHeader(std::string_view line, const LightColumns& columns) {
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // as spreadsheets write it
     for (std::string_view cell : cells_of(line)) {
       if (cell.starts_with(byte_order_mark)) cell.remove_prefix(byte_order_mark.size());
       if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') {
         cell = cell.substr(1, cell.size() - 2);
+      }
+      for (const auto& [name, written] : columns) {
+        if (written == cell) cell = name;
       }
       // As some instruments write it.
       if (cell == "V") cell = "voltage_V";
@@ -83,15 +88,22 @@ bool next_line(TextLines& lines, std::string_view& line) {
   return false;
 }
 
+// What a file begins with: a header of this reader, or of curves as instruments write them.
+struct Beginning {
+  std::optional<LightHeader> header;
+  bool is_curve = false;
+};
+
 // Preambles need not be comments: the header is the first line that names what a recording has.
-std::optional<LightHeader> find_header(TextLines& lines) {
+Beginning find_header(TextLines& lines, const LightColumns& columns) {
   constexpr int most = 200;
   std::string_view line;
   for (int i = 0; i < most && next_line(lines, line); ++i) {
-    LightHeader header(line);
-    if (header.kind()) return header;
+    LightHeader header(line, columns);
+    if (header.kind()) return {header, false};
+    if (is_curve_header(line, columns)) return {{}, true};
   }
-  return std::nullopt;
+  return {};
 }
 
 struct ColumnsOfLight {
@@ -247,6 +259,53 @@ void make_relative(std::vector<double>& lamps) {
   for (double& current : lamps) current /= brightest;
 }
 
+// The names in the file that stand for none of its columns.
+std::set<std::string> absent_of(const LightColumns& named, const std::vector<std::string>& found) {
+  std::set<std::string> absent_columns;
+  for (const auto& [name, written] : named) {
+    if (std::ranges::find(found, name) == found.end()) absent_columns.insert(written);
+  }
+  return absent_columns;
+}
+
+// Curves in other words than this reader's.
+LightRecording curves_of_instrument(const std::filesystem::path& path,
+                                    const UsualCircumstances& usual, const LightColumns& named) {
+  const std::string text = whole_text(path);
+  const std::vector<MeasuredCurve> curves = curves_in(text, path.string(), named);
+  LightRecording all;
+  all.kind = LightRecording::Kind::sweep;
+  all.name = path.string();
+  all.has_attitudes = false;
+  for (const auto& [name, written] : named) {
+    if (text.find(written) == std::string::npos) all.absent_columns.insert(written);
+  }
+  int64_t unread = 0;
+  const bool has_light = std::ranges::any_of(
+      curves, [](const MeasuredCurve& c) { return c.irradiance_W_m2.has_value(); });
+  for (size_t k = 0; k < curves.size(); ++k) {
+    const MeasuredCurve& curve = curves[k];
+    const size_t rows = curve.sweep.voltage_V.size();
+    const auto append = [rows](auto& to, const auto& value) { to.insert(to.end(), rows, value); };
+    all.voltage_V.insert(all.voltage_V.end(), curve.sweep.voltage_V.begin(),
+                         curve.sweep.voltage_V.end());
+    all.current_A.insert(all.current_A.end(), curve.sweep.current_A.begin(),
+                         curve.sweep.current_A.end());
+    append(all.sweep, static_cast<int>(k));
+    append(all.lab_from_body, usual.lab_from_body);
+    append(all.temperature_K, curve.temperature_K.value_or(usual.temperature_K));
+    if (has_light) append(all.irradiance_W_m2, curve.irradiance_W_m2.value_or(absent));
+    all.has_temperatures = all.has_temperatures && curve.temperature_K.has_value();
+    unread += static_cast<int64_t>(curve.unread);
+  }
+  if (unread > 0) all.rejected["unreadable number"] = unread;
+  all.rows_read = static_cast<int64_t>(all.rows()) + unread;
+  if (all.rows() == 0) {
+    throw InputError({path.string()}, "rows", "no usable row", "at least one row of numbers");
+  }
+  return all;
+}
+
 }  // namespace
 
 LightRecording LightRecording::part(const std::vector<size_t>& rows) const {
@@ -298,33 +357,39 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-std::optional<LightRecording::Kind> light_kind_of(const std::filesystem::path& path) {
+std::optional<LightRecording::Kind> light_kind_of(const std::filesystem::path& path,
+                                                  const LightColumns& columns) {
   try {
     TextLines lines(path);
-    const std::optional<LightHeader> header = find_header(lines);
-    return header ? header->kind() : std::nullopt;
+    const Beginning beginning = find_header(lines, columns);
+    if (beginning.is_curve) return LightRecording::Kind::sweep;
+    return beginning.header ? beginning.header->kind() : std::nullopt;
   } catch (const InputError&) {
     return std::nullopt;
   }
 }
 
-bool is_light_recording(const std::filesystem::path& path) {
-  return light_kind_of(path).has_value();
+bool is_light_recording(const std::filesystem::path& path, const LightColumns& columns) {
+  return light_kind_of(path, columns).has_value();
 }
 
 LightRecording read_light_recording(const std::filesystem::path& path,
-                                    const UsualCircumstances& usual) {
+                                    const UsualCircumstances& usual, const LightColumns& named) {
   TextLines lines(path);
-  const std::optional<LightHeader> header = find_header(lines);
+  const Beginning beginning = find_header(lines, named);
+  if (beginning.is_curve) return curves_of_instrument(path, usual, named);
+  const std::optional<LightHeader>& header = beginning.header;
   if (!header) {
     throw InputError({path.string()}, "header", "no line with the columns of a recording",
                      "u_m,v_m,irradiance_W_m2 (a scan), voltage_V,current_A (a sweep) or "
-                     "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A (a run)");
+                     "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A (a run); other names by "
+                     "[recording] columns = { voltage_V = \"NAME\", current_A = \"NAME\" }");
   }
   LightRecording recording;
   recording.kind = *header->kind();
   recording.name = path.string();
   const ColumnsOfLight columns = columns_of(*header, recording.kind);
+  recording.absent_columns = absent_of(named, header->names());
   require_whole_attitude(*header, columns, path);
   recording.has_temperatures = columns.temperature.has_value();
   recording.has_attitudes = columns.q[0].has_value() || (columns.tilt && columns.heading);

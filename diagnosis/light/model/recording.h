@@ -3,12 +3,14 @@
 //
 // CSV (also .csv.gz), columns in any order, comments from # on. Rows that cannot be read are left
 // out and counted; wild readings are found later, against a model (diagnosis/light/diagnose.h).
+// Sweeps may be written as instruments do, which photovoltaics/fit/curve_text.h reads.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -42,6 +44,7 @@ struct LightRecording {
   bool has_attitudes = true, has_temperatures = true;
   int64_t rows_read = 0;                    // data rows in the file
   std::map<std::string, int64_t> rejected;  // by reason: "torn row", "unreadable", …
+  std::set<std::string> absent_columns;     // that were named and the file has not
   size_t rows() const { return lab_from_body.size(); }
   // The chosen rows alone.
   LightRecording part(const std::vector<size_t>& rows) const;
@@ -60,14 +63,19 @@ struct UsualCircumstances {
   double temperature_K = 298.15;
 };
 
+// Names of columns in the file by those above, as [recording] columns states them.
+using LightColumns = std::map<std::string, std::string>;
+
 // By a file's header; nothing for files that cannot be read, or have another.
-std::optional<LightRecording::Kind> light_kind_of(const std::filesystem::path& path);
+std::optional<LightRecording::Kind> light_kind_of(const std::filesystem::path& path,
+                                                  const LightColumns& columns = {});
 
 // Whether a file's header is one of these. False for files that cannot be read.
-bool is_light_recording(const std::filesystem::path& path);
+bool is_light_recording(const std::filesystem::path& path, const LightColumns& columns = {});
 
 // InputError with file and line when there is no such header or no usable row.
 LightRecording read_light_recording(const std::filesystem::path& path,
-                                    const UsualCircumstances& usual);
+                                    const UsualCircumstances& usual,
+                                    const LightColumns& columns = {});
 
 }  // namespace photorque

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "attitude/recordings/recording.h"
 #include "photovoltaics/fit/rated_keys.h"
 
 namespace photorque {
@@ -74,7 +75,7 @@ void read_effect(const Settings& s, ModuleDesign& design) {
           {count(), s.number("fraction", {0.0, 1.0, true, true}), resistance()});
       break;
     case 2:
-      state.shunted.push_back({1, 1.0 / resistance()});
+      state.shunted.push_back({count(), 1.0 / resistance()});
       break;
     case 3:
       state.shunt_S += 1.0 / resistance();
@@ -112,6 +113,11 @@ void read_effect(const Settings& s, ModuleDesign& design) {
 ModuleDesign read_module(const Settings& root, const std::filesystem::path& folder) {
   const Settings s = root.table("module");
   ModuleDesign design;
+  if (root.has("recording")) {
+    const Settings recording = root.table("recording");
+    design.columns = read_recording_options(recording).columns;
+    recording.finish();
+  }
   design.cells = static_cast<int>(s.integer("cells_in_series", 1, 10000));
   design.bypass_every = static_cast<int>(s.integer_or("bypass_every", 0, 0, design.cells));
   design.bypass_drop_V = s.number_or("bypass_drop_V", 0.5, Range::positive());
@@ -127,7 +133,8 @@ ModuleDesign read_module(const Settings& root, const std::filesystem::path& fold
     if (names.empty()) throw s.error("reference_curve", "an empty list", "at least one curve");
     for (const std::string& name : names) {
       design.reference_files.push_back(folder / name);
-      const LightRecording file = read_light_recording(design.reference_files.back(), {});
+      const LightRecording file =
+          read_light_recording(design.reference_files.back(), {}, design.columns);
       if (file.kind != LightRecording::Kind::sweep) {
         throw s.error("reference_curve", "\"" + name + "\"", "a file of voltage_V,current_A");
       }

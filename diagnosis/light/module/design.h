@@ -50,6 +50,7 @@ struct ModuleDesign {
   double voltage_noise_V = 0.0;  // 0: a ten-thousandth of the open-circuit voltage
   // What acts on the recordings, by the name of the curve; "": on all of them.
   std::map<std::string, ModuleActing> acting;
+  LightColumns columns;  // of all files: [recording] columns
 };
 
 // All that acts on a curve, whose name may begin with folders.

@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <functional>
 
-#include "core/constants.h"
 #include "core/errors.h"
 #include "core/parallel.h"
 #include "diagnosis/light/module/fit.h"
+#include "diagnosis/light/module/plausible.h"
 #include "diagnosis/verdict.h"
 #include "inference/whiteness.h"
 
@@ -22,72 +22,6 @@ struct ModuleData {
   std::vector<ModuleRun> whole;  // every curve with all its points
   DataQuality quality;
 };
-
-// The light of a curve over the reference's, as currents at low voltage say.
-double light_of(const ModuleSweep& sweep, const ModuleNominal& nominal) {
-  double best = 0.0, nearest = 1e300;
-  for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
-    if (std::abs(sweep.voltage_V[i]) > nearest) continue;
-    nearest = std::abs(sweep.voltage_V[i]);
-    best = sweep.current_A[i];
-  }
-  return std::max(best / nominal.cell.photocurrent_A, 1e-3);
-}
-
-// What no light and no temperature does to a module: the columns are not what their header says.
-void require_plausible(const ModuleSweep& sweep, const ModuleDesign& design,
-                       const ModuleNominal& nominal) {
-  const ModuleCell& cell = nominal.cell;
-  const double thermal_V = boltzmann_J_K * cell.temperature_K / elementary_charge_C;
-  const double open_V = design.cells * cell.ideality * thermal_V *
-                        std::log1p(cell.photocurrent_A / cell.saturation_A);
-  const double light = light_of(sweep, nominal);
-  double seen_V = 0.0;  // the largest voltage at which it still gives current
-  for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
-    if (sweep.current_A[i] >= 0.0) seen_V = std::max(seen_V, sweep.voltage_V[i]);
-  }
-  char found[160];
-  constexpr double most_suns = 20.0, most_V = 1.25;
-  if (light > most_suns) {
-    std::snprintf(found, sizeof found, "%.3g times the current of the module as it was", light);
-    throw InputError({sweep.name}, "current_A", found,
-                     "amperes (a column in milliamperes is named current_mA)");
-  }
-  if (seen_V > most_V * open_V) {
-    std::snprintf(found, sizeof found,
-                  "%.3g V at a current, where the module as it was gives %.3g V at none", seen_V,
-                  open_V);
-    const double exchanged = light * cell.photocurrent_A / open_V;
-    constexpr double alike = 0.15;
-    throw InputError({sweep.name}, "voltage_V", found,
-                     std::abs(exchanged - 1.0) < alike
-                         ? "the voltage: the columns of voltage and current look exchanged"
-                         : "volts of the module of the experiment (a column in millivolts is named "
-                           "voltage_mV)");
-  }
-}
-
-void require_current_forward(const LightRecording& r) {
-  double nearest_V = INFINITY, short_A = 0.0;
-  for (size_t i = 0; i < r.rows(); ++i) {
-    if (std::abs(r.voltage_V[i]) > nearest_V) continue;
-    nearest_V = std::abs(r.voltage_V[i]);
-    short_A = r.current_A[i];
-  }
-  double largest_A = 0.0;
-  for (const double current_A : r.current_A) largest_A = std::max(largest_A, std::abs(current_A));
-  if (short_A > -0.5 * largest_A) return;
-  throw InputError(
-      {r.name}, "current_A", "a negative current at the smallest voltage",
-      "currents that a lit module gives as positive numbers: the sign of the column is "
-      "reversed");
-}
-
-void require_curve(const LightRecording& r) {
-  if (r.kind == LightRecording::Kind::sweep) return;
-  throw InputError({r.name}, "header", "no columns voltage_V,current_A",
-                   "a current-voltage curve, for an experiment with [module]");
-}
 
 ModuleRun run_of(const LightRecording& r, const ModuleDesign& design, const ModuleNominal& nominal,
                  const ModuleDiagnoseOptions& options, DataQuality& quality) {
@@ -180,6 +114,22 @@ double excess_of(const ModuleFitter& fitter, const ModuleHypothesis& h, const Mo
                   (trial.fit.data_chi2 / samples - 1.0) / std::sqrt(2.0 / samples));
 }
 
+// Whether the most likely number of cells of a kind is the largest that was tried: then the effect
+// spreads over the module in a way that this kind only imitates.
+bool is_at_largest_count(const ModuleAnswer& answer, const std::string& kind) {
+  int best = 0, largest = 0;
+  double most_likely = -INFINITY;
+  for (size_t i = 0; i < answer.hypotheses.size(); ++i) {
+    const ModuleHypothesis& h = answer.hypotheses[i];
+    if (h.kind != kind || h.count == 0) continue;
+    largest = std::max(largest, h.count);
+    if (!(answer.joint[i].log_evidence > most_likely)) continue;
+    most_likely = answer.joint[i].log_evidence;
+    best = h.count;
+  }
+  return largest > 1 && best == largest;
+}
+
 // `hypotheses`: the first is that nothing is missing.
 ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nominal,
                             std::vector<ModuleHypothesis> hypotheses, const ModuleData& data,
@@ -200,7 +150,7 @@ ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nom
   for (size_t i = 0; i < count; ++i) {
     const ModuleHypothesis& h = answer.hypotheses[i];
     traits[i].name = h.kind.empty() ? h.label : h.kind;
-    traits[i].is_empirical = h.is_empirical;
+    traits[i].is_empirical = h.is_empirical || is_at_largest_count(answer, h.kind);
     traits[i].parameters = h.parameters.size();
     if (i > 0) answer.trials[i].candidates = {i};
   }
@@ -278,16 +228,23 @@ FoundEffect found_in_module(const ModuleAnswer& answer, size_t chosen, const Thr
     effect.parameters.back().sigma.push_back(std::sqrt(variance));
   }
   int fewest = h.count, most = h.count;
+  // A model of damage describes what the damage does to about 1 %, χ² to a ten-thousandth.
+  constexpr double model_error = 1e-4;
+  const double likely = answer.trials[chosen].log_evidence;
+  const double within = std::max(limits.search.min_log_evidence_gain,
+                                 model_error * (likely - answer.trials.front().log_evidence));
   for (size_t i = 0; i < answer.trials.size(); ++i) {
-    const bool as_likely = answer.trials[i].log_evidence >
-                           answer.trials[chosen].log_evidence - limits.search.min_log_evidence_gain;
-    if (!as_likely || i == chosen || answer.hypotheses[i].kind.empty()) continue;
+    const double behind = likely - answer.trials[i].log_evidence;
+    if (behind > within || i == chosen || answer.hypotheses[i].kind.empty()) continue;
     if (answer.hypotheses[i].kind == h.kind) {
+      if (behind > limits.search.min_log_evidence_gain) continue;
       fewest = std::min(fewest, answer.hypotheses[i].count);
       most = std::max(most, answer.hypotheses[i].count);
       continue;
     }
-    effect.indistinguishable_from.push_back(answer.hypotheses[i].kind);
+    std::vector<std::string>& rivals = effect.indistinguishable_from;
+    const std::string& kind = answer.hypotheses[i].kind;
+    if (std::ranges::find(rivals, kind) == rivals.end()) rivals.push_back(kind);
   }
   if (most > fewest) {
     effect.texts.emplace_back("count_between",

@@ -123,6 +123,20 @@ ModuleHypothesis of_one_number(const std::string& kind, const std::string& expla
   return h;
 }
 
+ModuleHypothesis shunted(int count, double alternatives, double usual_ohm) {
+  ModuleHypothesis h = of_one_number(
+      "cell_shunted", "a leak across " + cells(count), "resistance_ohm", 1.0 / usual_ohm, 0.0,
+      100.0 / usual_ohm,
+      [count](double x, ModuleState& state) {
+        state.shunted.push_back({count, x});
+      },
+      [](double x) { return x > 0.0 ? 1.0 / x : 1e300; });
+  h.count = count;
+  h.label = "cell_shunted (" + cells(count) + ")";
+  h.alternatives = alternatives;
+  return h;
+}
+
 // A trap: every curve that falls smoothly is fitted by some diode, whatever the physics.
 ModuleHypothesis other_diode() {
   ModuleHypothesis h;
@@ -165,13 +179,10 @@ std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
       "shunt", "a leak across every cell", "resistance_ohm", 0.1 / usual_ohm, 0.0, 10.0 / usual_ohm,
       [](double x, ModuleState& state) { state.shunt_S += x; },
       [](double x) { return x > 0.0 ? 1.0 / x : 1e300; }));
-  all.push_back(of_one_number(
-      "cell_shunted", "a leak across one cell", "resistance_ohm", 1.0 / usual_ohm, 0.0,
-      100.0 / usual_ohm,
-      [](double x, ModuleState& state) {
-        state.shunted.push_back({1, x});
-      },
-      [](double x) { return x > 0.0 ? 1.0 / x : 1e300; }));
+  const std::vector<int> leaking = counts_up_to(std::max(1, design.cells - 1));
+  for (const int k : leaking) {
+    all.push_back(shunted(k, static_cast<double>(leaking.size()), usual_ohm));
+  }
   all.push_back(of_one_number(
       "temperature", "cells warmer or colder than stated", "change_K", 30.0, -150.0, 150.0,
       [](double x, ModuleState& state) { state.temperature_K += x; }, [](double x) { return x; }));

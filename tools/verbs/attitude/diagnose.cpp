@@ -6,7 +6,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 
+#include "attitude/recordings/named_columns.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "diagnosis/attitude/diagnose.h"
@@ -53,11 +55,12 @@ std::string with_overrides(const std::string& text, const std::vector<std::strin
 }
 
 // Whether the recordings are of light. InputError naming the first that is of another kind.
-bool are_of_light(const std::vector<fs::path>& recordings, const std::vector<fs::path>& holdouts) {
-  const bool of_light = is_light_recording(recordings.front());
+bool are_of_light(const std::vector<fs::path>& recordings, const std::vector<fs::path>& holdouts,
+                  const LightColumns& columns) {
+  const bool of_light = is_light_recording(recordings.front(), columns);
   for (const auto* all : {&recordings, &holdouts}) {
     for (const fs::path& path : *all) {
-      if (!fs::exists(path) || is_light_recording(path) == of_light) continue;
+      if (!fs::exists(path) || is_light_recording(path, columns) == of_light) continue;
       throw InputError({path.string()}, "",
                        of_light ? "no recording of light" : "a recording of light",
                        std::string(of_light ? "one" : "one of motion") + " as " +
@@ -68,12 +71,37 @@ bool are_of_light(const std::vector<fs::path>& recordings, const std::vector<fs:
 }
 
 std::vector<LightRecording> read_light(const std::vector<fs::path>& paths,
-                                       const UsualCircumstances& usual, Provenance& provenance) {
+                                       const UsualCircumstances& usual, const LightColumns& columns,
+                                       Provenance& provenance) {
   std::vector<LightRecording> all;
   for (const fs::path& path : paths) {
-    all.push_back(read_light_recording(path, usual));
+    all.push_back(read_light_recording(path, usual, columns));
     provenance.inputs.emplace_back(path.filename().string(), content_hash(read_file(path)));
   }
+  return all;
+}
+
+// [recording] columns, where recordings of light are read.
+LightColumns columns_in(const Settings& root) {
+  const Settings recording = own_table(root, "recording", false);
+  LightColumns columns = read_recording_options(recording).columns;
+  recording.finish();
+  return columns;
+}
+
+// The named columns that each recording lacks.
+template <typename... Recordings>
+std::vector<std::set<std::string>> absent_columns(const Recordings&... lists) {
+  std::vector<std::set<std::string>> all;
+  const auto add = [&](const auto& list) {
+    for (const auto& one : list) {
+      if constexpr (requires { one.absent_columns; })
+        all.push_back(one.absent_columns);
+      else
+        all.push_back(one.recording.report.absent_columns);
+    }
+  };
+  (add(lists), ...);
   return all;
 }
 
@@ -94,7 +122,8 @@ struct LightInput {
 
 std::unique_ptr<LightInput> read_light_input(const RunOptions& options,
                                              const std::vector<fs::path>& paths,
-                                             const std::vector<fs::path>& holdout_paths) {
+                                             const std::vector<fs::path>& holdout_paths,
+                                             const LightColumns& columns) {
   const std::string text = options.experiment_text();
   const auto reread = [&](const std::string& assignment) {
     std::vector<std::string> overrides = options.all_overrides();
@@ -109,16 +138,18 @@ std::unique_ptr<LightInput> read_light_input(const RunOptions& options,
   const UsualCircumstances usual{
       input->experiment.lab_from_body.rotation,
       input->lab.has_array() ? input->lab.design().temperature_K : 298.15};
-  input->recordings = read_light(paths, usual, input->provenance);
-  input->holdouts = read_light(holdout_paths, usual, input->provenance);
+  input->recordings = read_light(paths, usual, columns, input->provenance);
+  input->holdouts = read_light(holdout_paths, usual, columns, input->provenance);
   return input;
 }
 
-DiagnosisRun diagnose_light_recordings(const RunOptions& options,
+DiagnosisRun diagnose_light_recordings(const RunOptions& options, const Settings& root,
                                        const std::vector<fs::path>& paths,
                                        const std::vector<fs::path>& holdout_paths,
                                        const Console& console) {
-  const auto input = read_light_input(options, paths, holdout_paths);
+  const auto input = read_light_input(options, paths, holdout_paths, columns_in(root));
+  refuse_absent_columns(own_table(root, "recording", false),
+                        absent_columns(input->recordings, input->holdouts));
   LightDiagnoseOptions how;
   how.threads = options.threads;
   how.progress = progress_on(console, "");
@@ -140,8 +171,11 @@ DiagnosisRun diagnose_module_curves(const RunOptions& options, const Settings& r
   for (const fs::path& file : design.reference_files) {
     provenance.inputs.emplace_back(file.filename().string(), content_hash(read_file(file)));
   }
-  const std::vector<LightRecording> recordings = read_light(paths, {}, provenance),
-                                    holdouts = read_light(holdout_paths, {}, provenance);
+  const std::vector<LightRecording> recordings = read_light(paths, {}, design.columns, provenance),
+                                    holdouts =
+                                        read_light(holdout_paths, {}, design.columns, provenance);
+  refuse_absent_columns(own_table(root, "recording", false),
+                        absent_columns(design.references, recordings, holdouts));
   ModuleDiagnoseOptions how;
   how.threads = options.threads;
   Diagnosis diagnosis = diagnose_module(design, recordings, holdouts, how);
@@ -157,11 +191,6 @@ MotionRecorded read_motion(const RunOptions& options, AttitudeExperiment& experi
   const RecordingOptions reading = read_recording_options(recording);
   motion.recordings = read_all(paths, reading, experiment);
   motion.holdouts = read_all(holdout_paths, reading, experiment);
-  std::vector<const Recording*> all;
-  for (const auto* some : {&motion.recordings, &motion.holdouts}) {
-    for (const NamedRecording& one : *some) all.push_back(&one.recording);
-  }
-  refuse_absent_columns(recording, all);
   recording.finish();
   motion.how.threads = options.threads;
   return motion;
@@ -171,6 +200,8 @@ DiagnosisRun diagnose_motion(const RunOptions& options, const std::vector<fs::pa
                              const std::vector<fs::path>& holdout_paths, const Console& console) {
   AttitudeExperiment experiment(options);
   MotionRecorded motion = read_motion(options, experiment, paths, holdout_paths);
+  refuse_absent_columns(own_table(experiment.settings(), "recording", false),
+                        absent_columns(motion.recordings, motion.holdouts));
   motion.how.progress = progress_on(console, "");
   Diagnosis diagnosis = diagnose(motion.nominal, motion.recordings, motion.holdouts, motion.how);
   return {std::move(diagnosis), experiment.provenance(0), options.experiment,
@@ -182,23 +213,27 @@ struct Sorted {
   std::vector<fs::path> motion, light;
 };
 
-Sorted sorted_by_content(const std::vector<fs::path>& paths) {
+Sorted sorted_by_content(const std::vector<fs::path>& paths, const LightColumns& columns) {
   Sorted sorted;
   for (const fs::path& path : paths) {
-    const std::optional<LightRecording::Kind> kind = light_kind_of(path);
+    const std::optional<LightRecording::Kind> kind = light_kind_of(path, columns);
     if (kind) sorted.light.push_back(path);
     if (!kind || *kind == LightRecording::Kind::run) sorted.motion.push_back(path);
   }
   return sorted;
 }
 
-DiagnosisRun diagnose_both(const RunOptions& options, const Sorted& recordings,
-                           const Sorted& holdouts, const Console& console) {
+DiagnosisRun diagnose_both(const RunOptions& options, const Settings& root,
+                           const Sorted& recordings, const Sorted& holdouts,
+                           const Console& console) {
   AttitudeExperiment experiment(options);
   MotionRecorded motion = read_motion(options, experiment, recordings.motion, holdouts.motion);
   motion.how.progress = progress_on(console, "motion: ");
   motion.how.read_elsewhere = {"array_voltage_V", "array_current_A", "cell_temperature_K"};
-  const auto input = read_light_input(options, recordings.light, holdouts.light);
+  const auto input = read_light_input(options, recordings.light, holdouts.light, columns_in(root));
+  refuse_absent_columns(
+      own_table(root, "recording", false),
+      absent_columns(motion.recordings, motion.holdouts, input->recordings, input->holdouts));
   LightRecorded light{
       input->lab, input->nominal, std::move(input->recordings), std::move(input->holdouts), {}};
   light.how.threads = options.threads;
@@ -258,14 +293,15 @@ DiagnosisRun run_diagnose(const RunOptions& options, const std::vector<fs::path>
   for (const std::string& assignment : options.all_overrides()) apply_override(node, assignment);
   const Settings root(std::make_shared<const SettingsNode>(std::move(node)));
   if (root.has("module")) return diagnose_module_curves(options, root, recordings, holdouts);
-  const Sorted sorted = sorted_by_content(recordings);
+  const LightColumns columns = columns_in(root);
+  const Sorted sorted = sorted_by_content(recordings, columns);
   if (root.has("platform") && root.has("scene") && !sorted.light.empty() &&
       !sorted.motion.empty()) {
-    return diagnose_both(options, sorted, sorted_by_content(holdouts), console);
+    return diagnose_both(options, root, sorted, sorted_by_content(holdouts, columns), console);
   }
   // Without a platform nothing but light is meant: its reader says what a file is not.
-  return are_of_light(recordings, holdouts) || (root.has("scene") && !root.has("platform"))
-             ? diagnose_light_recordings(options, recordings, holdouts, console)
+  return are_of_light(recordings, holdouts, columns) || (root.has("scene") && !root.has("platform"))
+             ? diagnose_light_recordings(options, root, recordings, holdouts, console)
              : diagnose_motion(options, recordings, holdouts, console);
 }
 
