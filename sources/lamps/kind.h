@@ -13,7 +13,7 @@
 
 namespace photorque {
 
-// What a source may need to know of the scene that it lights.
+// Properties of the lit scene that a source may need.
 struct SourceContext {
   double scene_radius_m = 1.0;  // of the sphere about the lab origin that holds the scene
   // Told, in one line, of what is legal but cannot be meant (a beam that no optics can make). May

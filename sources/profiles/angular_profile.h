@@ -32,7 +32,8 @@ AngularProfile gaussian_profile(double fwhm_rad);
 // P(2/order, ln 2 · (2θ/fwhm)^order).
 AngularProfile super_gaussian_profile(double fwhm_rad, double order);
 
-// What a pillbox fills evenly up to its half-angle θ0 ∈ (0, π/2]; u is uniform in (0, 1):
+// Measure in which the flux of a pillbox is uniform up to its half-angle θ0 ∈ (0, π/2]; u is
+// uniform in (0, 1):
 enum class PillboxMeasure {
   angle,        // the disc of angles: θ = θ0 √u, I ∝ θ/sin θ (the pillbox of SolTrace)
   solid_angle,  // the sphere: cos θ = 1 − u(1 − cos θ0), I constant
