@@ -41,7 +41,8 @@ std::vector<LossStage> loss_waterfall(const ArrayResult& array, const LossInputs
   }
   double left_W = array.power_W.value;
   cells_W = without_rounding(cells_W, left_W);
-  stages.push_back({"every cell by itself", without_rounding(array.sum_of_cells_W.value, cells_W),
+  stages.push_back({"sum of the cells' maxima",
+                    without_rounding(array.sum_of_cells_W.value, cells_W),
                     "voltage below the photon's, fill factor"});
   stages.push_back({"cells in the network", cells_W, "uneven light"});
   stages.push_back({"array", left_W, "bypass and blocking diodes"});
@@ -115,7 +116,7 @@ Uniformity uniformity(const ArrayResult& array, std::span<const int> cells) {
 }
 
 Table uniformity_table(const ArrayResult& array, const ArrayWiring& wiring) {
-  Table table = Table::of("uniformity", "How even the light is",
+  Table table = Table::of("uniformity", "Uniformity of the light",
                           {"cells", "mean_W_m2", "minimum_over_mean", "variation"});
   const auto add = [&](const std::string& name, const std::vector<int>& cells) {
     const Uniformity u = uniformity(array, cells);

@@ -46,7 +46,7 @@ AngularProfile cosine_power_profile(double exponent);
 
 // The directions of a lamp: one profile, or a core and a halo about it.
 
-// A halo of stray light: this fraction of all flux, in [0, 1), with a profile of its own.
+// A halo of stray light: this fraction of all flux, in [0, 1), with a separate profile.
 struct Halo {
   AngularProfile profile;
   double fraction = 0.0;
