@@ -18,7 +18,7 @@ constexpr NumberKey rounded_to(
     "`rounded_to`))²: for `optimise`, at most 1 for each figure that agrees",
     {.optional = true});
 constexpr TextKey source("source", "who printed it");
-constexpr TextKey why("why", "", "ours differs");
+constexpr TextKey why("why", "", "reason of the difference");
 constexpr TablesKey published("published", "a published figure, compared at the same tilt");
 }  // namespace published_key
 
