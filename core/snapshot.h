@@ -3,7 +3,7 @@
 //
 // One function of a class names what its state is made of, for both directions:
 //   void Walk::keep(Snapshot& snapshot) { snapshot(steps_, where_m_, path_m_); }
-// What follows from the run's inputs is recomputed, not kept.
+// Values that follow from the run's inputs are recomputed, not kept.
 #pragma once
 
 #include <algorithm>

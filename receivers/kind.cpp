@@ -15,13 +15,13 @@ constexpr TextKey name("name", "of the results", {.usually = "the node"});
 }  // namespace target_key
 
 namespace grid_key {
-constexpr NumbersKey bins("bins", {1.0, max_grid_bins}, "whole numbers: [along u, along v]",
+constexpr NumbersKey bins("bins", {1.0, max_grid_bins}, "number of bins [along u, along v]",
                           {.optional = true, .size = 2});
 constexpr ChoiceKey over("over",
                          {{"plane", "a plane that fits the surface"},
                           {"uv", "the texture coordinates"}},
-                         0, "what the bins lie on");
-constexpr ChoiceKey side("side", {"front", "back", "both"}, "which side of the surface counts");
+                         0, "surface of the bins");
+constexpr ChoiceKey side("side", {"front", "back", "both"}, "side of the surface that counts");
 constexpr Vec3Key facing("facing",
                          "only faces turned towards this body direction; closed bodies need it",
                          {.usually = "all faces"});

@@ -59,7 +59,7 @@ ReceiverTarget read_target_or_all(const Settings& settings, const Scene& scene,
 // Reads
 //   bins    [along u, along v], 1 … 4096 each; default [100, 100]
 //   over    "plane" (default) or "uv": bins over a plane or over the texture coordinates
-//   side    "front", "back" or "both": which side of the surface counts
+//   side    "front", "back" or "both": side of the surface that counts
 //   facing  [x, y, z], optional: only faces turned towards this body direction, seen along it
 // and lays the grid.
 SurfaceGrid read_surface_grid(const Settings& settings, const Scene& scene,

@@ -102,7 +102,7 @@ constexpr ChoiceKey force_key(
      {"as_published",
       "equation 29 of the paper as it stands: all light absorbed, and the cosine, which the "
       "irradiance on a surface holds already, applied again ([paper.md](paper.md))"}},
-    0, "what light does to an element");
+    0, "law of the force of light on an element");
 
 ReceiverKind kind() {
   return {"torque_map", "Torque of light per bin of a surface",

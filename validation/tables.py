@@ -155,8 +155,8 @@ def _groups_with_errors(scores):
 
 
 def markdown(title, description, scores):
-    """The section of a document: counts with their intervals, figures, reliability, by family, the kinds that were
-    not always right, and every wrong case. Nothing in it depends on the machine but what takes time."""
+    """The section of a document: counts with their intervals, figures, kinds that were not always right, and every
+    wrong case. Only the times depend on the machine. Calibration and families are in the CSV files alone."""
     counts = [(text, f"{f.hits} of {f.of}", _percent(f.hits / f.of), f"{_percent(f.low)} to {_percent(f.high)}", aim)
               for text, f, aim in questions(scores)]  # fmt: skip
     values = [(name, f"{value:.4g}" + (f" ± {error:.2g}" if error > 0.0 else ""))
@@ -165,12 +165,6 @@ def markdown(title, description, scores):
         f"### {title}\n\n{description}\n",
         _markdown_table(("question", "right", "fraction", "95 % interval", "aim"), counts),
         _markdown_table(("figure", "value"), values),
-        "Stated probability of each named effect, and fraction of right names:\n",
-        _markdown_table(*reliability(scores)),
-        "Stated confidence of each answer, and fraction of right answers:\n",
-        _markdown_table(*confidence(scores)),
-        "By family and maker:\n",
-        _markdown_table(*by_family(scores)),
         f"Injected effects with a wrong answer, of {len(by_kind(scores)[1])} (`proof_by_kind.csv` lists all):\n",
         _markdown_table(*_groups_with_errors(scores), digits=".0f"),
         "Wrong answers:\n",

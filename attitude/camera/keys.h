@@ -11,16 +11,15 @@ namespace photorque {
 namespace tracking_key {
 inline constexpr Vec3sKey markers(
     "markers_m",
-    "places of the markers, body axes, two or more, four of a free pose: the noise then "
-    "follows from board, lens and sensor, in place of `noise_arcsec`",
+    "positions of the markers, body axes; at least two, four for a free pose. The noise then "
+    "follows from board, lens and sensor instead of `noise_arcsec`",
     {.optional = true});
 inline constexpr Vec3Key marker_normal("marker_normal", {0.0, 0.0, 1.0},
-                                       "where they shine to, body axes, any length");
-inline constexpr Vec3sKey marker_error(
-    "marker_error_m",
-    "one per marker: true position minus `markers_m`; turns every attitude that "
-    "is recorded, and the filter does not know",
-    {.usually = "none"});
+                                       "direction of their emission, body axes, any length");
+inline constexpr Vec3sKey marker_error("marker_error_m",
+                                       "one per marker: true position minus `markers_m`; affects "
+                                       "recorded attitudes, but not the filter",
+                                       {.usually = "none"});
 inline constexpr NumberKey intensity("intensity_W_sr", Range::positive(),
                                      "radiant intensity of a marker along its normal",
                                      {.optional = true});
@@ -40,13 +39,12 @@ inline constexpr NumberKey spot("spot_px", {0.3, 50.0},
                                 {.optional = true});
 inline constexpr NumbersKey distortion(
     "distortion", {-10.0, 10.0},
-    "of the lens as calibrated, which the pose knows: [k1, k2, p1, p2], radial and "
+    "calibrated distortion of the lens: [k1, k2, p1, p2], radial and "
     "tangential, as OpenCV defines them",
     {.usually = "none", .size = 4});
 inline constexpr NumbersKey distortion_error(
     "distortion_error", {-10.0, 10.0},
-    "that of the lens, less `distortion`: turns every attitude that is recorded, and "
-    "the filter does not know",
+    "true distortion minus `distortion`; affects recorded attitudes, but not the filter",
     {.usually = "none", .size = 4});
 inline constexpr NumberKey pixel("pixel_um", {1e-7, 1e-3}, "of the sensor", {.optional = true});
 inline constexpr NumbersKey resolution("resolution", {8.0, 65536.0},
@@ -56,7 +54,7 @@ inline constexpr NumberKey exposure("exposure_s", Range::positive(),
                                     "no pixel may be beyond the full well at zero tilt",
                                     {.optional = true});
 inline constexpr NumberKey line_time("line_time_s", Range::not_negative(),
-                                     "rolling shutter: a row begins so much after the one above it",
+                                     "rolling shutter: delay of each row after the one above",
                                      {.optional = true});
 inline constexpr NumberKey quantum_efficiency("quantum_efficiency", {0.0, 1.0, true, false},
                                               "of the sensor", {.optional = true});
@@ -70,13 +68,13 @@ inline constexpr Vec3Key position("position_m", "of the camera, lab axes", {.opt
 inline constexpr Vec3Key aim("aim_m", {0.0, 0.0, 0.0}, "where its optical axis passes, lab axes");
 inline constexpr ChoiceKey pose("pose",
                                 {{"about_centre", "the centre of rotation is known"},
-                                 {"free", "the position is found too"}},
-                                0, "what is known of the platform's place");
+                                 {"free", "the position is estimated too"}},
+                                0, "knowledge of the platform's position");
 inline constexpr ChoiceKey pose_weights("pose_weights",
                                         {{"information",
-                                          "the more a spot's image says of its centre"},
-                                         {"equal", "as solvers do that know no errors"}},
-                                        0, "how the pose weighs markers");
+                                          "by the Fisher information of their images"},
+                                         {"equal", "the same for all markers"}},
+                                        0, "weights of the markers in the pose");
 }  // namespace tracking_key
 
 namespace study_key {

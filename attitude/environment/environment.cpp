@@ -11,9 +11,9 @@ namespace {
 
 namespace environment_key {
 constexpr Range latitudes{-0.5 * pi, 0.5 * pi, false, false}, years{1900.0, 2035.0, false, false};
-constexpr NumberKey gravity(
-    "gravity_m_s2", standard_gravity_m_s2, Range::not_negative(),
-    "along lab −z; without it a free platform, and any with `[environment.sun]`, feels no weight");
+constexpr NumberKey gravity("gravity_m_s2", standard_gravity_m_s2, Range::not_negative(),
+                            "along lab −z; if it is not stated, a free platform, or one with "
+                            "`[environment.sun]`, is weightless");
 constexpr NumberKey latitude("latitude_deg", latitudes, "for `earth_rotation`",
                              {.usually = "that of `igrf`, else 0"});
 constexpr Vec3Key magnetic_field("magnetic_field_T", {0.0, 0.0, 0.0},

@@ -21,9 +21,9 @@ constexpr TextKey table(
     {.optional = true});
 constexpr NumberKey distance("distance_au", astronomical_unit_m, Range::positive(),
                              "of the Sun, with `direction` or `table`");
-constexpr TextKey date(
-    "date", "calendar time of t = 0, \"2015-04-27T03:00\": the Sun moves as the orbit says",
-    {.optional = true});
+constexpr TextKey date("date",
+                       "calendar time of t = 0, \"2015-04-27T03:00\": the Sun follows the orbit",
+                       {.optional = true});
 constexpr NumberKey semi_major_axis("semi_major_axis_au", Range::positive(), "of the ellipse");
 constexpr NumberKey eccentricity("eccentricity", 0.0, {0.0, 1.0, false, true}, "of the ellipse");
 constexpr NumberKey inclination("inclination_deg", 0.0, {}, "to the ecliptic of J2000");
@@ -33,14 +33,14 @@ constexpr NumberKey mean_anomaly("mean_anomaly_deg", {}, "at the epoch");
 constexpr TextKey epoch("epoch", "of the mean anomaly", {.usually = "`date`"});
 constexpr TableKey orbit("orbit", "of the spacecraft about the Sun, with `date`",
                          {.usually = "the Earth's"});
-constexpr ChoiceKey axis("axis", {"x", "y", "z"}, 2, "the lab axis that points");
+constexpr ChoiceKey axis("axis", {"x", "y", "z"}, 2, "the lab axis");
 constexpr NumberKey right_ascension("right_ascension_deg", {}, "J2000");
 constexpr NumberKey declination("declination_deg", declinations, "J2000");
 constexpr NumberKey roll("roll_deg", 0.0, {},
                          "of the next axis (y after x) about it, from celestial north");
-constexpr TableKey pointing("pointing", "where a lab axis points in the sky, with `date`",
+constexpr TableKey pointing("pointing", "direction of a lab axis in the sky, with `date`",
                             {.usually = "lab axes are equatorial, J2000"});
-constexpr TableKey sun("sun", "where the Sun is, for `radiation_pressure`");
+constexpr TableKey sun("sun", "direction of the Sun, for `radiation_pressure`");
 }  // namespace sun_key
 
 // IAU 1976, at J2000.

@@ -9,15 +9,16 @@
 namespace photorque {
 
 namespace estimate_key {
-inline constexpr ChoiceKey model(
-    "model",
-    {{"disturbances", "the modelled torques"}, {"gyro", "the gyro"}, {"walk", "a rate that walks"}},
-    0, "what moves the platform between readings in the estimate that is written");
+inline constexpr ChoiceKey model("model",
+                                 {{"disturbances", "the modelled torques"},
+                                  {"gyro", "the gyro"},
+                                  {"walk", "a random walk of the rate"}},
+                                 0, "motion model between the readings of the written estimate");
 inline constexpr NumberKey rate_walk("rate_walk", Range::positive(),
                                      "random walk of the rate without torques, rad/s per √s",
                                      {.usually = "of maximum likelihood"});
 inline constexpr NumberKey disturbed_rate_walk("disturbed_rate_walk", Range::positive(),
-                                               "the same beside the modelled torques",
+                                               "likewise, in addition to the modelled torques",
                                                {.usually = "of maximum likelihood"});
 inline constexpr NumberKey rate_sigma("rate_sigma_rad_s", FilterSettings{}.rate_sigma_rad_s,
                                       Range::positive(), "of the rate before the first reading");

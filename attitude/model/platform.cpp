@@ -27,7 +27,7 @@ void check_inertia(const Mat3& inertia_kg_m2, const InputLocation& where, const 
 namespace {
 
 namespace platform_key {
-constexpr UncertainNumberKey mass("mass_kg", Range::positive(), "of all that turns");
+constexpr UncertainNumberKey mass("mass_kg", Range::positive(), "of all rotating parts");
 constexpr OtherKey inertia("inertia_kg_m2", Key::an_array | Key::a_table,
                            "3 × 3, symmetric, positive, body axes, about the centre of rotation");
 // About the one axis that is free.
@@ -40,9 +40,9 @@ constexpr ChoiceKey topology(
      {"hollow", "a ball around its payload"},
      {"free", "no bearing"},
      {"one_axis", "bearings hold all but one axis"},
-     {"planar", "slides on a table: x and y in the lab, and a turn about the vertical"}},
-    "what it is and what holds it");
-constexpr ChoiceKey axis("axis", {"x", "y", "z"}, 2, "the axis that is left");
+     {"planar", "slides on a table: x and y in the lab, and a rotation about the vertical"}},
+    "kind of platform and its bearing");
+constexpr ChoiceKey axis("axis", {"x", "y", "z"}, 2, "axis of rotation");
 constexpr NumberKey tilt_limit("tilt_limit_deg", {0.0, pi, true, false},
                                "the bearing's stop: a run ends there", {.usually = "none"});
 constexpr NumberKey battery_capacity(

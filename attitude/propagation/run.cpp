@@ -25,9 +25,9 @@ constexpr NumberKey tolerance("tolerance", PropagationOptions{}.tolerance,
                               {1e-13, 1e-3, false, false}, "of a step");
 constexpr NumberKey longest_step("longest_step_s", Range::positive(), "of the integrator",
                                  {.usually = "none"});
-constexpr NumberKey tick_rate("tick_rate_Hz", 0.0, {0.0, 1e6, false, false},
-                              "steps end at these ticks too and begin afresh, as those of a run in "
-                              "real time do; 0: no ticks");
+constexpr NumberKey tick_rate(
+    "tick_rate_Hz", 0.0, {0.0, 1e6, false, false},
+    "steps also end at these ticks, as in a run in real time; 0: no ticks");
 constexpr IntegerKey seed("seed", 1, 0, INT64_MAX, "of the sensors' noise; also `--seed`");
 constexpr NumberKey initial_tilt("initial_tilt_deg", 0.0, {0.0, pi, false, false},
                                  "leans by the tilt towards the heading; *or*");
@@ -52,9 +52,9 @@ constexpr TextKey commands(
     {.usually = "none"});
 constexpr NumberKey time("time_s", {}, "rising");
 constexpr Vec3Key torque("torque_N_m", {0.0, 0.0, 0.0}, "commanded, body axes");
-constexpr NumbersKey force("force_N", {}, "commanded of what slides, lab x and y",
+constexpr NumbersKey force("force_N", {}, "commanded force of a planar platform, lab x and y",
                            {.usually = "0, 0", .size = 2});
-constexpr NumbersKey force_body("force_body_N", {}, "the same along body x and y",
+constexpr NumbersKey force_body("force_body_N", {}, "likewise along body x and y",
                                 {.usually = "0, 0", .size = 2});
 constexpr NumberKey battery_current("battery_current_A", 0.0, {}, "drawn");
 constexpr NumberKey led_current("led_current_A", Range::not_negative(),

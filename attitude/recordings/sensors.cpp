@@ -16,44 +16,44 @@ namespace sensor_key {
 constexpr Vec3Key noise("noise_arcsec", usual_camera_noise_rad,
                         "standard deviation about lab x, y, z");
 constexpr NumberKey rate("rate_Hz", 0.0, Range::not_negative(), "of readings; 0: every row");
-constexpr TableKey camera("camera", "sees the attitude",
+constexpr TableKey camera("camera", "attitude",
                           {.usually = "without any `[sensors]` an ideal one"});
 constexpr NumberKey angle_noise("noise_arcsec", Range::positive(), "standard deviation");
 constexpr TableKey angle("angle", "the angle of a one-axis platform, instead of a camera");
 constexpr NumberKey gyro_noise("noise_rad_s", 0.0, Range::not_negative(), "per reading and axis");
 constexpr NumberKey bias_drift("bias_drift", 0.0, Range::not_negative(),
                                "random walk of the bias, rad/s per √s");
-constexpr TableKey gyro("gyro", "feels the rate",
+constexpr TableKey gyro("gyro", "angular rate",
                         {.usually = "without any `[sensors]` an ideal one"});
 constexpr NumberKey accelerometer_noise("noise_m_s2", 0.0, Range::not_negative(),
                                         "per reading and axis; 0: found in the readings");
 constexpr Vec3Key position("position_m", {0.0, 0.0, 0.0},
                            "from the centre of rotation (of mass, where nothing carries it)");
-constexpr Vec3Key bias("bias_m_s2", {0.0, 0.0, 0.0}, "what it reads too much");
-constexpr TableKey accelerometer("accelerometer", "feels the specific force; for `diagnose`");
+constexpr Vec3Key bias("bias_m_s2", {0.0, 0.0, 0.0}, "offset of the readings");
+constexpr TableKey accelerometer("accelerometer", "specific force; for `diagnose`");
 constexpr NumberKey magnetometer_noise("noise_T", 0.0, Range::not_negative(),
                                        "per reading and axis; 0: found in the readings");
 constexpr Vec3Key magnetometer_bias("bias_T", {0.0, 0.0, 0.0},
                                     "the platform's own field, body axes");
 constexpr TableKey magnetometer("magnetometer",
-                                "feels the environment's magnetic field; for `diagnose`");
+                                "magnetic field of the environment; for `diagnose`");
 constexpr NumberKey place_noise("noise_m", 0.0, Range::not_negative(),
                                 "per reading and axis; 0: found in the readings");
 constexpr NumberKey velocity_noise("noise_m_s", 0.0, Range::not_negative(),
                                    "the same of a velocity; 0: none is recorded");
-constexpr TableKey place("position", "sees where a planar platform is");
+constexpr TableKey place("position", "position of a planar platform");
 constexpr NumberKey resolution("resolution_arcsec", Range::positive(), "step of the heading");
-constexpr TableKey encoder("encoder", "reads the heading");
+constexpr TableKey encoder("encoder", "heading");
 constexpr NumberKey current_noise("current_noise_A", 0.0, Range::not_negative(),
                                   "on the battery's current");
 constexpr NumberKey power_noise("power_noise_W", 0.0, Range::not_negative(),
                                 "on the array's power");
-constexpr TableKey power("power", "reads battery and array");
+constexpr TableKey power("power", "battery and array");
 constexpr ChoiceKey noise_is(
     "noise_is",
     {{"found", "`diagnose` looks for level and correlation of the noise in the recordings"},
      {"stated", "it takes them as stated here"}},
-    0, "where the noise is known from");
+    0, "origin of the noise level");
 }  // namespace sensor_key
 
 // The errors that stand with an instrument as well as in [[disturbance]].

@@ -296,10 +296,10 @@ BalanceResult balance(const BalanceRun& run) {
 
 std::string BalanceResult::warning() const {
   if (!leaves_more_than_noise()) return "";
-  return "something acts that the experiment lacks: the fit leaves " +
+  return "the experiment lacks an effect: the residual of the fit is " +
          readable_number(std::sqrt(chi2_per_sample), 3) +
-         " times the noise; the errors hold how far parts of the recording disagree, but the cause "
-         "may pull all of them (photorque diagnose says what it is)";
+         " times the noise; the errors include the scatter between parts of the recording, but no "
+         "common bias (photorque diagnose finds the effect)";
 }
 
 Product balance_product(const BalanceRun& run, const BalanceResult& result) {

@@ -28,7 +28,7 @@ constexpr NumberKey power_at_30("power_at_30_deg_W", Range::positive(), "of the 
                                 {.usually = "the paper's"});
 constexpr Vec3Key torque_at_30("torque_at_30_deg_N_m", "of the light at 30 deg, body axes",
                                {.usually = "the paper's"});
-constexpr TableKey light("light", "what `power` printed, beside the paper's");
+constexpr TableKey light("light", "results of `power`, compared with the paper's");
 constexpr TextKey name("name", "of the bearing");
 constexpr NumberKey radius("radius_m", Range::positive(), "of the ball");
 constexpr NumberKey half_angle("half_angle_deg", {0.0, 0.5 * pi, true, false}, "of the socket");
@@ -37,8 +37,8 @@ constexpr NumberKey inlet("inlet_Pa", Range::positive(), "absolute");
 constexpr NumberKey load("load_N", Range::positive(), "rated");
 constexpr NumberKey drag("drag_N_m", 0.0, Range::not_negative(), "0: not printed");
 constexpr NumberKey drag_rate("drag_rate_rpm", usual.drag_rate_rad_s, Range::positive(),
-                              "at which the drag was measured");
-constexpr TablesKey bearing("bearing", "a catalogue's bearing beside the paper's model");
+                              "load at which the drag was measured");
+constexpr TablesKey bearing("bearing", "a bearing of a catalogue, compared with the paper's model");
 constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi, false, false}, "attitude, as in `[propagate]`");
 constexpr NumberKey heading("heading_deg", 0.0, {}, "where it leans to");
 constexpr NumberKey spin("spin_rpm", 0.0, {}, "about the lab's vertical");

@@ -373,7 +373,7 @@ Plot elastic_plot() {
 
 Table figures_table(const std::vector<PaperFigure>& figures) {
   Table table =
-      Table::of("paper_figures", "Figures of the paper beside ours",
+      Table::of("paper_figures", "Published figures compared with ours",
                 {"quantity", "section", "why", "published", "ours", "ratio", "ours_as_published"});
   for (const PaperFigure& f : figures) {
     table.row()
@@ -390,7 +390,7 @@ Table figures_table(const std::vector<PaperFigure>& figures) {
 
 Table sensitivities_table(const std::vector<PaperSensitivity>& all) {
   Table table =
-      Table::of("paper_sensitivities", "How the figures move with what the paper leaves out",
+      Table::of("paper_sensitivities", "Sensitivity of the figures to unstated dimensions",
                 {"quantity", "assumed", "value", "exponent", "value_for_published"});
   for (const PaperSensitivity& s : all) {
     table.row()

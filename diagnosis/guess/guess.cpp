@@ -104,8 +104,7 @@ std::string guess_experiment(const std::vector<std::filesystem::path>& recording
   }
   TomlDocument document;
   document.add_to_head("Made by photorque diagnose --guess from " + names +
-                       ". Numbers were read from there; what is assumed says CONFIRM and waits for "
-                       "somebody who knows the machine.");
+                       ". Values were read from there; assumptions are marked CONFIRM.");
   if (!is_light_recording(recordings.front())) {
     guess_motion(document, recordings);
     return document.text();

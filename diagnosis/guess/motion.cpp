@@ -86,15 +86,14 @@ SettingsNode::Table& add_machine(TomlDocument& document, const Machine& m) {
       set("topology", {"one_axis"});
       set("axis", {std::string(1, "xyz"[axis])});
       document.comment(
-          "No moment of inertia can be known from motion alone: it is one, and "
-          "all torques are per unit of it.");
+          "Motion alone determines no moment of inertia: it is 1, and torques are normalised by "
+          "it.");
       break;
     }
     case Topology::planar:
       set("topology", {"planar"});
       document.comment(
-          "No mass can be known from motion alone: it is one, and all forces are per unit "
-          "of it.");
+          "Motion alone determines no mass: it is 1, and forces are normalised by it.");
       break;
     default:
       set("topology", {"tabletop"});
@@ -118,7 +117,7 @@ void add_inertia(TomlDocument& document, SettingsNode::Table& table,
   constexpr double worth_saying = 0.1;
   const bool is_known = found && found->sigma(0) < worth_saying && found->sigma(1) < worth_saying &&
                         found->sigma(2) < worth_saying;
-  std::string why = "CONFIRM: the rates do not tell the ratios of the moments; guessed.";
+  std::string why = "CONFIRM: the rates do not determine the ratios of the moments; guessed.";
   if (is_known) {
     // The first moment is the unit. Torques that nobody knows shift what the rates tell by more
     // than its own error.
@@ -141,8 +140,8 @@ void add_inertia(TomlDocument& document, SettingsNode::Table& table,
         " % of what they do. The sigmas allow for torques that are not known yet.";
   }
   document.comment(
-      "Motion without a known torque tells ratios of moments alone: Ixx is one. State "
-      "a moment that was measured, and torques come out in N m.");
+      "Motion without a known torque determines ratios of moments only: Ixx is 1. State a measured "
+      "moment for torques in N m.");
   document.comment(why);
   document.set(table, "inertia_kg_m2.value", matrix(value));
   document.set(table, "inertia_kg_m2.sigma", matrix(sigma));
@@ -313,8 +312,7 @@ void add_drag(TomlDocument& document, const Machine& m) {
   const double coefficient_1_s = sum > 0.0 ? slowed / sum : 0.0;
   if (!(slowed > 0.2)) return;
   document.comment(
-      "CONFIRM: it slows down, so a drag linear in the rate is taken to act; what it "
-      "leaves is looked for.");
+      "CONFIRM: the rate decreases, so a linear drag is assumed; diagnose searches the rest.");
   SettingsNode::Table& table = document.append("disturbance");
   document.set(table, "kind", {"bearing_drag"});
   document.set(table, "coefficient_N_m_s",
@@ -375,7 +373,7 @@ void guess_motion(TomlDocument& document, const std::vector<fs::path>& recording
        MotionColumns(m.recordings.front(), m.platform, m.names.front()).unused()) {
     unused += (unused.empty() ? "" : ", ") + name;
   }
-  if (!unused.empty()) document.comment("Columns that nothing is made of: " + unused + ".");
+  if (!unused.empty()) document.comment("Unused columns: " + unused + ".");
 }
 
 }  // namespace photorque

@@ -95,8 +95,8 @@ std::string page_html(const RunPage& page, const PageLimits& limits) {
                                      page.text->after + "</main>\n"
                                : "<main id=\"page\"></main>\n";
   body +=
-      "<noscript>This page draws itself with JavaScript, which is switched off. The same "
-      "results stand in summary.json and the other files beside it.</noscript>\n";
+      "<noscript>This page needs JavaScript, which is switched off. summary.json and the other "
+      "files beside it have the same results.</noscript>\n";
   body += "<script id=\"run\" type=\"application/json\">";
   const std::string content = script_text(page_content(page, limits));
   body += content;

@@ -116,7 +116,7 @@ Uniformity uniformity(const ArrayResult& array, std::span<const int> cells) {
 }
 
 Table uniformity_table(const ArrayResult& array, const ArrayWiring& wiring) {
-  Table table = Table::of("uniformity", "How even the light is",
+  Table table = Table::of("uniformity", "Uniformity of the light",
                           {"cells", "mean_W_m2", "minimum_over_mean", "variation"});
   const auto add = [&](const std::string& name, const std::vector<int>& cells) {
     const Uniformity u = uniformity(array, cells);

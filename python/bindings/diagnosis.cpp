@@ -106,7 +106,7 @@ void bind_diagnosis(py::module_& module) {
   module.def("diagnose", &diagnose_recordings, py::arg("experiment"), py::arg("recordings"),
              py::kw_only(), py::arg("holdouts") = Paths{}, py::arg("threads") = 0,
              py::arg("log") = py::none(),
-             "What physics is missing between an experiment and its recordings (CSV files of "
+             "Physical effects that an experiment lacks, from recordings (CSV files of "
              "motion, or of light and power).");
 }
 

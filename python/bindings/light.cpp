@@ -206,7 +206,7 @@ void bind_light(py::module_& module) {
   bind_flux_map(module);
   bind_runs(module);
   def_light(module, "trace", &trace,
-            "Irradiance on every receiver, where the power went, radiation force and torque.");
+            "Irradiance on every receiver, power balance, radiation force and torque.");
   def_light(module, "power", &power,
             "Trace, then the solar array: current-voltage curve and maximum power point.");
 }

@@ -39,7 +39,7 @@ py::array pixels_of(const py::object& self) {
 
 void bind_render(py::module_& module) {
   py::class_<RenderRun, std::shared_ptr<RenderRun>>(
-      module, "Render", "A picture of the scene with the irradiance painted on its receivers.")
+      module, "Render", "A picture of the scene with the irradiance on its receivers.")
       .def_property_readonly("pixels", &pixels_of,
                              "Red, green, blue (rows from the top, columns, 3), 0 to 255, sRGB: as "
                              "matplotlib's imshow takes them.")

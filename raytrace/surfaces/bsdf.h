@@ -38,7 +38,8 @@ struct OpticalSurface {
   std::shared_ptr<const Bsdf> bsdf = nullptr;
 };
 
-// The same fractions in all bands; `absorbed` is what remains. The caller keeps the sum ≤ 1.
+// A surface with equal fractions in all bands; the remainder is absorbed. The caller keeps the sum
+// ≤ 1.
 OpticalSurface grey_surface(std::string name, double specular, double diffuse,
                             double transmitted = 0.0);
 
@@ -102,7 +103,7 @@ class AlbedoLaw {
   virtual PowerFractions fractions(double cosine, size_t band) const = 0;
 };
 
-// What a surface adds to the fractions of an OpticalSurface; what is null stays as it is there.
+// Laws of a surface in addition to the fractions of an OpticalSurface; a null law changes nothing.
 struct Bsdf {
   std::shared_ptr<const AlbedoLaw> law;  // null: the surface's fractions at every angle
   std::shared_ptr<const Lobe> specular;  // null: a mirror

@@ -141,7 +141,7 @@ class Pane final : public AlbedoLaw {
   double index_;
 };
 
-// What comes out of matt ground through the glass.
+// Light of a Lambertian base after its passage through the glass.
 class ThroughFront final : public Lobe {
  public:
   explicit ThroughFront(Reflectance front)

@@ -2,7 +2,7 @@
 // does.
 //
 // With R(θ) the unpolarised reflectance of the glass's front, which depends on the angle and on the
-// refractive index, the fractions of an OpticalSurface tell what meets the light that enters:
+// refractive index, the fractions of an OpticalSurface describe the base behind the glass:
 //
 // - matt (diffuse d): of the light that enters d leaves again, scattered. The specular fraction
 //   is R, the diffuse one (1 − R) d with density (1 − R(θ_o)) cos θ_o/(π (1 − R̄)), as it has to be

@@ -224,7 +224,7 @@ class BrdfLobe final : public Lobe {
   // A cell between nodes of scattering, drawn in proportion to its power.
   struct Cell {
     size_t o, a;     // its lower nodes
-    double along;    // what is left of the random number, again even in (0, 1)
+    double along;    // remainder of the random number, again uniform in (0, 1)
     double largest;  // f at the brightest corner
   };
   Cell choose_cell(size_t node, double u) const {

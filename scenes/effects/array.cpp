@@ -16,13 +16,13 @@ std::vector<LightEffectKind> array_effect_kinds() {
   return {
       // Light that enters every cell times `factor`. A scan does not see it.
       {.name = "soiling",
-       .explanation = "dirt on the cells takes the same fraction of the light from all of them",
+       .explanation = "dirt absorbs the same fraction of the light of all cells",
        .parameters =
            {{.key = "factor", .neutral = 1.0, .scale = 0.1, .lowest = -1.0, .highest = 0.0}},
        .in_scans = false,
        .act = [](LightState& state, size_t, Numbers x) { state.soiling *= 1.0 + x[0]; }},
       {.name = "angular_response",
-       .explanation = "a glass over the cells lets less light in the more it slants",
+       .explanation = "a glass over the cells reflects more of oblique light",
        .parameters = {refractive_index},
        .in_scans = false,
        .act = [refractive_index](
@@ -30,7 +30,7 @@ std::vector<LightEffectKind> array_effect_kinds() {
                   Numbers x) { state.glass_index = value_of(refractive_index, x[0]); }},
       // The photocurrent of a cell times `factor`. A scan does not see it.
       {.name = "cell_degraded",
-       .explanation = "a cell turns less of its light into current than the others",
+       .explanation = "a cell converts less of its light into current than the others",
        .index = Index::cell,
        .parameters = {{.key = "factor",
                        .neutral = 1.0,
@@ -43,7 +43,7 @@ std::vector<LightEffectKind> array_effect_kinds() {
                  Numbers x) { state.cell_current[index] *= 1.0 + x[0]; }},
       // The light over the rectangle of a cell times `factor`. A scan sees it.
       {.name = "cell_shaded",
-       .explanation = "something over a cell takes a fraction of its light",
+       .explanation = "an object over a cell takes a fraction of its light",
        .index = Index::cell,
        .parameters = {{.key = "factor",
                        .neutral = 1.0,
@@ -63,7 +63,7 @@ std::vector<LightEffectKind> array_effect_kinds() {
        .act = [](LightState& state, size_t index, Numbers) { state.string_open[index] = true; }},
       // The cells of the diode give no voltage.
       {.name = "bypass_shorted",
-       .explanation = "a bypass diode is shorted and takes its cells away",
+       .explanation = "a bypass diode is shorted and bypasses its cells",
        .index = Index::bypass,
        .parameters = {},
        .in_scans = false,
@@ -90,7 +90,7 @@ std::vector<LightEffectKind> array_effect_kinds() {
       // photocurrent_per_K is added to photocurrent_slope_per_K, voltage_V_per_K to the voltage of
       // every cell per kelvin above its reference temperature.
       {.name = "temperature_coefficient",
-       .explanation = "the cells follow their temperature otherwise than stated",
+       .explanation = "the temperature coefficients of the cells differ from those stated",
        .parameters =
            {{.key = "photocurrent_per_K", .scale = 1e-3, .lowest = -0.05, .highest = 0.05},
             {.key = "voltage_V_per_K", .scale = 1e-3, .lowest = -0.05, .highest = 0.05}},
@@ -105,7 +105,7 @@ std::vector<LightEffectKind> array_effect_kinds() {
       // tracker stands follows from every reading: as the platform turns, maxima change places and
       // vanish.
       {.name = "tracker_trapped",
-       .explanation = "the tracker stands on a maximum of the power that is not the highest",
+       .explanation = "the tracker holds a local maximum of the power",
        .parameters = {{.key = "interval_s",
                        .count = 2,
                        .scale = 100.0,

@@ -18,7 +18,7 @@ std::vector<LightEffectKind> lamp_effect_kinds() {
                  Numbers x) { state.lamp_power[index] *= 1.0 + x[0]; }},
       // The axis d becomes d + tan a₁ e₁ + tan a₂ e₂, e being lab x and y made perpendicular to d.
       {.name = "led_aim",
-       .explanation = "an LED is turned away from where it is stated to look",
+       .explanation = "the beam of an LED is rotated from its stated direction",
        .index = Index::lamp,
        .parameters = {{.key = "angles_deg",
                        .count = 2,
@@ -38,7 +38,7 @@ std::vector<LightEffectKind> lamp_effect_kinds() {
        .act = [](LightState& state, size_t, Numbers x) { state.divergence *= 1.0 + x[0]; }},
       // All lamps displaced by offset_m, lab axes, with their axes kept.
       {.name = "source_shift",
-       .explanation = "the lamps stand beside where they are stated to stand",
+       .explanation = "the lamps are displaced from their stated positions",
        .parameters =
            {{.key = "offset_m", .count = 3, .scale = 0.01, .lowest = -0.1, .highest = 0.1}},
        .is_traced = true,

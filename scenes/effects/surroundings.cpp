@@ -16,8 +16,7 @@ std::vector<LightEffectKind> surroundings_effect_kinds() {
       // A thin box, fixed in the lab or on the body; its thickness does not show. opacity 1:
       // opaque.
       {.name = "unmodelled_shadow",
-       .explanation =
-           "something opaque that is not in the model hides lamps from part of the receiver",
+       .explanation = "an opaque object outside the model hides lamps from part of the receiver",
        .index = Index::frame,
        .parameters =
            {{.key = "opacity", .scale = 0.5, .lowest = 0.0, .highest = 1.0},
@@ -38,14 +37,14 @@ std::vector<LightEffectKind> surroundings_effect_kinds() {
            }},
       // A rotation vector about lab x and y.
       {.name = "attitude_bias",
-       .explanation = "the platform stands turned against its recorded attitude",
+       .explanation = "the attitude of the platform differs from the recorded one",
        .parameters =
            {{.key = "bias_deg", .count = 2, .scale = 0.02, .lowest = -0.3, .highest = 0.3}},
        .is_traced = true,
        .act = [](LightState& state, size_t,
                  Numbers x) { state.attitude_bias_rad += Vec2(x[0], x[1]); }},
       {.name = "interreflection",
-       .explanation = "a wall that is assumed black throws light back",
+       .explanation = "a wall that is assumed black scatters light",
        .index = Index::wall,
        .parameters = {{.key = "diffuse", .scale = 0.3, .lowest = 0.0, .highest = 1.0}},
        .act =

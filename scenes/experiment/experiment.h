@@ -24,7 +24,7 @@
 
 namespace photorque {
 
-// [attitude]: how the platform stands, see lab_from_body_at().
+// [attitude]: attitude of the platform, see lab_from_body_at().
 struct Attitude {
   double tilt_rad = 0.0;     // in [0, π]
   double heading_rad = 0.0;  // of the direction it leans to, from lab x (east) towards y

@@ -15,23 +15,25 @@ constexpr Range joint_angle{-2.0 * pi, 2.0 * pi};
 constexpr int64_t most_positions = 33;
 
 namespace joint_key {
-constexpr TextKey node("node", "of the scene: it and all below turns; *or*", {.optional = true});
-constexpr TextsKey nodes("nodes", "several that turn together", {.optional = true});
+constexpr TextKey node("node", "of the scene, which rotates with all nodes below it; *or*",
+                       {.optional = true});
+constexpr TextsKey nodes("nodes", "several nodes that rotate together", {.optional = true});
 constexpr Vec3Key axis("axis", "body axes, any length");
 constexpr Vec3Key point("point_m", {0.0, 0.0, 0.0}, "a point on the axis, body axes");
-constexpr NumberKey angle("angle_deg", 0.0, joint_angle, "from how the model is drawn");
+constexpr NumberKey angle("angle_deg", 0.0, joint_angle,
+                          "rotation from the pose in the model file");
 constexpr Vec3Key towards_sun("towards_sun",
-                              "in a run of the motion: the direction, of the model as "
-                              "drawn, that follows the Sun as near as the axis lets it",
+                              "in `propagate`: direction in the model file that follows the Sun, "
+                              "as closely as the axis allows",
                               {.optional = true});
 constexpr NumberKey time("time_s", {}, "rising");
 constexpr NumberKey at_angle(
     "angle_deg", joint_angle,
-    "then; on a straight line to the next, held before the first and after the last");
-constexpr TablesKey at("at", "or the angle over time, in a run of the motion");
+    "angle at that time; linear between instants, constant before the first and after the last");
+constexpr TablesKey at("at", "*or* the angle over time, in `propagate`");
 constexpr IntegerKey positions("positions", 5, 2, most_positions,
-                               "angles between the least and the most of `[[joint.at]]` at which "
-                               "the light is traced; between them it is interpolated");
+                               "number of angles, over the range of `[[joint.at]]`, at which the "
+                               "light is traced; interpolated between them");
 }  // namespace joint_key
 
 Vec3 read_direction(const Settings& joint, const Vec3Key& key) {

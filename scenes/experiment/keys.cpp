@@ -24,13 +24,12 @@ std::vector<Key::Choice> unit_choices() {
 
 Key scene_table() {
   using namespace scene_key;
-  return scene.of(
-      {file,
-       Key::choice("unit", unit_choices(),
-                   "of lengths in an STL or OBJ file, which does not say it; required with these, "
-                   "wrong with glTF")
-           .optional(),
-       up, metres_per_unit, centre_of_rotation, textures, allow_outside, bands});
+  return scene.of({file,
+                   Key::choice("unit", unit_choices(),
+                               "unit of length of an STL or OBJ file, which states none; required "
+                               "for these, not allowed for glTF")
+                       .optional(),
+                   up, metres_per_unit, centre_of_rotation, textures, allow_outside, bands});
 }
 
 Key material_table() {
@@ -42,7 +41,8 @@ Key source_table() {
   return Key::tables(
       "source",
       {Key::choice("kind", choices_of(all_source_kinds()), "what shines"),
-       Key::text("light", "a lamp that the scene's glTF file places: what is not given here is its")
+       Key::text("light",
+                 "name of a lamp in the glTF file, which supplies the keys that are not given")
            .optional()},
       "a lamp, in lab axes");
 }

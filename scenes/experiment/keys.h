@@ -35,7 +35,7 @@ inline constexpr FlagKey allow_outside(
 inline constexpr NumbersKey bands(
     "bands_nm", Range::not_negative(),
     "edges of 1 to 8 wavelength bands, rising; all light must fall inside",
-    {.usually = "one band over everything"});
+    {.usually = "one band over all wavelengths"});
 inline constexpr TableKey scene("scene", "the model that is lit");
 }  // namespace scene_key
 
@@ -45,7 +45,7 @@ inline constexpr NumberKey tilt(
     "the body's z axis leans by the tilt towards the heading; with heading 0 it turns about +y");
 inline constexpr NumberKey heading("heading_deg", 0.0, {-2.0 * pi, 2.0 * pi},
                                    "from lab x towards y");
-inline constexpr TableKey attitude("attitude", "how the platform stands");
+inline constexpr TableKey attitude("attitude", "attitude of the platform");
 }  // namespace attitude_key
 
 namespace trace_key {
@@ -56,7 +56,7 @@ inline constexpr IntegerKey rays(
     "(see `direct`): its error goes down by `target_error` alone",
     {.optional = true});
 inline constexpr IntegerKey replicates(
-    "replicates", 8, 1024, "independent randomisations that the standard errors come from",
+    "replicates", 8, 1024, "independent randomisations, from which the standard errors follow",
     {.optional = true});
 inline constexpr IntegerKey seed("seed", 0, INT64_MAX, "also `--seed`", {.optional = true});
 inline constexpr IntegerKey max_depth("max_depth", 1, 65535, "interactions of a ray",
@@ -68,27 +68,25 @@ inline constexpr NumberKey cutoff("cutoff", {0.0, 1.0, false, true},
 inline constexpr ChoiceKey direct(
     "direct",
     {{"auto",
-      "gathered, but with so many pairs of bin and lamp that it would take seconds and more than "
-      "four times as long as the rays (thousands of lamps) by rays, which a note says; on bodies "
-      "in sunlight alone"},
+      "as `\"gather\"`; but as `\"rays\"`, with a note, if quadrature would take seconds and more "
+      "than four times as long as the rays (thousands of lamps). Bodies: in sunlight alone"},
      {"gather",
-      "direct light on flat flux maps, its torque on flat torque maps of plain surfaces, and its "
-      "force and torque on bodies, from the surface's side, by quadrature where nothing can shade "
-      "and shadow rays where something may"},
+      "quadrature over the lamps, with shadow rays where something may shade: for flat flux maps, "
+      "flat torque maps of plain surfaces, and force and torque on bodies"},
      {"rays", "by rays alone"}},
     0,
-    "how direct light is found. Gathering takes sources with uniform apertures (`led`, "
-    "`led_array`, `sun`, `ies` when round in aperture and beam); the others, and maps of curved "
-    "surfaces, always go by rays");
+    "method for direct light. Quadrature needs sources with uniform apertures (`led`, `led_array`, "
+    "`sun`, `ies` if round in aperture and beam); other sources, and maps of curved surfaces, "
+    "always use rays");
 inline constexpr NumberKey target_error(
     "target_error", {1e-6, 1.0, false, false},
-    "go on with twice the rays until every bin above a tenth of its map's peak has this "
+    "double the rays until every bin above a tenth of its map's peak has this "
     "relative standard error; also `--target-error`",
     {.optional = true});
-inline constexpr NumberKey max_time("max_time_s", Range::positive(),
-                                    "… or until the next round would end later than this; "
-                                    "only with a target; also `--max-time`",
-                                    {.optional = true});
+inline constexpr NumberKey max_time(
+    "max_time_s", Range::positive(),
+    "end before the next round would exceed this time; only with a target; also `--max-time`",
+    {.optional = true});
 inline constexpr IntegerKey arriving_rays(
     "arriving_rays", 1, 10'000'000,
     "`trace` also writes, for every flux map, the rays that arrive there, of this many "
@@ -96,7 +94,7 @@ inline constexpr IntegerKey arriving_rays(
     "TM-25, millimetres in the body frame, with power and, of line sources, wavelength; "
     "no file for a map that no ray meets; at most 4096 lamps",
     {.optional = true});
-inline constexpr TableKey trace("trace", "how much work the light is worth");
+inline constexpr TableKey trace("trace", "accuracy and effort of the trace");
 }  // namespace trace_key
 
 namespace torque_map_key {
@@ -113,11 +111,11 @@ inline constexpr NumbersKey elevation("elevation_deg", {-0.5 * pi, 0.5 * pi}, "w
                                       {.optional = true});
 inline constexpr NumberKey azimuth_step(
     "azimuth_step_deg", {0.0, 2.0 * pi, true, false},
-    "or the whole sphere, which also writes `EXPERIMENT.spo` (SPAD, as GMAT reads it): a "
-    "whole fraction of 360, at least 0.1",
+    "*or* the step over the whole sphere, an integer fraction of 360, at least 0.1; also writes "
+    "`EXPERIMENT.spo` (SPAD, as GMAT reads it)",
     {.optional = true});
 inline constexpr NumberKey elevation_step("elevation_step_deg", {0.0, pi, true, false},
-                                          "with it: a whole fraction of 180, at least 0.1",
+                                          "likewise: an integer fraction of 180, at least 0.1",
                                           {.optional = true});
 inline constexpr IntegerKey rays(
     "rays", 1, most_rays,
@@ -136,14 +134,14 @@ namespace camera_key {
 inline constexpr Vec3Key position(
     "position_m", "lab axes, away from `target_m`",
     {.usually = "south-east of the scene, where `render` also sees the lamps"});
-inline constexpr Vec3Key target("target_m", {0.0, 0.0, 0.0}, "what is in the middle");
+inline constexpr Vec3Key target("target_m", {0.0, 0.0, 0.0}, "point in the middle of the picture");
 inline constexpr NumberKey field_of_view("field_of_view_deg",
                                          {1e-3 * degree_rad, 179.0 * degree_rad},
                                          "across the width", {.usually = "34.4"});
 inline constexpr IntegerKey width("width", 16, 16384, "pixels", {.optional = true});
 inline constexpr IntegerKey height("height", 16, 16384, "pixels", {.optional = true});
 inline constexpr FlagKey lamps("lamps", true, "lamps near the scene and some rays are drawn");
-inline constexpr TableKey camera("camera", "where the picture of the scene is taken from");
+inline constexpr TableKey camera("camera", "camera of the picture of the scene");
 }  // namespace camera_key
 
 // [scene], [[material]], [[source]], [[receiver]], [attitude], [trace], [torque_map], [camera].

@@ -22,8 +22,8 @@ namespace photorque {
 // than a million rows too.
 BrdfTable read_brdf(const std::string& text, const std::string& name);
 
-// What a reader of results should know of a table that leaves much of the hemisphere to what it has
-// last: up to which angles it was measured, where that is below 45 deg. Nothing for a constant.
+// A notice for the user if a table ends below 45 deg, with its last angle: its last values continue
+// over the rest of the hemisphere. Empty otherwise, and for a constant.
 std::optional<std::string> coverage_notice(const BrdfTable& table);
 
 }  // namespace photorque

@@ -27,28 +27,26 @@ constexpr NumberKey specular = fraction("specular", "fraction that is mirrored")
 constexpr NumberKey diffuse = fraction("diffuse", "fraction that is scattered by Lambert's law");
 constexpr NumberKey transmittance =
     fraction("transmittance",
-             "fraction that goes straight through; of the four one may be left out: they sum "
-             "to 1");
+             "fraction that passes straight through; the four sum to 1, and one may be omitted");
 constexpr NumberKey retroreflectance =
-    fraction("retroreflectance", "a fifth fraction, back where it came from");
+    fraction("retroreflectance", "a fifth fraction, reflected back to the source");
 constexpr NumberKey roughness(
     "roughness", {0.0, 1.0, true},
-    "as in glTF: the specular fraction leaves by GGX microfacets of alpha = roughness², "
-    "Smith masking, with light reflected more than once given back, so that `specular` "
-    "stays the reflectance at every angle",
+    "as in glTF: the specular fraction follows GGX microfacets with alpha = roughness² and Smith "
+    "masking; light reflected more than once is included, so that `specular` is the reflectance at "
+    "every angle",
     {.optional = true});
 constexpr NumberKey slope_error(
     "slope_error_mrad", {1e-6, 0.2},
-    "instead: a mirror whose normal leans by random slopes of this size, as "
-    "`slope_error_shape` says; reflected rays stray by twice that. Or [along "
-    "`slope_error_axis`, across it]",
+    "instead: a mirror with random slopes of this size (`slope_error_shape`); reflected rays "
+    "deviate by twice the slope. Or [along `slope_error_axis`, across it]",
     {.optional = true, .several = true});
 constexpr ChoiceKey slope_error_shape(
     "slope_error_shape",
     {{"gaussian",
       "normal slopes (tangents) along each of two axes; the size is their standard "
       "deviation"},
-     {"pillbox", "slopes that are even over a disc; the size is its radius"}},
+     {"pillbox", "slopes uniform over a disc; the size is its radius"}},
     0, "of `slope_error_mrad`");
 constexpr Vec3Key slope_error_axis(
     "slope_error_axis",
@@ -65,9 +63,9 @@ constexpr NumberKey brdf_scale("brdf_scale", 1.0, Range::positive(),
 constexpr TableKey back("back", "the same for the other side", {.usually = "as the front"});
 constexpr NumberKey reemitted(
     "reemitted", 0.0, Range::fraction(),
-    "of the sheet: this fraction of the absorbed power leaves at once as heat, by Lambert's law, "
-    "from both sides in proportion to their emissivities. In forces and torques only: the power "
-    "stays booked as absorbed, and no part is lit by another's heat");
+    "fraction of the absorbed power that both sides emit at once as heat, by Lambert's law, in "
+    "proportion to their emissivities. It acts on forces and torques only: the power counts as "
+    "absorbed, and heat lights no other part");
 constexpr NumberKey emissivity_front("emissivity_front", 1.0, Range::fraction(), "of that heat");
 constexpr NumberKey emissivity_back("emissivity_back", 1.0, Range::fraction(), "of that heat");
 }  // namespace surface_key
@@ -259,7 +257,7 @@ OpticalSurface read_measured(const Settings& table, int bands, const std::string
   constexpr double worth_telling = 0.01;
   if (measured.asymmetry > worth_telling) {
     words << file << ": f(i, o) and f(o, i) differ by " << 100.0 * measured.asymmetry
-          << " % (root mean square), which nature forbids; the mean is taken";
+          << " % (root mean square), against reciprocity; the mean is taken";
     notices.push_back(words.str());
   }
   return std::move(measured.surface);

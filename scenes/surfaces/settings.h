@@ -40,7 +40,7 @@ using SurfaceFiles = std::function<std::optional<std::string>(const std::string&
 // Other keys are left to the caller. Throws InputError with the table's file, line and key.
 OpticalSurface read_surface(const Settings& table, int bands, std::string name);
 
-// The same with an optional sub-table `back` for the side from which the corners of a triangle run
+// As above, with an optional sub-table `back` for the side from which the corners of a triangle run
 // clockwise, and heat radiation of both sides together: `reemitted` (0), the fraction of the
 // absorbed power that leaves at once, and `emissivity_front` and `emissivity_back` (1, 1), in
 // proportion to which it leaves the sides. Instead of fractions a side may have

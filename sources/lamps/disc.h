@@ -34,7 +34,7 @@ struct Die {
 
 // No lossless optics makes light brighter than its source: a Lambertian die in a medium of index n
 // has the etendue π n² A, and a beam needs aperture area × effective solid angle (flux over largest
-// intensity) at least as large. One line for people if it is not, with the aperture that would do.
+// intensity) at least as large. A notice if it is not, with a sufficient aperture.
 // Source: R. Winston, J. C. Miñano, P. Benítez, Nonimaging Optics (2005), chapter 2.
 std::optional<std::string> etendue_notice(const std::string& name, const Die& die,
                                           double aperture_diameter_m,

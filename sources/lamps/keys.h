@@ -15,20 +15,21 @@ inline constexpr Range beam_half_angle{1e-12 * degree_rad, 0.5 * pi, false, fals
 inline constexpr double usual_led_width_m = 20e-9;  // spectral_fwhm_nm of LEDs
 
 namespace source_key {
-inline constexpr TextKey name("name", "names results and messages");  // the kind by default
+inline constexpr TextKey name("name", "name in results and messages");  // the kind by default
 inline constexpr NumberKey power("power_W", Range::positive(), "radiant power");
 // Each kind says of what.
 inline constexpr Vec3Key position("position_m", "of the lamp, lab axes");
-inline constexpr Vec3Key direction("direction", "where it looks, lab axes, any length; or `aim_m`",
+inline constexpr Vec3Key direction("direction",
+                                   "direction of the beam, lab axes, any length; or `aim_m`",
                                    {.optional = true});
-inline constexpr Vec3Key aim("aim_m", "instead of `direction`: the point that it looks at",
+inline constexpr Vec3Key aim("aim_m", "instead of `direction`: a point on the axis of the beam",
                              {.optional = true});
 inline constexpr NumberKey wavelength("wavelength_nm", {1e-8, 1e-3}, "middle of the spectrum");
 inline constexpr NumberKey spectral_fwhm(
     "spectral_fwhm_nm", usual_led_width_m, {0.0, 1e-3},
     "full width at half maximum of the spectrum, a Gaussian; 0: a line");
 inline constexpr NumberKey aperture_diameter("aperture_diameter_m", opening_diameter,
-                                             "of the opening that light leaves");
+                                             "of the emitting opening");
 
 // Where light travels that comes from nowhere near.
 inline constexpr Vec3Key light_direction("direction",

@@ -13,15 +13,15 @@
 
 namespace photorque {
 
-// What a source may need to know of the scene that it lights.
+// Properties of the lit scene that a source may need.
 struct SourceContext {
   double scene_radius_m = 1.0;  // of the sphere about the lab origin that holds the scene
-  // Told, in one line, of what is legal but cannot be meant (a beam that no optics can make). May
-  // be empty.
+  // Receives notices of legal but implausible values (a beam that no optics can make). May be
+  // empty.
   std::function<void(const std::string&)> notice;
   // Relative paths of files that a source names start here: the folder of the experiment.
   std::filesystem::path folder = {};
-  // Told the name and the content hash of every file read, for the provenance. May be empty.
+  // Receives name and content hash of every file read, for the provenance. May be empty.
   std::function<void(const std::string& name, const std::string& hash)> input = {};
   // The bytes of a file that lies within another, by the name that a source's key gives it. May be
   // empty.

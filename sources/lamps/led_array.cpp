@@ -3,7 +3,7 @@
 //   [[source]]
 //   kind = "led_array"
 //   name = "lamps"                   # default "led_array"; the LEDs are name[0], name[1], …
-//   layout = "grid"                  # how the LEDs stand:
+//   layout = "grid"                  # arrangement of the LEDs:
 //   count = [10, 5]                  #   grid: columns along x and rows along y of the array,
 //   pitch_m = 0.03                   #         pitch_m apart (or [pitch x, pitch y])
 //   # layout = "ring"                #   ring: count LEDs evenly on ring_radius_m, from +x on
@@ -45,10 +45,10 @@ enum class Layout : size_t { grid, ring, hexagonal, positions };
 namespace key {
 constexpr ChoiceKey layout("layout",
                            {{"grid", "columns and rows"},
-                            {"ring", "evenly on a circle, from +x on"},
+                            {"ring", "uniformly on a circle, from +x on"},
                             {"hexagonal", "close packed, the ring around the centre first"},
                             {"positions", "at given points"}},
-                           "how the LEDs stand");
+                           "arrangement of the LEDs");
 constexpr NumbersKey grid_count("count", {1.0, max_leds, false, false},
                                 "of LEDs, [along x, along y]", {.size = 2});
 constexpr NumberKey grid_pitch("pitch_m", Range::positive(),
@@ -60,10 +60,10 @@ constexpr NumberKey pitch("pitch_m", Range::positive(), "from one LED to the nex
 constexpr Vec3sKey positions("positions_m", "of the LEDs, lab axes");
 constexpr ChoiceKey aim("aim",
                         {{"parallel", "all along `direction`"}, {"converging", "all at one point"}},
-                        0, "where the LEDs look");
+                        0, "direction of the LEDs");
 constexpr NumberKey focus(
     "focus_m", Range::positive(),
-    "instead of `aim_m`: the point lies so far along `direction` from the centre",
+    "instead of `aim_m`: distance of the point from the centre along `direction`",
     {.optional = true});
 constexpr NumberKey total_power("total_power_W", Range::positive(),
                                 "of all LEDs, instead of `power_W` of each", {.optional = true});
@@ -73,7 +73,7 @@ constexpr NumberKey aim_spread(
     "aim_spread_deg", 0.0, {0.0, 0.5},
     "standard deviation of their axes, about each of two directions across");
 constexpr IntegerKey spread_seed("spread_seed", 1, 0, INT64_MAX,
-                                 "which panel of all that could be built so; 0: none differs");
+                                 "number of the random panel; 0: no deviations");
 }  // namespace key
 
 std::vector<Vec3> grid(int columns, int rows, const Vec2& pitch_m) {
@@ -187,7 +187,7 @@ Placement read_placement(const Settings& settings) {
     centre_m = settings.get(source_key::position);
   }
 
-  // A converging array may have both: a plane of its own and a point that its LEDs look at.
+  // A converging array may have both: a plane, and a point at which its LEDs are aimed.
   std::optional<Vec3> aim_m;
   if (converging) {
     // Said here, because Settings would take the key `aim` for an `aim_m` without its unit.
@@ -312,7 +312,7 @@ std::vector<Key> led_array_keys() {
                          {positions}}),
         source_key::direction.meaning("normal of the panel, lab axes, any length; or `aim_m`"),
         aim.bringing({{}, {focus}}),
-        source_key::aim.meaning("the point that they, or the panel, look at"),
+        source_key::aim.meaning("point at which the LEDs, or the panel, are aimed"),
         source_key::power.usually("from `total_power_W`"), total_power, power_spread, aim_spread,
         spread_seed},
        lamp_keys()});

@@ -19,7 +19,7 @@ constexpr NumberKey order("order", {2.0, 100.0, false, false},
                           "2 is a Gaussian, 100 nearly a disc");
 constexpr NumberKey half_angle("half_angle_deg", beam_half_angle, "from axis to edge");
 constexpr ChoiceKey pillbox_measure("pillbox_measure", {"angle", "solid_angle", "projected"},
-                                    "over what the flux is even");
+                                    "measure in which the flux is uniform");
 constexpr NumberKey exponent("exponent", {0.0, 1e9, false, false}, "m; 1 is Lambert's law");
 constexpr ChoiceKey profile(
     "profile",
@@ -32,10 +32,10 @@ constexpr NumberKey halo_fraction("halo_fraction", {0.0, 1.0, false, true},
                                   "part of the flux in a wider Gaussian; with `halo_fwhm_deg`",
                                   {.usually = "no halo"});
 constexpr NumberKey halo_fwhm("halo_fwhm_deg", beam_width, "of that Gaussian", {.optional = true});
-constexpr NumberKey die_size(
-    "die_size_m", Range::positive(),
-    "edge of the square that emits: warns of a beam that no optics can make", {.optional = true});
-constexpr NumberKey die_diameter("die_diameter_m", Range::positive(), "the same of a round one",
+constexpr NumberKey die_size("die_size_m", Range::positive(),
+                             "edge of a square die; warns of beams that no optics can make",
+                             {.optional = true});
+constexpr NumberKey die_diameter("die_diameter_m", Range::positive(), "of a round die, likewise",
                                  {.optional = true});
 constexpr NumberKey lens_index("lens_index", 1.0, {1.0, 5.0, false, false},
                                "refractive index around the die");
@@ -52,7 +52,7 @@ constexpr ChoiceKey spectrum("spectrum",
                              {{"blackbody", "Planck's law"},
                               {"AM0", "above the atmosphere, ASTM G173-03, 280 to 4000 nm"},
                               {"AM1.5G", "on the ground, ASTM G173-03, 280 to 4000 nm"}},
-                             0, "what it shines with");
+                             0, "spectrum of the light");
 constexpr NumberKey temperature("temperature_K", solar_temperature_K, {100.0, 1e6, false, false},
                                 "of the black body");
 constexpr NumberKey irradiance("irradiance_W_m2", solar_irradiance_W_m2, Range::positive(),

@@ -37,7 +37,7 @@ AngularDistribution read_angular_distribution(const Settings& settings);
 // wavelength_nm, and spectral_fwhm_nm with a default.
 Spectrum read_line_spectrum(const Settings& settings, double default_fwhm_m);
 
-// What the Sun and what stands for it shine with:
+// Spectrum and irradiance of the Sun and of solar simulators:
 //   spectrum = "blackbody"    temperature_K, default 5772
 //   spectrum = "AM0"          as above the atmosphere (ASTM G173-03)
 //   spectrum = "AM1.5G"       as on the ground (the same)

@@ -37,7 +37,7 @@ namespace {
 namespace key {
 enum Shape : size_t { disc, gaussian, buie, table };
 constexpr ChoiceKey sun_shape("sun_shape",
-                              {{"disc", "a pillbox: radiance is even, or darkens to the limb"},
+                              {{"disc", "a disc of uniform or limb-darkened radiance"},
                                {"gaussian", "radiance falls as exp(−θ²/2σ²)"},
                                {"buie",
                                 "a disc of 4.65 mrad with an aureole to 43.6 mrad, by Buie, "

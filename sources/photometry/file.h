@@ -55,7 +55,7 @@ PhotometricFile read_tm33(const std::string& bytes, const std::string& name);
 // Whichever of them the text is.
 PhotometricFile read_photometric(const std::string& bytes, const std::string& name);
 
-// What the readers share: symmetric tables unfolded, and the checks that every table must pass.
+// Shared by the readers: unfolding of symmetric tables, and checks of every table.
 
 // Which planes a file stands for beside those that it stores.
 enum class PlaneSymmetry {
@@ -65,7 +65,7 @@ enum class PlaneSymmetry {
   both,
 };
 
-// What LM-63 says by the range of its planes: 0 to 90, 0 to 180, 90 to 270 or anything else.
+// Symmetry that LM-63 implies by the range of planes: 0 to 90, 0 to 180, 90 to 270, or another.
 PlaneSymmetry implied_symmetry(const std::vector<double>& azimuth_deg);
 
 // Planes as stored: ascending angles in degrees, intensities [plane][polar].

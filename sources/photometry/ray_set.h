@@ -50,7 +50,7 @@ RaySet read_rays(const std::string& bytes, const std::string& name);
 // what read_tm25() gave comes back the same.
 std::string write_tm25(const RaySet& set);
 
-// What the readers share:
+// Checks that the readers share:
 
 // Throws InputError unless ray `index` has finite numbers, a start within largest_extent_m, a
 // direction of length one (to 1e-3) and no negative flux.

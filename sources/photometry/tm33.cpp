@@ -81,7 +81,7 @@ Found find_intensity(const XmlText& text, const pugi::xml_node& root) {
       if (!intensity) continue;
       if (found.emitter) {
         throw InputError(text.at(emitter), "Emitter", "a second one with intensities",
-                         "one: emitters shine by themselves, each from a file of its own");
+                         "one: a separate file for each emitter");
       }
       found = {emitter, intensity, kind.words};
       break;

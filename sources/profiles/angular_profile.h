@@ -32,7 +32,8 @@ AngularProfile gaussian_profile(double fwhm_rad);
 // P(2/order, ln 2 · (2θ/fwhm)^order).
 AngularProfile super_gaussian_profile(double fwhm_rad, double order);
 
-// What a pillbox fills evenly up to its half-angle θ0 ∈ (0, π/2]; u is uniform in (0, 1):
+// Measure in which the flux of a pillbox is uniform up to its half-angle θ0 ∈ (0, π/2]; u is
+// uniform in (0, 1):
 enum class PillboxMeasure {
   angle,        // the disc of angles: θ = θ0 √u, I ∝ θ/sin θ (the pillbox of SolTrace)
   solid_angle,  // the sphere: cos θ = 1 − u(1 − cos θ0), I constant
@@ -45,7 +46,7 @@ AngularProfile cosine_power_profile(double exponent);
 
 // The directions of a lamp: one profile, or a core and a halo about it.
 
-// A halo of stray light: this fraction of all flux, in [0, 1), with a profile of its own.
+// A halo of stray light: this fraction of all flux, in [0, 1), with a separate profile.
 struct Halo {
   AngularProfile profile;
   double fraction = 0.0;

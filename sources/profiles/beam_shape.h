@@ -1,5 +1,4 @@
-// What an angle of a beam means: widths and encircled flux of any emitter, from its intensity
-// alone.
+// Beam angles: widths and encircled flux of any emitter, from its intensity alone.
 #pragma once
 
 #include <span>
@@ -65,7 +64,7 @@ std::string one_line(const std::string& name, const BeamShape& shape);
 // share it, power of one, and its shape.
 Table beam_shape_table(std::span<const Beam> beams);
 
-// The same as lines of text.
+// Beam shapes as lines of text.
 std::vector<std::string> beam_shape_lines(std::span<const Beam> beams);
 
 }  // namespace photorque

@@ -39,7 +39,7 @@ class FluxOutside {
   }
 
   // The rise outside which `flux` ∈ (0, total) lies, to rounding: Newton's method, kept inside the
-  // panel by bisection. newton_root() would bisect once more where steps no longer shrink because
+  // panel by bisection. newton_root() would bisect again where steps no longer shrink because
   // they are rounding, and end a few bits further off.
   double inverse(double flux) const {
     const auto below = std::lower_bound(outside_.rbegin(), outside_.rend(), flux);

@@ -1,4 +1,4 @@
-// The budget, and the paper's figures beside ours.
+// The budget, and the paper's figures compared with ours.
 #include "attitude/studies/budget.h"
 
 #include <gmock/gmock.h>

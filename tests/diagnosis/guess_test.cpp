@@ -301,7 +301,7 @@ TEST_F(Guess, AWheelIsDiagnosedByItsGuess) {
   const std::string toml = guess_experiment({file}, file.parent_path());
   EXPECT_THAT(toml, AllOf(HasSubstr("topology = \"one_axis\""),
                           HasSubstr("rate_deg_s = \"Angular speed (deg/s)\""),
-                          HasSubstr("Columns that nothing is made of: Battery")));
+                          HasSubstr("Unused columns: Battery")));
   const Settings root(std::make_shared<const SettingsNode>(parse_toml(toml, "wheel.toml")));
   const Recording recording = read_recording(file, read_recording_options(root.table("recording")));
   const Diagnosis d = diagnose(read_attitude_model(root), {{"wheel.csv", recording}}, {});

@@ -1,5 +1,5 @@
 """A co-simulation unit as an importer meets it: unpacked with Python's zipfile, its description
-held against the rules of FMI 3.0, its library driven through ctypes by the signatures of the
+compared with the rules of FMI 3.0, its library driven through ctypes by the signatures of the
 standard. What it gives is what `propagate` writes for the same commands, to the bit.
 
     check.py PROGRAM
@@ -61,7 +61,7 @@ initial_tilt_deg = 2
 initial_rate_rad_s = [0.01, -0.005, 0.08]
 initial_time_s = 0.5
 """
-# A plate in sunlight whose corners stand in a file of their own.
+# A plate in sunlight whose corners are in a separate file.
 LIT = """
 [scene]
 file = "models/plate.gltf"
@@ -336,7 +336,7 @@ def check_refusals(folder):
     expect(unit.call("fmi3Terminate") == OK and unit.call("fmi3Reset") == OK, "fmi3Reset")
     unit.initialise()
     expect(unit.get(TRUTH) != first, "back at the start")
-    # The bearing's stop ends the run, and the importer is told.
+    # The bearing's stop ends the run, which the importer receives.
     unit.command([0.05, 0.0, 0.0])
     status, ended, reached = unit.step(0.5, 1.5)
     expect(status == OK and ended and 0.5 < reached < 2.0, f"the stop at 6 deg: {status} {ended} {reached}")

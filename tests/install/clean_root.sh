@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian package on a clean Debian 12 (debootstrap, as root; needs a mirror and some minutes, so
 # that it is no part of CTest) and uses it there.
-#   clean_root.sh PACKAGE.deb [ROOT]     ROOT: a debootstrapped system to copy; without one it is made
+#   clean_root.sh PACKAGE.deb [ROOT]     ROOT: a system by debootstrap to copy; without one it is made
 set -euo pipefail
 package="$(readlink -f "$1")"
 place="$(mktemp -d)"

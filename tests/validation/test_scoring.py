@@ -180,7 +180,7 @@ class Counts(unittest.TestCase):
                   CaseScore("none_01", "none", "second: rest, a minute", "consistent", "unexplained", answered=True)]  # fmt: skip
         text = tables.markdown("Cases", "Two.", scores)
         self.assertIn("| all cases: verdict and names right | 1 of 2 | 50.0 % | 9.5 % to 90.5 % | ≥ 95 % |", text)
-        self.assertIn("| maker second: rest | 1 | 0 | 0 |", text)
+        self.assertIn(("maker second: rest", 1, 0), [row[:3] for row in tables.by_family(scores)[1]])
         self.assertIn("| none_01 | consistent: – | – | unexplained: – |", text)
         for make in tables.TABLES.values():
             columns, rows = make(scores)

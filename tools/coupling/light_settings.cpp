@@ -12,7 +12,7 @@ constexpr ChoiceKey mode("mode",
                          {{"table", "traced once over the attitudes"},
                           {"trace", "traced at every exchange of the run"},
                           {"off", "light and array left out"}},
-                         0, "how light enters the run");
+                         0, "method");
 constexpr NumberKey tolerance("tolerance", 1e-3, {1e-6, 0.1},
                               "error of the table, of torque, force, photocurrents and light on "
                               "the cells, each relative to its largest");
@@ -22,7 +22,7 @@ constexpr IntegerKey rays("rays", 256, int64_t{1} << 40, "per attitude",
 constexpr IntegerKey max_traces("max_traces", 20000, 100, 10'000'000,
                                 "attitudes of a table, after which it is refined no further");
 constexpr NumberKey max_tilt("max_tilt_deg", {0.0, pi, true, false},
-                             "tilt that the first table holds; motion beyond it gets a wider one",
+                             "tilt of the first table; motion beyond it starts a wider one",
                              {.usually = "twice the initial tilt, at least 5"});
 constexpr TextKey cache("cache",
                         "where tables are kept, relative to the experiment; `\"\"`: nowhere",

@@ -163,8 +163,9 @@ double quantile(std::vector<double> sorted, double q) {
 
 Product table_product(const RotationTable& table) {
   Product product;
-  Table errors = Table::of("light_table", "The table of light over attitude, at fresh attitudes",
-                           {"quantity", "unit", "largest", "rms_error", "max_error", "noise"});
+  Table errors =
+      Table::of("light_table", "The table of light over attitude, at independent attitudes",
+                {"quantity", "unit", "largest", "rms_error", "max_error", "noise"});
   const RotationTableError& error = table.error();
   for (size_t g = 0; g < error.scale.size(); ++g) {
     errors.row()
@@ -184,12 +185,12 @@ Product table_product(const RotationTable& table) {
 
 void print_light_table(const Console& console, const RotationTable& table) {
   const RotationTableError& error = table.error();
-  console.line(table.twists() == 1 ? "  the same at every yaw, by trial"
+  console.line(table.twists() == 1 ? "  equal at every yaw, by tracing"
                                    : "  depends on the yaw: " + std::to_string(table.twists()) +
                                          " values over " + show(360.0 / table.fold()) + " deg");
   console.line("  " + std::to_string(table.leaves()) +
                (table.leaves() == 1 ? " patch" : " patches") + " over tilt and heading; at " +
-               std::to_string(error.points) + " fresh attitudes off by at most");
+               std::to_string(error.points) + " independent attitudes differ by at most");
   for (size_t g = 0; g < error.scale.size(); ++g) {
     if (!(error.scale[g] > 0.0)) continue;
     console.line("    " + padded(LightModel::quantities[g], 16) + show(error.max[g]) + " " +
@@ -212,7 +213,7 @@ Product power_product(const CoupledRun& run, const Product& history, size_t max_
   const auto motion = std::ranges::find(history.tables, "time_history", &Table::name);
   if (motion != history.tables.end()) product.plots.push_back(together(power, *motion));
   product.tables.push_back(power);
-  Table energies = Table::of("energy_balance", "Where the energy went", {"what", "energy_J"});
+  Table energies = Table::of("energy_balance", "Energy balance", {"what", "energy_J"});
   for (const EnergyRow& row : energy_rows(run)) {
     energies.row().set("what", row.name).set("energy_J", row.energy_J);
   }
@@ -298,7 +299,7 @@ Product pointing_product(const std::vector<PlatformState>& states) {
                         {"pointing_95_percent_deg", {quantile(off, 0.95), 0.0}},
                         {"pointing_99_7_percent_deg", {quantile(off, 0.997), 0.0}},
                         {"pointing_max_deg", {off.back(), 0.0}}};
-  Table stability = Table::of("pointing_stability", "Turn of the z axis within a window",
+  Table stability = Table::of("pointing_stability", "Rotation of the z axis within a window",
                               {"window_s", "rms_deg", "percent_95_deg", "max_deg"});
   const double step_s = states[1].time_s - states[0].time_s;
   for (const double window_s : {1.0, 10.0, 100.0, 1000.0}) {

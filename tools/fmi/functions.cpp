@@ -217,7 +217,7 @@ PHOTORQUE_EXPORT fmi3Status fmi3GetBoolean(fmi3Instance handle, const fmi3ValueR
 namespace photorque::fmi {
 namespace {
 
-// A state is all that a run follows from: it is run again until there.
+// A state is the list of commands: the run is recomputed to its time.
 struct UnitState {
   Mode mode = Mode::instantiated;
   double now_s = 0.0, start_s = 0.0, stop_s = 0.0;

@@ -8,7 +8,7 @@
 #include "tools/fmi/standard.h"
 #include "tools/fmi/unit.h"
 
-// What an importer may call.
+// Functions that an importer may call.
 #define PHOTORQUE_EXPORT extern "C" __attribute__((visibility("default")))
 
 namespace photorque::fmi {
@@ -52,7 +52,7 @@ fmi3Status guarded(fmi3Instance handle, const char* function, Body body) {
   }
 }
 
-// Starts the run anew and follows `commands`.
+// Restarts the run and follows `commands`.
 inline fmi3Status begin(Instance& instance, std::vector<Vec3> commands) {
   instance.run->begin(instance.start_s, instance.stop_s, std::move(commands));
   instance.tell_words();

@@ -1,4 +1,4 @@
-// What goes into a co-simulation unit and what comes out: names, units, places.
+// Inputs and outputs of a co-simulation unit: names, units, positions.
 #pragma once
 
 #include <array>
@@ -49,7 +49,7 @@ class UnitOutputs {
 
 // The platform as a co-simulation unit: a run of `propagate` that waits at every tick.
 
-// What an experiment says of itself as a unit.
+// The experiment described as a unit.
 struct UnitDescription {
   double rate_Hz = 0.0;  // ticks: [serve] rate_Hz
   double max_torque_N_m = 0.0;
@@ -59,8 +59,8 @@ struct UnitDescription {
 // InputError for what is wrong with the experiment's platform.
 UnitDescription describe_unit(const RunOptions& options);
 
-// One run. The propagation goes on in a thread of its own, which rests whenever a command is
-// awaited, so it is the same computation as that of `serve` in lockstep and of `propagate`: what a
+// One run. The propagation continues in a separate thread, which waits for every command, so it is
+// the same computation as that of `serve` in lockstep and of `propagate`: what a
 // command does depends on nothing but the ticks.
 class CoSimulation {
  public:
@@ -79,11 +79,11 @@ class CoSimulation {
   const UnitOutputs& outputs() const { return outputs_; }
   // Of the last tick; of the run's end where it came earlier (the bearing's stop).
   double tick_s() const { return tick_s_; }
-  // The platform has stopped by itself.
+  // The platform has reached its stop.
   bool ended() const { return ended_; }
-  // What was commanded at every tick so far.
+  // Commands of all ticks so far.
   const std::vector<Vec3>& commands() const { return commands_; }
-  // What the run has said since it was asked last, a line each.
+  // Messages of the run since the last call, a line each.
   std::vector<std::string> take_words();
 
  private:

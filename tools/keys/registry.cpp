@@ -36,14 +36,14 @@ Key effect_table() {
   std::vector<Key::Choice> kinds = light_effects();
   for (Key::Choice& of_module : module_effects()) add_choice(kinds, std::move(of_module));
   const auto said = [](const char* name, unsigned forms) {
-    return Key::other(name, forms, "what a diagnosis says beside the numbers that act").optional();
+    return Key::other(name, forms, "further result of a diagnosis, without effect here").optional();
   };
   return Key::tables(
       "effect",
       {Key::choice("kind", std::move(kinds), "the effect").range_that_varies(),
        said("u_m", Key::a_number | Key::an_array), said("v_m", Key::a_number | Key::an_array),
        said("darkest", Key::a_number), said("count_between", Key::a_text)},
-      "what a diagnosis found missing: the nominal model has it");
+      "an effect on light or power, for example of a diagnosis");
 }
 
 // Every number of the table, and of those in it, may have an error (scenes/experiment/uncertain.h).

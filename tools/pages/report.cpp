@@ -223,12 +223,11 @@ std::string where_section(const Where& where) {
     facts += tag("li", "In the band from " + readable_number(where.band_Hz->from, 2) + " to " +
                            readable_number(where.band_Hz->to, 2) + " Hz.");
   }
-  std::string section = tag("h2", "Where the recordings differ from the nominal model");
+  std::string section = tag("h2", "Differences between recordings and nominal model");
   if (!facts.empty()) section += tag("ul", facts);
   if (!where.channels.empty()) section += bar_chart_html(misfit_chart(where));
   if (!where.depends_on.empty()) {
-    section +=
-        tag("h3", "What the difference depends on") + bar_chart_html(dependence_chart(where));
+    section += tag("h3", "Dependence of the difference") + bar_chart_html(dependence_chart(where));
   }
   return tag("section", section);
 }
@@ -290,8 +289,9 @@ std::string sweep_figures(const RecordingSeries& recording, bool found) {
 
 std::string priors(const Diagnosis& d) {
   if (d.priors_refined.empty()) return "";
-  return tag("section", tag("h2", "What the nominal model left uncertain, after these recordings") +
-                            parameter_table(d.priors_refined, "priors_refined", "from zero"));
+  return tag("section",
+             tag("h2", "Uncertain numbers of the nominal model, after these recordings") +
+                 parameter_table(d.priors_refined, "priors_refined", "from zero"));
 }
 
 // The predictive check: held-out data against the prediction with its uncertainty.

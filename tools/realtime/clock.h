@@ -12,7 +12,7 @@ namespace photorque {
 // CLOCK_MONOTONIC: it neither jumps nor is it set.
 int64_t monotonic_ns();
 
-// What happens when a tick is later than its deadline.
+// Action after a tick that is later than its deadline.
 enum class OnMiss {
   catch_up,  // the following ticks come without a pause until the clock is met again
   slip,      // the clock of the run stands still for as long: all later ticks are due later

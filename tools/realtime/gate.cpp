@@ -24,7 +24,7 @@ uint64_t Gate::refused_in_all() const {
   return std::accumulate(refused_.begin(), refused_.end(), uint64_t{0});
 }
 
-// What the packet says of itself; `packet` is filled as far as it goes.
+// The first fault of the packet; `packet` is filled as far as it is valid.
 std::optional<Refusal> Gate::fault_of(std::span<const std::byte> bytes,
                                       ClientPacket& packet) const {
   if (bytes.size() < sizeof(photorque_header) || bytes.size() > sizeof packet.command) {
@@ -60,7 +60,7 @@ std::optional<Refusal> Gate::stands_against(const ClientPacket& packet, uint64_t
     const bool is_free = !client_ || is_silent(now_ns);
     return is_hello && is_free ? std::optional<Refusal>{} : Refusal::stranger;
   }
-  // A program that began anew at the same address counts from the start.
+  // A client that restarted at the same address counts from the start.
   if (header.sequence <= last_sequence_ && !(is_hello && header.run == 0)) return Refusal::old;
   return {};
 }

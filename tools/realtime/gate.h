@@ -1,4 +1,4 @@
-// What comes from outside, looked at before anything is done with it.
+// Checks of received packets before their use.
 #pragma once
 
 #include <array>
@@ -14,36 +14,36 @@ namespace photorque {
 // Why a packet is refused; names in refusal_names.
 enum class Refusal {
   size,        // not that of its kind
-  magic,       // something else altogether
+  magic,       // not a packet of this protocol
   version,     // of another layout
-  kind,        // nothing that clients send
+  kind,        // not one that clients send
   checksum,    // damaged on its way
   not_finite,  // NaN or infinity
   too_large,   // beyond max_torque_N_m
   run,         // for another run
-  stranger,    // from somebody who is not the client
-  old,         // sent before one that came already, or once more
+  stranger,    // from another sender than the client
+  old,         // sent before an admitted one, or repeated
   count
 };
 inline constexpr std::array<const char*, static_cast<size_t>(Refusal::count)> refusal_names = {
     "size",       "magic",     "version", "kind",     "checksum",
     "not_finite", "too_large", "run",     "stranger", "old"};
 
-// A packet that says what it is: its kind, and what it commands.
+// An admitted packet: its kind and command.
 struct ClientPacket {
   bool begins_session = false;  // a hello of another client, or of one that commanded before
   photorque_packet_kind kind = PHOTORQUE_HELLO;
   photorque_command_packet command{};  // a hello and a goodbye have its header alone
 };
 
-// One client at a time: whoever said hello first, until it says goodbye or has been silent for
-// `silence_ns`. Sequence numbers count from the hello of a session.
+// One client at a time: the first to send a hello, until its goodbye or a silence of `silence_ns`.
+// Sequence numbers count from the hello of a session.
 class Gate {
  public:
   Gate(uint64_t run, double max_torque_N_m, int64_t silence_ns);
 
-  // `bytes` as they came from `sender` (a number for its address). Never throws; nothing of a
-  // refused packet is used, and nobody is told.
+  // `bytes` as they came from `sender` (a number for its address). Never throws; a
+  // refused packet has no effect but its count.
   std::optional<ClientPacket> admit(std::span<const std::byte> bytes, uint64_t sender,
                                     int64_t now_ns);
 

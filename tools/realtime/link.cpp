@@ -18,8 +18,8 @@ constexpr ChoiceKey jitter_law("jitter",
                                {{"exponential", "of this mean"},
                                 {"uniform", "up to this"},
                                 {"gaussian", "the absolute value of one of this scale"}},
-                               0, "how the delay is spread");
-constexpr NumberKey loss("loss", 0.0, Range::fraction(), "fraction of packets, each by itself");
+                               0, "distribution of the delay");
+constexpr NumberKey loss("loss", 0.0, Range::fraction(), "fraction of packets, independently");
 constexpr NumberKey burst_begin(
     "burst_begin", 0.0, Range::fraction(),
     "Gilbert and Elliott's two states: probability per packet that a burst begins");

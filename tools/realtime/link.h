@@ -37,7 +37,7 @@ struct LinkSettings {
 LinkSettings read_link(const Settings& settings, const std::filesystem::path& folder);
 std::vector<Key> link_keys();
 
-// What happens to one packet after the other.
+// Fates of successive packets on a link.
 class LinkFate {
  public:
   LinkFate(LinkSettings settings, uint64_t seed, uint64_t stream);

@@ -20,7 +20,7 @@ constexpr ServeSettings usual;
 constexpr ChoiceKey mode("mode",
                          {{"paced", "by the clock"},
                           {"lockstep", "every tick waits for the client's answer"}},
-                         0, "what the ticks follow");
+                         0, "clock of the ticks");
 constexpr NumberKey rate("rate_Hz", usual.rate_Hz, {0.1, 1e5},
                          "ticks; also the rows of `recording.csv`");
 constexpr TextKey address("address", usual.address, "where UDP listens, IPv4");
@@ -45,10 +45,10 @@ constexpr ChoiceKey on_miss("on_miss",
                             {{"catch_up", "the next ticks follow at once"},
                              {"slip", "the clock is set back"},
                              {"stop", "the run ends"}},
-                            0, "what follows a missed tick");
+                            0, "after a missed tick");
 constexpr NumberKey spin("spin_s", usual.spin_s, {0.0, 1.0},
-                         "before a tick it looks again and again instead of sleeping; costs "
-                         "processor time, saves the time of waking up");
+                         "time before a tick in which the run polls instead of sleeping; costs "
+                         "processor time, avoids the delay of waking up");
 constexpr IntegerKey realtime_priority(
     "realtime_priority", 0, 0, 99,
     "above 0: SCHED_FIFO and locked memory, where the system permits it");
@@ -92,10 +92,10 @@ enum LinkStream : uint64_t { stream_to_client = 0x70, stream_from_client };
 
 constexpr int64_t never_ns = std::numeric_limits<int64_t>::max();
 
-// What a paced tick reads at most, so that a flood of packets cannot hold it up: about as many as
-// the system keeps for a socket by default. The rest stays for the next tick.
+// Packets that a paced tick reads at most, so that a flood of packets cannot hold it up: about as
+// many as the system keeps for a socket by default. The rest stays for the next tick.
 constexpr size_t packets_a_tick = 256;
-// Events that are told; beyond, they are counted.
+// Events that are printed; further ones are counted.
 constexpr size_t most_events = 1000;
 
 int64_t in_ns(double seconds) {
@@ -108,7 +108,7 @@ void sleep_until(int64_t until_ns) {
   ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
 }
 
-// Another for every run, so that packets for one that is over are told apart. Not zero.
+// Differs between runs, so that packets for an earlier run are recognised. Not zero.
 uint64_t run_number() {
   return hash_words(static_cast<uint64_t>(monotonic_ns()), static_cast<uint64_t>(::getpid())) | 1;
 }
@@ -127,7 +127,7 @@ Session::Session(const ServeSettings& settings, UdpSocket socket, uint64_t seed,
       to_client_(settings.to_client, seed, stream_to_client),
       from_client_(settings.from_client, seed, stream_from_client),
       report_(std::move(report)),
-      events_(Table::of("session_events", "Clients that came, fell silent or left",
+      events_(Table::of("session_events", "Clients: arrivals, silences, departures",
                         {"time_s", "event"})) {}
 
 // Seconds since the start: by the clock, or those of the tick.

@@ -14,7 +14,7 @@
 
 namespace photorque {
 
-// What an experiment says about a run in real time: the table [serve].
+// Settings of a run in real time: the table [serve].
 
 struct ServeSettings {
   enum class Mode {
@@ -61,10 +61,10 @@ class Session {
   // does not come or answer within client_timeout_s, or OnMiss::stop ends the run.
   ZeroOrderHold tick(const LiveRow& row);
 
-  // Tells the client that the run is over.
+  // Sends the client the end of the run.
   void finish();
 
-  // What acted, for `propagate` to do the same again.
+  // Commands that acted, for `propagate` to repeat the run.
   const Schedule& commands() const { return acted_; }
   double last_tick_s() const { return start_s_ + tick_s_; }
   // Deadlines, packets and what was refused.

@@ -12,7 +12,7 @@
 
 namespace photorque {
 
-// Bytes as they came; longer packets are cut, which their size then tells.
+// Bytes as received; longer packets are cut, which their size shows.
 struct ReceivedBytes {
   std::array<std::byte, 128> bytes{};
   size_t size = 0;
@@ -30,7 +30,7 @@ class UdpSocket {
   void send(const photorque_measurement_packet& packet, uint64_t client) const;
   // The next packet that is there or comes until `until_ns` (CLOCK_MONOTONIC).
   std::optional<ReceivedBytes> receive(int64_t until_ns) const;
-  // For people: "127.0.0.1:4160".
+  // As text: "127.0.0.1:4160".
   const std::string& where() const { return where_; }
   static std::string text_of(uint64_t client);
 

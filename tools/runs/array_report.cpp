@@ -98,8 +98,8 @@ Table known_cell_table(const Console& console, const ArrayDesign& design, const 
 Table sensitivity_table(const Console& console, const ArrayDesign& design,
                         const ArrayResult& result) {
   Table table =
-      Table::of("sensitivities", "What changes the power", {"change", "power_W", "relative"});
-  console.line("  what changes the power:");
+      Table::of("sensitivities", "Sensitivity of the power", {"change", "power_W", "relative"});
+  console.line("  sensitivity of the power:");
   for (const ArraySensitivity& s : sensitivities(design, result)) {
     console.line("    " + padded(s.change, 34) + show_percent(s.relative));
     table.row().set("change", s.change).set("power_W", s.power_W).set("relative", s.relative);
@@ -215,7 +215,7 @@ void print_losses(const Console& console, const std::vector<LossStage>& stages) 
 }
 
 void print_uniformity(const Console& console, const Table& table) {
-  console.heading("How even the light is");
+  console.heading("Uniformity of the light");
   const auto& cells = table.column("cells").texts;
   for (size_t i = 0; i < cells.size(); ++i) {
     console.line("  " + padded(cells[i], 12) + "mean " + show(table.column("mean_W_m2").values[i]) +

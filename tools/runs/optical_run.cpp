@@ -355,7 +355,8 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
   row("escaped", power_balance.escaped_W);
   row("truncated", power_balance.truncated_W);
   if (misses_everything(power_balance)) {
-    console.line("  note: no light meets the scene: where do the sources stand and look?");
+    console.line(
+        "  note: no light meets the scene: check the position and direction of the sources");
   }
   for (size_t i = 0; i < run.experiment().receivers.size(); ++i) {
     const NamedReceiver& receiver = run.experiment().receivers[i];
@@ -363,7 +364,7 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
     const FluxMap map = receiver.flux_map->flux_map(result.sums[i]);
     row("on " + receiver.name, map.incident.power_W);
     if (map.incident.power_W.value > (1.0 + 1e-6) * power_balance.emitted_W) {
-      console.line("  note: more than is emitted: light that it reflects comes back to it");
+      console.line("  note: more than is emitted: reflected light returns to it");
     }
   }
   const WrenchEstimate body =

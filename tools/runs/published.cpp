@@ -18,7 +18,7 @@ constexpr NumberKey rounded_to(
     "`rounded_to`))²: for `optimise`, at most 1 for each figure that agrees",
     {.optional = true});
 constexpr TextKey source("source", "who printed it");
-constexpr TextKey why("why", "", "ours differs");
+constexpr TextKey why("why", "", "reason of the difference");
 constexpr TablesKey published("published", "a published figure, compared at the same tilt");
 }  // namespace published_key
 
@@ -44,14 +44,15 @@ std::vector<PublishedFigure> read_published(const std::vector<Settings>& tables)
 Product compare_published(const std::vector<PublishedFigure>& figures, double tilt_rad,
                           const Product& product, const Console& console) {
   Table table = Table::of(
-      "published", "Published figures beside ours",
+      "published", "Published figures compared with ours",
       {"quantity", "source", "why", "published", "rounded_to", "ours", "standard_error", "ratio"});
   std::optional<double> misfit;
   for (const PublishedFigure& figure : figures) {
     if (std::abs(figure.tilt_rad - tilt_rad) > 1e-6) continue;
     for (const Quantity& quantity : product.quantities) {
       if (quantity.name != figure.quantity) continue;
-      if (table.column("quantity").texts.empty()) console.heading("Published figures beside ours");
+      if (table.column("quantity").texts.empty())
+        console.heading("Published figures compared with ours");
       const double ours = quantity.estimate.value;
       table.row()
           .set("quantity", figure.quantity)

@@ -71,7 +71,7 @@ double radiative_limit(double wavelength_m, double irradiance_W_m2, double gap_J
 }
 
 Table paper_supply_table(const SupplyTrade& trade) {
-  Table table = Table::of("paper_supply", "Section III.B of the paper beside ours",
+  Table table = Table::of("paper_supply", "Section III.B of the paper compared with ours",
                           {"quantity", "why", "published", "ours"});
   const auto row = [&](const char* quantity, double published, double ours, const char* why) {
     table.row()
@@ -83,7 +83,7 @@ Table paper_supply_table(const SupplyTrade& trade) {
   constexpr double paper_load_W = 25.0, day_h = 24.0;
   const double energy_Wh = paper_load_W * day_h;
   row("energy_25_W_24_h_Wh", 360.0, energy_Wh, "25 W x 24 h is 600 Wh; 360 Wh is 15 W x 24 h");
-  row("load_of_360_Wh_in_24_h_W", paper_load_W, 360.0 / day_h, "the same the other way round");
+  row("load_of_360_Wh_in_24_h_W", paper_load_W, 360.0 / day_h, "360 Wh in 24 h is 15 W");
   row("battery_lightest_kg", 2.5, energy_Wh / 250.0,
       "600 Wh at 250 Wh/kg, the best packs; 2.5 kg would be 240 Wh/kg, of 360 Wh 144 Wh/kg");
   row("battery_heaviest_kg", 6.0, energy_Wh / 100.0,
@@ -96,7 +96,7 @@ Table paper_supply_table(const SupplyTrade& trade) {
       "almost unitary is right near the aperture only: at a wavelength of 12 cm a beam from 0.4 m "
       "spreads over more than the array within 1 m");
   row("transmission_5_8_GHz", 1.0, figure(high, "transmission"),
-      "a wavelength of 5 cm stays together");
+      "at a wavelength of 5 cm the beam hardly spreads");
   row("mains_to_load_2_45_GHz", none, efficiency(low, trade.task),
       "with generator, beam and rectifier; the paper names the rectifier alone");
   row("mains_to_load_5_8_GHz", none, efficiency(high, trade.task), "likewise");
@@ -106,7 +106,7 @@ Table paper_supply_table(const SupplyTrade& trade) {
   row("induction_link_tilted", none, figure(coils, "best_link_efficiency_tilted"),
       "at the largest tilt: coils about the centre of rotation stay coupled, the loss is small");
   row("silicon_in_sunlight_usual", 0.15, in_sunlight("silicon_back_surface_field", 37e-3),
-      "the plainest of the program's named cells, bare; modules on the market lose a sixth of it");
+      "the simplest named cell, without a module; modules on the market give a sixth less");
   row("silicon_in_sunlight_best", 0.25, in_sunlight("silicon_heterojunction", 41e-3),
       "the best of them, at 41 mA/cm2 and 0.750 V");
   constexpr double gallium_arsenide_J = 1.424 * elementary_charge_C;

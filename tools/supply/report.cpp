@@ -11,7 +11,7 @@ namespace {
 
 Table ways_table(const SupplyTrade& trade) {
   Table table =
-      Table::of("supply", "Ways to supply the load",
+      Table::of("supply", "Power supplies",
                 {"way", "mass_kg", "mass_error_kg", "source_W", "source_error_W",
                  "delivered_level_W", "delivered_tilted_W", "delivered_tilted_error_W",
                  "torque_N_m", "torque_error_N_m", "torque_N_m_per_W", "torque_error_N_m_per_W",
@@ -39,7 +39,7 @@ Table ways_table(const SupplyTrade& trade) {
 }
 
 Table tilt_table(const SupplyTrade& trade) {
-  Table table = Table::of("supply_by_tilt", "Every way over the tilt",
+  Table table = Table::of("supply_by_tilt", "Every supply over the tilt",
                           {"way", "tilt_deg", "delivered_W", "delivered_error_W", "torque_N_m",
                            "torque_error_N_m", "alternating_N_m"});
   for (const SupplyOption& option : trade.options) {
@@ -60,7 +60,7 @@ Table tilt_table(const SupplyTrade& trade) {
 
 Table figures_of_ways(const SupplyTrade& trade) {
   Table table =
-      Table::of("supply_figures", "Figures of single ways", {"way", "figure", "value", "error"});
+      Table::of("supply_figures", "Figures of each supply", {"way", "figure", "value", "error"});
   for (const SupplyOption& option : trade.options) {
     for (const auto& [name, estimate] : option.figures) {
       table.row()
@@ -126,7 +126,7 @@ Plot charge_plot(const SupplyTrade& trade) {
   Plot plot;
   plot.name = "battery_torque_by_charge";
   plot.title = "Torque of the battery's lithium by the charge drawn, at zero tilt";
-  plot.x_label = "charge drawn [% of what the task draws]";
+  plot.x_label = "charge drawn [% of the total]";
   plot.y_label = "torque [N m]";
   Plot::Curve curve;
   for (const double fraction : trade.charge_fraction) curve.x.push_back(100.0 * fraction);
@@ -173,7 +173,7 @@ void print_supply(const Console& console, const Product& product, const SupplyTr
   console.line(show(task.load_W) + " W for " + show(task.duration_s / 3600.0) + " h, tilts up to " +
                show(task.tilt_rad.back() / degree_rad) + " deg");
   console.heading(
-      "Ways; torques are the largest over the tilts, angles what they turn in that time");
+      "Supplies; torques are the largest over the tilts, angles the rotation in that time");
   print_table(console, table_called(product, "supply"),
               {{"way", "way"},
                {"aboard [kg]", "mass_kg"},
@@ -193,7 +193,7 @@ void print_supply(const Console& console, const Product& product, const SupplyTr
       console.line("  " + option.name + ": " + remark);
     }
   }
-  console.heading("Section III.B of the paper beside ours");
+  console.heading("Section III.B of the paper compared with ours");
   const Table& paper = table_called(product, "paper_supply");
   print_table(console, paper, {{"quantity", "quantity"}, {"paper", "published"}, {"ours", "ours"}});
   console.heading("Why");

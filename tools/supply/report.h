@@ -1,4 +1,4 @@
-// The trade as tables and pictures, and the paper's figures beside ours.
+// The trade as tables and pictures, and the paper's figures compared with ours.
 #pragma once
 
 #include "core/product.h"

@@ -20,8 +20,8 @@ constexpr NumberKey tilt_max("tilt_max_deg", {0.0, 80.0 * degree_rad, true, fals
                              "the largest tilt", {.usually = "the platform's stop, else 30"});
 constexpr IntegerKey tilts("tilts", 7, 2, 181, "from zero to it");
 constexpr TableKey supply("supply_trade",
-                          "the ways to feed a platform side by side: battery, cable and induction "
-                          "are compared always, with the defaults where they have no table");
+                          "comparison of power supplies; battery, cable and induction are always "
+                          "included, with defaults if they have no table");
 }  // namespace supply_key
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace photorque {
 
 struct Design {
-  std::vector<Figure> figures;  // means and worsts over the runs; none where one failed
+  std::vector<Figure> figures;  // means and worst values over the runs; none where one failed
   std::string error = {};       // of the first run that failed, with its changes
   bool feasible = true;         // succeeded, and every run's mean keeps to the constraints
 };

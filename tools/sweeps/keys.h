@@ -13,7 +13,7 @@ inline constexpr auto most_designs = static_cast<int64_t>(max_designs);
 
 inline constexpr TextKey key(
     "key", "as in `--set`, any outside `[sweep]`: `source[0].power_W`, `source[0].position_m[2]`");
-inline constexpr TextKey name("name", "", "what pictures call it: `\"standoff\"`");
+inline constexpr TextKey name("name", "", "name in pictures: `\"standoff\"`");
 inline constexpr OtherKey values("values", Key::an_array, "numbers, texts, arrays; *or*",
                                  {.optional = true});
 inline constexpr NumbersKey weights("weights", Range::not_negative(), "of the values",
@@ -41,8 +41,7 @@ inline constexpr NumberKey half_width("half_width", Range::positive(),
 inline constexpr FlagKey seed("seed", false,
                               "the key takes the copy's number (1, 2, …): `source[0].spread_seed` "
                               "of LEDs that differ by `power_spread` and `aim_spread_deg`");
-inline constexpr FlagKey relative("relative", false,
-                                  "in parts of the value, not in the key's unit");
+inline constexpr FlagKey relative("relative", false, "relative to the value");
 }  // namespace axis_key
 
 namespace constraint_key {
@@ -53,25 +52,24 @@ inline constexpr NumberKey at_most("at_most", {}, "likewise", {.usually = "none"
 
 namespace sweep_key {
 inline constexpr TextKey verb("verb", "power",
-                              "what every design runs: `trace`, `power`, `torque-map`, `budget`, "
+                              "command of every design: `trace`, `power`, `torque-map`, `budget`, "
                               "`balance`, `propagate`, `fit-cell`");
 inline constexpr TextsKey figures(
     "figures", "names in its `summary.json`: columns of `sweep.csv`, plotted too",
     {.usually = "all"});
 inline constexpr OtherKey maximise(
     "maximise", Key::a_text | Key::an_array,
-    "a figure, or several; `\"\\|NAME\\|\"` is its absolute value: what the best design "
-    "is best in (the first counts); several: the Pareto front",
+    "a figure, or several; `\"\\|NAME\\|\"` is its absolute value: the objectives; the first ranks "
+    "the designs, several give the Pareto front",
     {.optional = true});
 inline constexpr OtherKey minimise("minimise", Key::a_text | Key::an_array, "likewise",
                                    {.optional = true});
 inline constexpr IntegerKey designs(
     "designs", 2, axis_key::most_designs,
-    "a random plan instead: so many points of an Owen-scrambled Sobol sequence",
-    {.usually = "a grid"});
+    "number of points of a random plan (Owen-scrambled Sobol sequence)", {.usually = "a grid"});
 inline constexpr IntegerKey seed("seed", 1, 0, INT64_MAX,
                                  "of a random plan (`--seed` is that of the light)");
-inline constexpr TablesKey axis("axis", "at least one; the last runs fastest");
+inline constexpr TablesKey axis("axis", "at least one; the last varies fastest");
 inline constexpr TablesKey mean_over(
     "mean_over", "takes several values within each design; figures are their mean");
 inline constexpr TablesKey worst_over(
@@ -86,11 +84,11 @@ inline constexpr IntegerKey built_copies("built_copies", 100, 2, 100000,
                                          "copies of a design, each with its own draws; the n-th "
                                          "copy has the same draws in every design");
 inline constexpr NumberKey built_fraction("built_fraction", {0.5, 1.0, false, true},
-                                          "of the copies are to be at least so good",
+                                          "fraction of the copies that reach the stated value",
                                           {.optional = true});
 inline constexpr ChoiceKey built_of(
     "built_of",
-    {{"best", "copies of the best design and of the experiment as it stands"},
+    {{"best", "copies of the best and the nominal design"},
      {"every",
       "of every design, which are then judged by what the fraction reaches (column `p95_FIGURE`)"}},
     0, "what is built");
@@ -100,7 +98,8 @@ inline constexpr IntegerKey global("global", 100, 0, 100000,
 inline constexpr IntegerKey local("local", 100, 0, 100000, "and from the best of them");
 inline constexpr NumberKey precision(
     "precision", {1e-8, 0.1},
-    "`optimise`: ends when steps are so small, in parts of each axis' range", {.optional = true});
+    "`optimise`: step at which the search ends, relative to the range of each axis",
+    {.optional = true});
 inline constexpr TableKey sweep("sweep", "one command over many designs");
 }  // namespace sweep_key
 

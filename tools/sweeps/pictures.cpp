@@ -244,8 +244,8 @@ void add_built(Product& product, const SweepPlan& plan, const SweepResult& resul
     const Objective& objective = plan.objectives[k];
     const AxisLabel x = label_of_figure(result.built_best[k].column);
     Plot plot = empty_plot("built_" + result.built_best[k].column,
-                           "What share of built copies is at least so good", x.text(),
-                           "copies at least so good [%]");
+                           "Fraction of built copies that reach a value", x.text(),
+                           "copies that reach the value [%]");
     if (k < result.built_nominal.size()) {
       plot.curves.push_back(reached_curve("the experiment as it stands", result.built_nominal[k],
                                           objective.maximise, Plot::Colour::green));

@@ -71,10 +71,7 @@ std::string shown(Estimate value) {
 // mean and spread; and copy by copy.
 void append_built(Product& product, const SweepPlan& plan, const SweepResult& result) {
   if (result.built_best.empty()) return;
-  Table table = Table::of("built",
-                          "Copies of the best design and of the experiment as it stands, "
-                          "as built",
-                          {"copy"});
+  Table table = Table::of("built", "Built copies of the best and the nominal design", {"copy"});
   for (size_t i = 0; i < plan.built.copies; ++i) {
     table.row().set("copy", static_cast<double>(i + 1));
   }

@@ -359,7 +359,7 @@ void run(const CommandOptions& options, const Program& program) {
 }  // namespace
 
 Verb kind() {
-  return {"check", "What is wrong with an experiment, and what every command would do with it",
+  return {"check", "Errors of an experiment, and the commands that can use it",
           command_with(add_options, run)};
 }
 

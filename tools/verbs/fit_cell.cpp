@@ -115,7 +115,7 @@ void check_cells(const Settings& s, const FitTask& task) {
                 "cells that give 0.1 to 5 V each of these " + readable_number(open_V, 3) + " V");
 }
 
-// Reads the curves too, relative to `folder`. InputError for what is missing or contradicts itself,
+// Reads the curves too, relative to `folder`. InputError for missing or contradictory keys,
 // and for cells in series that no cell's voltage goes with.
 FitTask read_fit_task(const Settings& root, const fs::path& folder) {
   const Settings s = root.get(fit_key::fit);
@@ -163,7 +163,7 @@ FitTask read_fit_task(const Settings& root, const fs::path& folder) {
     }
     if (task.substrings > 0 && s.has(fit_key::correlation_points)) {
       throw s.error(fit_key::correlation_points, "a correlation for a partly shaded string",
-                    "none: there every point has an error of its own");
+                    "none: there every point has a separate error");
     }
     if (!task.conditions.empty() && (task.substrings > 0 || s.has(fit_key::correlation_points) ||
                                      s.get(fit_key::even_voltage_steps))) {
@@ -183,7 +183,7 @@ FitTask read_fit_task(const Settings& root, const fs::path& folder) {
   return task;
 }
 
-// What no junction of silicon or any other material is: 0.5 is sharper than its thermal voltage
+// Ideality below that of any junction: 0.5 is sharper than its thermal voltage
 // allows, 4 is a leak.
 void check_ideality(const SingleDiode& d, const FitTask& task) {
   const double ideality = d.scale_V.value / task.thermal_V();

@@ -9,10 +9,10 @@
 
 namespace photorque {
 
-// What [fit] of the experiment asks for.
+// Fits the cell of [fit].
 RunResult run_fit_cell(const RunOptions& options, const Console& console);
 
-// The same without fitting: all input is read, and this is what would be done.
+// Reads all input without fitting, and describes the fit.
 std::string what_fit_asks(const RunOptions& options);
 
 }  // namespace photorque

@@ -126,7 +126,7 @@ void print_cell(const Console& console, const SingleDiode& d, const FitTask& tas
   console.line("  reference_area_m2 =   # to be filled in: the area of one cell");
 }
 
-// What the fitted curve leaves of each measured point, between the curve's own points straight.
+// Residual of each measured point from the fitted curve, between the curve's own points straight.
 Plot::Curve residuals_of(const Plot::Curve& measured, const Plot::Curve& fitted) {
   Plot::Curve left{"", measured.x, {}, {}, true};
   for (size_t i = 0; i < measured.x.size(); ++i) {

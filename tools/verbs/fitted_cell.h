@@ -1,4 +1,4 @@
-// What `fit-cell` was asked for; the fitted cell in words, as a table and as a picture.
+// Input of `fit-cell`; the fitted cell as text, table and picture.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +19,7 @@ namespace photorque {
 struct FitTask {
   std::vector<std::filesystem::path> files;
   std::vector<IvSweep> sweeps;
-  // The same with light and temperature, where they are not repeats.
+  // Curves with light and temperature, where they are not repeats.
   std::vector<CurveAt> conditions;
   std::vector<std::string> names;  // of the sweeps
   std::vector<std::string> notes;  // what was left out of them
@@ -37,8 +37,8 @@ struct FitTask {
   double thermal_V() const;
 };
 
-// A figure of a fit. A limit (95 %, one-sided) is what is left of a number that the data do not
-// determine; its name says so: "shunt_above_ohm".
+// A figure of a fit. A limit (95 %, one-sided) replaces a number that the data do not determine;
+// its name says so: "shunt_above_ohm".
 struct CellRow {
   enum class Is { value, lower_limit, upper_limit };
   std::string name;

@@ -186,7 +186,7 @@ void run(const CommandOptions& options, const Program&) {
 
 Verb kind() {
   return {"render",
-          "A picture of the scene with the irradiance painted on its receivers",
+          "A picture of the scene with the irradiance on its receivers",
           command_with(add_options, run),
           {"scene", "material", "source", "receiver", "joint", "attitude", "trace", "camera"},
           "[scene] and [[source]]"};

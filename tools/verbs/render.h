@@ -1,4 +1,4 @@
-// A picture of the scene with the irradiance painted on its receivers.
+// A picture of the scene with the irradiance on its receivers.
 #pragma once
 
 #include <filesystem>

@@ -54,7 +54,7 @@ void add_options(Command& command, Options& options) {
   command.add("--key", options.key, "Explain one key instead: source.power_W");
   command
       .add("--document", options.documents,
-           "Instead renew the tables of keys in this Markdown file, between its marks")
+           "Update the tables of keys in this Markdown file instead")
       .is_one_each = true;
 }
 

@@ -185,7 +185,7 @@ void run(const CommandOptions& options, const Program& program) {
 }  // namespace
 
 Verb kind() {
-  return {"selftest", "Whether this machine computes what it should: closed forms, in seconds",
+  return {"selftest", "Comparison with closed forms on this machine, in seconds",
           command_with(add_options, run)};
 }
 

@@ -92,7 +92,7 @@ void run(const CommandOptions& options, const Program&) {
 
 Verb kind() {
   return {"supply",
-          "Battery, cable, microwaves, coils or light: what each delivers, weighs and disturbs",
+          "Battery, cable, microwaves, coils and light compared: power, mass, disturbance",
           command_with(add_options, run),
           {"platform", "environment", "disturbance", "sensors", "supply_trade"},
           "[supply_trade]"};

@@ -15,11 +15,9 @@ struct Options : CommandOptions {
 void add_options(Command& command, Options& options) {
   command.add_traced_experiment(options, Command::Folder::shared);
   command.add("--shard", options.shard,
-              "K/N: only every Nth design, from the Kth; the run that finds all "
-              "designs done writes the table");
+              "K/N: compute every Nth design from the Kth; the last shard to end writes the table");
   command.add("--collect", options.collect,
-              "Run nothing: the table of what all shards have done, also of those that "
-              "did not come to an end");
+              "Only write the table of the existing results, also of incomplete shards");
 }
 
 struct Shard {

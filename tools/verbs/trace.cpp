@@ -172,7 +172,7 @@ void run(const Options& options, const Program&) {
 
 Verb kind() {
   return {"trace",
-          "Irradiance on every receiver, where the power went, radiation force and torque",
+          "Irradiance on every receiver, power balance, radiation force and torque",
           command_with(add_options, run),
           {"scene", "material", "source", "receiver", "joint", "attitude", "trace", "published",
            "effect"},

@@ -76,11 +76,10 @@ std::filesystem::path CommandOptions::out_folder() const {
 void Command::add_common(CommandOptions& common) {
   add("--threads", common.threads, "Threads to use (default: all)").range =
       Option::Between<int>(0, 1024);
-  add("--seed", common.seed, "Seed of all randomness, over the experiment's own").range =
+  add("--seed", common.seed, "Seed of all random numbers, instead of the experiment's").range =
       Option::Between<int64_t>(0, std::numeric_limits<int64_t>::max());
-  Option& memory =
-      add("--max-memory", common.max_memory_GB,
-          "Most memory to take, in GB (default: nine tenths of what the machine has free)");
+  Option& memory = add("--max-memory", common.max_memory_GB,
+                       "Maximum memory in GB (default: nine tenths of the free memory)");
   memory.range = Option::Between<double>(0.5, 1e6);
   memory.mistake = [](const std::string& text) {
     return number_in(text) ? "" : text + " is no finite number";
@@ -116,13 +115,13 @@ void Command::add_recordings(std::vector<std::filesystem::path>& recordings) {
 }
 
 void Command::add_page(bool& page) {
-  add("--page", page, "Write page.html too: scene, maps and curves to look at in a browser");
+  add("--page", page, "Also write page.html: scene, maps and curves for a browser");
 }
 
 void Command::add_checkpoint(std::optional<double>& minutes) {
   add("--checkpoint", minutes,
-      "Keep the state of the run in the folder of results (VERB.checkpoint) every so "
-      "many minutes; after a kill the same command goes on from there")
+      "Save the state of the run (VERB.checkpoint in the output folder) every so many minutes; "
+      "after a kill the same command resumes")
       .mistake = minutes_above_zero;
 }
 

@@ -17,7 +17,7 @@ constexpr NumberKey outer("outer_m", Range::positive(), "where it ends, beyond `
                           {.varies = true});
 constexpr IntegerKey faces("faces", 2, 1, 2, "of it that are wetted");
 constexpr NumberKey drag("drag_coefficient", {0.0, 1e3, false, false},
-                         "on the area that meets the flow");
+                         "referred to the area that meets the flow");
 constexpr NumberKey moment("moment_coefficient", sphere_moment_howarth, {0.0, 1e3, true, false},
                            "3.27 is also quoted");
 constexpr ChoiceKey shape("shape",
@@ -28,10 +28,11 @@ constexpr ChoiceKey shape("shape",
                            {"radial_cylinder", "pressure: its axis points outwards"},
                            {"upright_cylinder", "pressure"},
                            {"blunt_face", "pressure: a stiffener, a box"}},
-                          "what it is like; a shape that counts in the other law adds nothing");
+                          "shape of the part; shapes of the other law are ignored");
 constexpr TextKey name("name", "of the part", {.usually = "the shape"});
-constexpr NumberKey count("count", 1.0, Range::not_negative(), "of such parts, fractions too");
-constexpr TablesKey part("part", "what stands in the air of `[environment]`");
+constexpr NumberKey count("count", 1.0, Range::not_negative(),
+                          "number of such parts, also fractional");
+constexpr TablesKey part("part", "parts in the air of `[environment]`");
 }  // namespace part_key
 
 // Von Kármán's disc: the slope G'(0) = −0.6159 of the similarity solution at the wall (White,

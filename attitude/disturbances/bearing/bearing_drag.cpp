@@ -34,7 +34,7 @@ constexpr NumberKey recess_half_angle("recess_half_angle_deg", 0.0, {0.0, pi, fa
                                       "of the central recess, below `half_angle_deg`",
                                       {.varies = true});
 constexpr NumberKey sheared_share("sheared_share", 1.0, Range::fraction(),
-                                  "fraction of the film that is thin (grooves take from it)");
+                                  "fraction of the film that is thin (reduced by grooves)");
 constexpr NumberKey gap(
     "gap_m", Range::positive(),
     "of the film under the platform's weight, *or* with the next two at the rated load",

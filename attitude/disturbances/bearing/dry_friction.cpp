@@ -14,7 +14,7 @@ constexpr ScalarKey friction("torque_N_m", Range::not_negative(), "τ in T = −
 
 namespace key {
 constexpr NumberKey creep_rate("creep_rate_rad_s", 1e-6, Range::positive(),
-                               "about three axes: below it the torque fades to zero");
+                               "about three axes: rate below which the torque decreases to zero");
 }  // namespace key
 
 class DryFriction final : public TorqueLaw<DryFriction> {

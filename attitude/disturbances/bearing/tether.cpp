@@ -15,8 +15,9 @@
 namespace photorque::kinds::tether {
 namespace {
 
-constexpr ScalarKey stiffness("stiffness_N_m_per_rad", Range::not_negative(),
-                              "k in T = −k φ; φ is the shortest way and jumps at half a turn");
+constexpr ScalarKey stiffness(
+    "stiffness_N_m_per_rad", Range::not_negative(),
+    "k in T = −k φ; φ is the smallest rotation to zero attitude and jumps at half a turn");
 
 namespace key {
 constexpr FlagKey winds_up(

@@ -17,17 +17,19 @@
 namespace photorque::kinds::helmholtz_cage {
 namespace {
 
-constexpr ScalarKey gain_error("gain_error", 0.0, {}, "the coils give 1 + this of the correction");
+constexpr ScalarKey gain_error("gain_error", 0.0, {},
+                               "the coils give (1 + this) times the correction");
 
 namespace key {
-constexpr Vec3Key field_lab("field_lab_T", {0.0, 0.0, 0.0}, "what the coils set, lab axes; *or*");
+constexpr Vec3Key field_lab("field_lab_T", {0.0, 0.0, 0.0},
+                            "field set by the coils, lab axes; *or*");
 constexpr TextKey field_file("field_file",
                              "a CSV: `t_s`, `field_x_T`, `field_y_T`, `field_z_T`, ends held; *or*",
                              {.optional = true});
 constexpr NumberKey altitude("altitude_m", Range::not_negative(), "above 6371.2 km");
 constexpr NumberKey inclination("inclination_deg", {}, "of the orbit");
 constexpr NumberKey date_year("date_year", {1900.0, 2035.0, false, false}, "of IGRF");
-constexpr NumberKey duration("duration_s", Range::positive(), "how long the field is played");
+constexpr NumberKey duration("duration_s", Range::positive(), "duration of the field");
 constexpr NumberKey ascending_node("ascending_node_deg", 0.0, {}, "of the orbit");
 constexpr NumberKey phase("phase_deg", 0.0, {}, "argument of latitude at t = 0");
 constexpr NumberKey greenwich_angle("greenwich_angle_deg", 0.0, {}, "at t = 0");

@@ -30,7 +30,7 @@ constexpr NumberKey date_year("date_year", {1900.0, 2035.0, false, false},
                               "field by IGRF along the orbit",
                               {.usually = "the field of `[environment]`"});
 constexpr NumberKey duration("duration_s", 86400.0, {0.0, 1e6 * interval_s, true, false},
-                             "with `date_year`: how long the field is known; its end is held");
+                             "with `date_year`: duration of the field; its end is held");
 constexpr Vec3Key sun_direction("sun_direction",
                                 "towards the Sun, any length: shadow with penumbra",
                                 {.usually = "always light"});

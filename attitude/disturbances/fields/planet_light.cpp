@@ -28,9 +28,8 @@ constexpr PlanetSurface earth;
 constexpr TextKey table("table",
                         "CSV of `torque-map` over the sphere (`elevation_deg`, `azimuth_deg`; "
                         "`torque_x_N_m`, …), traced in sunlight");
-constexpr TextKey infrared_table(
-    "infrared_table", "the same in the planet's infrared",
-    {.usually = "`table`: surfaces meet infrared as they meet sunlight"});
+constexpr TextKey infrared_table("infrared_table", "the same in the planet's infrared",
+                                 {.usually = "`table`: surfaces treat infrared as sunlight"});
 constexpr NumberKey table_irradiance("table_irradiance_W_m2", solar_irradiance_W_m2,
                                      Range::positive(),
                                      "of the light in which the tables were traced");

@@ -19,8 +19,8 @@ namespace {
 
 constexpr ScalarKey load(
     "load_W", Range::not_negative(),
-    "what is drawn: the battery gives (load − array)/`platform.battery_voltage_V`, tapered when "
-    "full or empty; nothing where a recording has the current");
+    "power drawn: the battery current is (load − array)/`platform.battery_voltage_V`, tapered when "
+    "full or empty; without effect where a recording has the current");
 
 namespace key {
 constexpr NumberKey array_power("array_power_W", 0.0, Range::not_negative(),

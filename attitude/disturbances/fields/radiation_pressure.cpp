@@ -49,7 +49,7 @@ class RadiationPressure final : public TorqueLaw<RadiationPressure> {
 };
 
 constexpr auto area_moment = VectorKey("area_moment_m3",
-                                       "projected area times its place from the centre of mass, "
+                                       "projected area times its position from the centre of mass, "
                                        "body axes; needs `[environment.sun]`")
                                  .optional();
 

@@ -4,7 +4,7 @@
 namespace photorque::kinds::attitude_latency {
 namespace {
 
-constexpr ScalarKey latency("latency_s", {}, "the camera reports what was, so long ago");
+constexpr ScalarKey latency("latency_s", {}, "age of the reported attitude");
 
 struct AttitudeLatency final : LawOf<AttitudeLatency> {
   template <class T>

@@ -4,7 +4,7 @@
 namespace photorque::kinds::gyro_bias {
 namespace {
 
-constexpr VectorKey bias("bias_rad_s", "what it reads at rest");
+constexpr VectorKey bias("bias_rad_s", "reading at rest");
 
 struct GyroBias final : LawOf<GyroBias> {
   template <class T>

@@ -16,8 +16,8 @@ constexpr IntegerKey marker(marker_key, 1, 1'000'000,
                             "three numbers of `error_m` for each",
                             {.optional = true, .varies = true});
 constexpr NumbersKey error(error_key, {-0.1, 0.1},
-                           "true position minus that of `markers_m`, body axes; [sensors.camera] "
-                           "`marker_error_m` says the same of a recording that is made",
+                           "true position minus `markers_m`, body axes; as [sensors.camera] "
+                           "`marker_error_m` for simulated recordings",
                            {.has_error = true});
 }  // namespace key
 

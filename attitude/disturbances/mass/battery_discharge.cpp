@@ -20,8 +20,8 @@ constexpr auto shift =
 
 namespace key {
 constexpr Vec3Key electrodes("electrodes_m",
-                             "way of the lithium from charged to empty, body axes; half a cell's "
-                             "length is the upper bound, wound cells 1/100 of it");
+                             "displacement of the lithium from charged to empty, body axes; upper "
+                             "bound: half a cell's length; wound cells: 1/100 of it");
 constexpr NumberKey charge_share("charge_share", 1.0, Range::fraction(),
                                  "1 in series, 1/n of n in parallel");
 constexpr TablesKey cell("cell", "instead of `shift_m_per_Ah`: one table for every cell");

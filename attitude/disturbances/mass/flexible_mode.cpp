@@ -24,10 +24,10 @@ constexpr ScalarKey inertia(
 
 namespace key {
 constexpr NumberKey initial_angle("initial_angle_deg", 0.0, {},
-                                  "beside the body at the start of a run");
+                                  "relative to the body at the start of a run");
 constexpr NumberKey initial_rate("initial_rate_rad_s", {},
-                                 "its own about the axis, at the start of a run",
-                                 {.usually = "the body's: it rests beside it"});
+                                 "absolute rate about the axis at the start of a run",
+                                 {.usually = "that of the body"});
 }  // namespace key
 
 constexpr StateKey angle{"angle_rad", 0};

@@ -12,7 +12,7 @@ constexpr KeyOf<6> delta{"delta_kg_m2"};
 namespace key {
 constexpr NumbersKey delta(
     "delta_kg_m2", {},
-    "[xx, yy, zz, xy, xz, yz], about the centre of rotation; the whole stays an inertia",
+    "[xx, yy, zz, xy, xz, yz], about the centre of rotation; the sum must be an inertia tensor",
     {.has_error = true, .size = 6});
 }  // namespace key
 

@@ -6,7 +6,7 @@
 namespace photorque::kinds::mass_error {
 namespace {
 
-constexpr ScalarKey delta("delta_kg", {}, "by which the mass differs; the whole stays positive");
+constexpr ScalarKey delta("delta_kg", {}, "deviation of the mass; the sum must be positive");
 
 struct MassError final : LawOf<MassError> {
   template <class T>

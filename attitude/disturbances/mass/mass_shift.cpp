@@ -8,7 +8,8 @@ namespace photorque::kinds::mass_shift {
 namespace {
 
 constexpr ScalarKey start("time_s", {}, "when");
-constexpr VectorKey offset("offset_m", "by what the centre of mass moves, body axes", start.end());
+constexpr VectorKey offset("offset_m", "displacement of the centre of mass, body axes",
+                           start.end());
 
 struct MassShift final : LawOf<MassShift> {
   template <class T>

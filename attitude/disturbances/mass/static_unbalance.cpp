@@ -8,8 +8,8 @@ namespace photorque::kinds::static_unbalance {
 namespace {
 
 constexpr VectorKey offset("offset_m",
-                           "r in T = m r × g, from the centre of rotation, body axes; a platform "
-                           "that stands stable has a negative z");
+                           "r in T = m r × g, from the centre of rotation, body axes; z is "
+                           "negative for a stable platform");
 
 struct StaticUnbalance final : LawOf<StaticUnbalance> {
   template <class T>

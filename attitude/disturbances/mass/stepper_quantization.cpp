@@ -76,7 +76,7 @@ DisturbanceKind kind() {
           .keys = joined(
               {moving_mass_keys(),
                {Key::numbers("rounding_steps", {},
-                             "where each mass stands beside its target, in steps, ±0.5")
+                             "deviation of each mass from its target, in steps, ±0.5")
                     .with_error()
                     .usually_is("½ for the first along each direction, else 0: the worst case")}})};
 }

@@ -6,10 +6,9 @@
 namespace photorque::kinds::actuator_gain {
 namespace {
 
-constexpr ScalarKey common_gain(
-    "gain_error", {},
-    "e: actuators give (1 + e) of the command; one number, or one for each body axis: of what "
-    "slides x and y are those of its forces, z that of its torque");
+constexpr ScalarKey common_gain("gain_error", {},
+                                "e: actuators give (1 + e) of the command; one number, or one for "
+                                "each body axis (planar: x and y of the forces, z of the torque)");
 constexpr VectorKey axis_gain{common_gain.name};
 
 struct CommonGain final : LawOf<CommonGain> {

@@ -19,8 +19,8 @@ namespace {
 // Faster, and the phase loses its digits within a day: steps would see something slow.
 constexpr Range tone_Hz{0.0, 1e6};
 constexpr auto shaking = VectorKey("acceleration_m_s2",
-                                   "a of a sine in T = −m r × a, nothing without an offset of "
-                                   "mass; lab axes; with the next two; *or*")
+                                   "amplitude a of a sine in T = −m r × a (zero without an offset "
+                                   "of mass), lab axes; with the next two; *or*")
                              .optional();
 constexpr auto frequency =
     ScalarKey("frequency_Hz", tone_Hz, "of a sine", shaking.end()).optional();
@@ -32,7 +32,7 @@ constexpr UncertainNumberKey phase("phase_deg", {}, "instead of `phase`", {.opti
 constexpr NumbersKey frequency("frequency_Hz", Range::positive(), "at least two, rising");
 constexpr NumbersKey density("density_m2_s3", Range::not_negative(),
                              "one-sided, the same along each axis");
-constexpr IntegerKey tones("tones", 32, 1, 10000, "of which it is made");
+constexpr IntegerKey tones("tones", 32, 1, 10000, "number of tones");
 constexpr IntegerKey seed("seed", 1, 0, INT64_MAX, "of their phases");
 constexpr TableKey spectrum("spectrum", "a random floor; *or*");
 constexpr TextKey accelerogram_file(

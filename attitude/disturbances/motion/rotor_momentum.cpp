@@ -7,7 +7,7 @@ namespace photorque::kinds::rotor_momentum {
 namespace {
 
 constexpr VectorKey momentum("momentum_N_m_s",
-                             "h in T = −ω × h, ω inertial; against the body, body axes");
+                             "h in T = −ω × h (ω inertial), relative to the body, body axes");
 
 struct RotorMomentum final : TorqueLaw<RotorMomentum> {
   template <class T>

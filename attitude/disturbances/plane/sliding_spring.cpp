@@ -9,7 +9,8 @@ namespace {
 constexpr ScalarKey stiffness("stiffness_N_per_m", Range::not_negative(), "k in F = f − k r");
 
 namespace key {
-constexpr NumbersKey pull("pull_N", {}, "f at the lab's origin; it pulls to f/k",
+constexpr NumbersKey pull("pull_N", {},
+                          "f, the force at the lab's origin; the equilibrium is at f/k",
                           {.has_error = true, .size = 2});
 }  // namespace key
 constexpr KeyOf<2> pull{"pull_N", stiffness.end()};

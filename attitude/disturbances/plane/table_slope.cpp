@@ -1,6 +1,6 @@
 // A table that is not level: F = −m g (s_x, s_y) on a platform that slides.
 //
-// slope_rad[2]: by which the table rises along lab x and y; small. A steady draught or any other
+// slope_rad[2]: slope of the table along lab x and y; small. A steady draught or any other
 // constant force looks the same.
 #include "attitude/disturbances/kind.h"
 
@@ -10,7 +10,7 @@ namespace {
 constexpr KeyOf<2> slope{"slope_rad"};
 
 namespace key {
-constexpr NumbersKey slope("slope_rad", {}, "by which the table rises along lab x and y; small",
+constexpr NumbersKey slope("slope_rad", {}, "slope of the table along lab x and y; small",
                            {.has_error = true, .size = 2});
 }  // namespace key
 

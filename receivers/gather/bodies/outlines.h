@@ -52,7 +52,7 @@ class LineGrid {
   Vec3 across_, aside_;
   double low_m_, per_m_;
   std::vector<std::vector<uint32_t>> cells_;
-  std::vector<uint32_t> seen_;  // by the how manieth question
+  std::vector<uint32_t> seen_;  // number of the query that saw it last
   uint32_t question_ = 0;
 };
 

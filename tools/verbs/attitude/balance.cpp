@@ -65,7 +65,7 @@ void print_balance(const Console& console, const BalanceRun& run, const BalanceR
                  {"steps", "steps"},
                  {"travel [m]", "travel_m"}});
   }
-  console.heading("Left by whole steps");
+  console.heading("Residual of whole steps");
   for (const Quantity& quantity : product.quantities) {
     if (quantity.name == "left_by_steps_m") {
       console.line("  distance of the centre of mass  " + show(quantity.estimate, "m"));

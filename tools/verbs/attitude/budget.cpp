@@ -55,7 +55,7 @@ void print_air(const Console& console, const Table& parts) {
 
 void print_paper(const Console& console, const Product& product) {
   const Table& figures = table_named(product, "paper_figures");
-  console.heading("Figures of the paper beside ours");
+  console.heading("Published figures compared with ours");
   print_table(console, figures,
               {{"quantity", "quantity"},
                {"section", "section"},
@@ -100,7 +100,7 @@ void run(const CommandOptions& options, const Program&) {
 
 Verb kind() {
   return {"budget",
-          "Every disturbance torque at one state, ranked; of STASIS beside published figures",
+          "Every disturbance torque at one state, ranked; for STASIS with published figures",
           command_with(add_options, run),
           {"platform", "environment", "disturbance", "sensors", "budget"},
           "[platform]",

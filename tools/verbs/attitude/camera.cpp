@@ -142,7 +142,7 @@ void run(const CommandOptions& options, const Program&) {
 
 Verb kind() {
   return {"camera",
-          "How well a camera that tracks markers knows the attitude, by its geometry",
+          "Attitude error of a camera that tracks markers, from its geometry",
           command_with(add_options, run),
           {"platform", "environment", "disturbance", "sensors", "camera_study"},
           "[sensors.camera] with markers"};

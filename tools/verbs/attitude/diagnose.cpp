@@ -352,13 +352,11 @@ void add_options(Command& command, Options& options) {
   command.add_recordings(options.recordings);
   command
       .add("--holdout", options.holdouts,
-           "A recording held out: never fitted, it judges the finding; as above")
+           "A held-out recording (CSV), which tests the result; may be repeated")
       .is_one_each = true;
   command.add("--guess", options.guess,
-              "Instead of an experiment: write one that fits the columns of these "
-              "recordings (CSV), its assumptions marked");
-  command.add("--page", options.page,
-              "Draw scene, maps and curves into report.html, to look at in a browser");
+              "Write a first experiment for these recordings (CSV), with its assumptions marked");
+  command.add("--page", options.page, "Make report.html interactive: scene, maps and curves");
   command.mistake = [&options]() -> std::string {
     if (!options.guess.empty()) options.name = name_of_guess(options.guess);
     if (options.experiment.empty() != options.guess.empty()) return "";
@@ -437,7 +435,7 @@ void run(const Options& options, const Program&) {
 
 Verb kind() {
   return {"diagnose",
-          "What physics is missing between an experiment and its recordings",
+          "Physical effects that an experiment lacks, from recordings",
           command_with(add_options, run),
           {"array", "effect", "platform", "environment", "disturbance", "sensors", "recording",
            "module"},

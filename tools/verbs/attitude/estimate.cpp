@@ -222,7 +222,7 @@ void print_way(const Console& console, const EstimateRun::Estimated& one) {
                  {"after", "after"},
                  {"sigma", "sigma_after"}});
   }
-  if (!result.unseen.empty()) console.heading("What these readings cannot say");
+  if (!result.unseen.empty()) console.heading("Undetermined by these readings");
   for (const std::string& line : result.unseen) console.line("  " + line);
 }
 
@@ -242,8 +242,8 @@ void add_options(Command& command, Options& options) {
   command.add_experiment(options);
   command.add_recordings(options.recordings);
   command.add("--truth", options.truth,
-              "What is true of the recording's motion (CSV with q_w ..., such as "
-              "time_history.csv of propagate), to compare with");
+              "True motion of the recording for comparison (CSV with q_w ..., such as "
+              "time_history.csv of propagate)");
 }
 
 void run(const Options& options, const Program&) {

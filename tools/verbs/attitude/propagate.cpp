@@ -37,7 +37,7 @@ void run(const Options& options, const Program&) {
 
 Verb kind() {
   return {"propagate",
-          "Fly the platform: attitude, rates, charge, every torque; a recording",
+          "Motion of the platform: attitude, rates, charge, every torque, a recording",
           command_with(add_options, run),
           {"platform", "environment", "disturbance", "sensors", "propagate", "light", "array"},
           "[platform]",
