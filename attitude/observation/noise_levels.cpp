@@ -75,7 +75,7 @@ double median(std::vector<double>& of) {
 }
 
 // Whether `order` + 1 readings from the one at `first` are the same to the last digit: a counter
-// that stands still says nothing of its noise.
+// that stands still says nothing of its noise. Where it mostly does, its step says it.
 bool stands_still(const std::vector<ReadingAt>& x, size_t first, size_t order) {
   constexpr double rounding = 1e-12;
   for (size_t k = first + 1; k <= first + order; ++k) {
@@ -128,7 +128,7 @@ std::optional<double> reading_level(const std::vector<Observation>& runs, int ch
   }
   if (windows < fewest) return std::nullopt;
   // The median of |x| of a Gaussian is 0.6745 σ.
-  const bool moves = sizes[lowest_order].size() >= fewest;
+  const bool moves = 2 * sizes[lowest_order].size() > windows;
   double level = moves ? median(sizes[lowest_order]) / 0.6745 : 0.0;
   // White noise is alike at every order. Where the next is quieter by half, what this one holds is
   // motion that the readings follow too coarsely.

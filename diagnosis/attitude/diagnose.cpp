@@ -8,6 +8,7 @@
 #include "attitude/disturbances/kind.h"
 #include "attitude/estimation/conventions.h"
 #include "attitude/estimation/fit.h"
+#include "core/constants.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/account.h"
 #include "diagnosis/attitude/answer.h"
@@ -141,6 +142,24 @@ void say_limits_of_held_out(Diagnosis& d) {
   }
 }
 
+// Whether no run turns about the axis more often than a line is twisted.
+bool turns_little(const std::vector<Observation>& runs, const Vec3& axis) {
+  constexpr double most_rad = 30.0 * 2.0 * pi;
+  return std::ranges::all_of(runs, [&](const Observation& seen) {
+    double sum_rad_s = 0.0, count = 0.0;
+    for (size_t i = 0; i < seen.blocks(); ++i) {
+      double along_rad_s = 0.0;
+      for (int k = 0; k < 3; ++k) {
+        if (axis[k] != 0.0) along_rad_s += axis[k] * seen.gyro_rad_s[i][k];
+      }
+      if (!std::isfinite(along_rad_s) || !(seen.gyro_rows[i].dot(axis.cwiseAbs()) > 0.0)) continue;
+      sum_rad_s += std::abs(along_rad_s);
+      count += 1.0;
+    }
+    return count > 0.0 && sum_rad_s / count * seen.duration_s() < most_rad;
+  });
+}
+
 // Where nobody sees the attitude and nothing depends on it, it is not propagated.
 NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
   NominalModel nominal = stated;
@@ -149,7 +168,8 @@ NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
       [&](const Observation& seen) { return seen.feels_attitude(stated.model.platform); });
   const Platform& platform = nominal.model.platform;
   // A twisted line pulls back to an angle that a rate alone shows as well.
-  const bool may_twist = platform.turns_about_one_axis() && std::abs(platform.axis.z()) > 0.5;
+  const bool may_twist = platform.turns_about_one_axis() && std::abs(platform.axis.z()) > 0.5 &&
+                         turns_little(data.train, platform.axis);
   nominal.model.holds_attitude = !is_seen && !may_twist && !depends_on_attitude(stated.model);
   return nominal;
 }

@@ -434,10 +434,10 @@ TEST(Machines, ADragHasNoRivalsInAHeadingThatNeverChanges) {
   expect_near_truth(d, "bearing_drag", "coefficient_N_m_s", c, 0.0);
 }
 
-// θ = A e^(−c t/2) cos(ω t), ω² = k − c²/4, its rate alone: nobody knows from which angle the line
-// pulls back, and it turns more than once about it.
+// θ = A e^(−c t/2) cos(ω t), ω² = k − c²/4, its rate alone: nobody knows to which angle the line
+// pulls back.
 TEST(Machines, ATwistedLineIsFoundByTheRateAlone) {
-  constexpr double k = 0.16, c = 0.012, largest_rad = 8.0, noise_rad_s = 0.01;
+  constexpr double k = 0.16, c = 0.012, largest_rad = 2.5, noise_rad_s = 0.003;
   const double omega = std::sqrt(k - 0.25 * c * c);
   std::mt19937_64 random(31);
   std::normal_distribution<double> noise(0.0, noise_rad_s);
