@@ -37,7 +37,7 @@ struct MapPicture {
 // kept up to a ratio of 8 between the sides. InputError if the map's sizes disagree.
 MapPicture map_picture(const Map& map, const Provenance& provenance,
                        PictureStyle style = PictureStyle::page);
-// The same drawing; the cells are an image within it.
+// As a page of vectors, on which the cells are an image.
 std::string map_svg(const Map& map, const Provenance& provenance, PictureStyle style);
 std::string map_pdf(const Map& map, const Provenance& provenance, const PdfText& text,
                     PictureStyle style);

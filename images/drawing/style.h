@@ -1,4 +1,4 @@
-// What pictures are drawn for.
+// Styles of pictures.
 #pragma once
 
 namespace photorque {

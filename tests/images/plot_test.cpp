@@ -393,7 +393,7 @@ TEST(Plot, ManyBarsStandOnEachOther) {
 
 TEST(Styles, PaperHasNoTitleAndRelativelyLargerLetters) {
   Plot plot = constant_plot();
-  plot.title = "A title of its own";
+  plot.title = "A long title";
   const std::string page = plot_svg(plot, {}), paper = plot_svg(plot, {}, PictureStyle::paper);
   EXPECT_THAT(page, ::testing::HasSubstr(">" + plot.title + "</text>"));
   EXPECT_THAT(paper, ::testing::Not(::testing::HasSubstr(plot.title)));
