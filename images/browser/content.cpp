@@ -6,6 +6,7 @@
 
 #include "core/text/format.h"
 #include "images/drawing/colour.h"
+#include "images/drawing/plot.h"
 #include "images/writers/metadata.h"
 
 namespace photorque {
@@ -122,7 +123,8 @@ Json panel_json(const std::string& y_label, const std::vector<Plot::Curve>& curv
           {"curves", std::move(list)}};
 }
 
-Json plot_json(const Plot& plot, const RunPage& page, const PageLimits& limits) {
+Json plot_json(const Plot& of, const RunPage& page, const PageLimits& limits) {
+  const Plot plot = in_readable_time(of);
   Json panels = Json::array();
   panels.push_back(
       panel_json(plot.y_label, plot.curves, plot.y_log, plot.levels, plot.robust_range, limits));
@@ -139,11 +141,12 @@ Json plot_json(const Plot& plot, const RunPage& page, const PageLimits& limits) 
       {"x_label", clean_text(plot.x_label)}, {"x_log", plot.x_log},
       {"shaded", std::move(shaded)},         {"shaded_label", clean_text(plot.shaded_label)},
       {"panels", std::move(panels)}};
+  const double per_unit = seconds_of_unit(plot) / seconds_of_unit(of);
   const auto cursor = std::ranges::find(page.cursors, plot.name, &PlotCursor::plot);
   if (cursor != page.cursors.end()) {
     json["cursor"] = {{"axis", cursor->axis},
-                      {"x_per_unit", cursor->x_per_unit},
-                      {"x_from", json_number(cursor->x_from)}};
+                      {"x_per_unit", cursor->x_per_unit / per_unit},
+                      {"x_from", json_number(cursor->x_from / per_unit)}};
     if (cursor->only_at) {
       json["cursor"]["only_at"] = {{"axis", cursor->only_at->first},
                                    {"value", json_number(cursor->only_at->second)}};

@@ -119,12 +119,21 @@ bool numbers_fit(const Axis& axis, double length) {
 Ticks linear_ticks(double low, double high, int at_most) {
   Step step{1, static_cast<int>(std::floor(std::log10((high - low) / at_most))) - 1};
   Span span = span_of(low, high, step);
-  while (span.last - span.first + 1 > at_most) {
-    step = next(step);
-    span = span_of(low, high, step);
+  const auto count = [](const Span& of) { return of.last - of.first + 1; };
+  double every = 1.0;
+  while (count(span) > at_most) {
+    const Step larger = next(step);
+    const Span fewer = span_of(low, high, larger);
+    // A single number is no scale: some of those of the smaller step instead.
+    if (count(fewer) < 2) {
+      every = std::ceil(count(span) / std::max(2, at_most));
+      break;
+    }
+    step = larger;
+    span = fewer;
   }
   Ticks ticks;
-  for (double n = span.first; n <= span.last; ++n) ticks.values.push_back(step.multiple(n));
+  for (double n = span.first; n <= span.last; n += every) ticks.values.push_back(step.multiple(n));
   ticks.exponent =
       engineering_exponent(step.multiple(std::max(std::abs(span.first), std::abs(span.last))));
   const int decimals = std::max(0, ticks.exponent - step.exponent);

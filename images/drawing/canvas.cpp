@@ -138,6 +138,33 @@ std::string with_own_numbers(const std::string& svg) {
   return result.append(svg, done);
 }
 
+constexpr double capital_height = 0.729;  // of DejaVu Sans, in ems
+
+// An element of SVG, as wide as in the font that it was laid out for.
+std::string text_element(const std::string& clean, const PagePoint& at, const TextStyle& style,
+                         double width) {
+  const auto [red, green, blue] = rgb_bytes(style.colour);
+  const char* const anchor = style.align == TextAlign::left    ? "start"
+                             : style.align == TextAlign::right ? "end"
+                                                               : "middle";
+  const double down = style.level == TextLevel::middle ? 0.5 * capital_height * style.size : 0.0;
+  std::array<char, 400> head{};
+  std::snprintf(head.data(), head.size(),
+                "<text transform=\"translate(%.2f %.2f) rotate(%.2f)\" y=\"%.2f\" "
+                "font-family=\"DejaVu Sans, Verdana, sans-serif\" font-size=\"%.2f\"%s "
+                "fill=\"#%02x%02x%02x\" text-anchor=\"%s\" textLength=\"%.2f\" "
+                "lengthAdjust=\"spacingAndGlyphs\">",
+                at.x, at.y, -style.turn_rad * 180.0 / std::numbers::pi, down, style.size,
+                style.bold ? " font-weight=\"bold\"" : "", red, green, blue, anchor, width);
+  return clean.empty() ? "" : head.data() + xml_text(clean) + "</text>\n";
+}
+
+// Before the end of the root element.
+std::string with_text(std::string svg, const std::string& elements) {
+  const size_t end = svg.rfind("</svg>");
+  return end == std::string::npos ? svg : svg.insert(end, elements);
+}
+
 }  // namespace
 
 double text_width(const std::string& text, const TextStyle& style) {
@@ -149,6 +176,8 @@ double text_width(const std::string& text, const TextStyle& style) {
 
 struct Canvas::Page {
   std::string bytes;  // of a file; outlives the surface that writes to it
+  Letters letters = Letters::outlines;
+  std::string text_elements = {};  // of an SVG page whose letters are text, above all else
   CairoOwner<cairo_surface_t> surface;
   CairoOwner<cairo_t> context;
 
@@ -177,8 +206,9 @@ Canvas Canvas::of_pixels(double width, double height, double scale) {
   return Canvas(std::move(page));
 }
 
-Canvas Canvas::of_svg(double width, double height) {
+Canvas Canvas::of_svg(double width, double height, Letters letters) {
   auto page = std::make_unique<Page>();
+  page->letters = letters;
   page->surface.reset(
       cairo_svg_surface_create_for_stream(&append_bytes, &page->bytes, width, height));
   page->start(width, height);
@@ -257,7 +287,10 @@ void Canvas::text(const std::string& text, const PagePoint& at, const TextStyle&
   const std::string clean = clean_text(text);
   cairo_t* const context = page_->context.get();
   set_font(context, style);
-  constexpr double capital_height = 0.729;  // of DejaVu Sans, in ems
+  if (page_->letters == Letters::text) {
+    page_->text_elements += text_element(clean, at, style, width_of(context, clean));
+    return;
+  }
   const double shift = style.align == TextAlign::left    ? 0.0
                        : style.align == TextAlign::right ? 1.0
                                                          : 0.5;
@@ -322,7 +355,7 @@ std::string Canvas::finish_file() {
   cairo_surface_finish(page_->surface.get());
   check(cairo_surface_status(page_->surface.get()));
   return cairo_surface_get_type(page_->surface.get()) == CAIRO_SURFACE_TYPE_SVG
-             ? with_own_numbers(page_->bytes)
+             ? with_text(with_own_numbers(page_->bytes), page_->text_elements)
              : page_->bytes;
 }
 

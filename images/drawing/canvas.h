@@ -78,9 +78,10 @@ class Canvas {
  public:
   // A white page of pixels, `scale` pixels per point.
   static Canvas of_pixels(double width, double height, double scale);
-  // White pages of vectors. cairo draws the letters of an SVG page as outlines; those of a PDF page
-  // stay text.
-  static Canvas of_svg(double width, double height);
+  // White pages of vectors, whose letters stay text; those of an SVG page as outlines where it is
+  // to look the same on machines without the font.
+  enum class Letters { text, outlines };
+  static Canvas of_svg(double width, double height, Letters letters = Letters::outlines);
   static Canvas of_pdf(double width, double height, const PdfText& text);
   Canvas(Canvas&&) noexcept;
   Canvas& operator=(Canvas&&) noexcept;

@@ -103,12 +103,22 @@ void draw_dots(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve
   canvas.discs(thinned(points, panel.resolution), stroke.width, stroke.colour);
 }
 
+// Many bars in even steps have no gaps: they are a histogram, or stand on each other.
+bool is_histogram(const Plot::Curve& curve) {
+  constexpr size_t many = 30;
+  return curve.x.size() >= many;
+}
+double half_width_of(const Plot::Curve& curve) {
+  return is_histogram(curve) ? 0.5 * (curve.x[1] - curve.x[0]) : bar_half_width;
+}
+
 // The bar over the i-th point; nothing for values that cannot be shown.
 std::optional<PageBox> bar_of(const ChartPanel& panel, const Plot::Curve& curve, size_t i) {
   const double from = hangs(curve) ? curve.y[0] : panel.y.log ? panel.y.range.low : 0.0;
   if (hangs(curve)) i = 1;
-  const PagePoint top = panel.at(curve.x[i] - bar_half_width, curve.y[i]);
-  const PagePoint foot = panel.at(curve.x[i] + bar_half_width, from);
+  const double half = half_width_of(curve);
+  const PagePoint top = panel.at(curve.x[i] - half, curve.y[i]);
+  const PagePoint foot = panel.at(curve.x[i] + half, from);
   if (!drawable_point(top) || !drawable_point(foot)) return std::nullopt;
   return PageBox{top.x, std::min(top.y, foot.y), foot.x - top.x, std::abs(foot.y - top.y)};
 }
@@ -116,7 +126,11 @@ std::optional<PageBox> bar_of(const ChartPanel& panel, const Plot::Curve& curve,
 void draw_bars(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve,
                const Rgb& colour) {
   for (size_t i = 0; i < curve.x.size(); ++i) {
-    if (const auto bar = bar_of(panel, curve, i)) canvas.fill(*bar, colour);
+    auto bar = bar_of(panel, curve, i);
+    if (!bar) continue;
+    // A hair wider than the step: no seams between bars that touch.
+    if (is_histogram(curve)) bar->width += 0.4;
+    canvas.fill(*bar, colour);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "core/provenance.h"
 #include "images/drawing/canvas.h"
 #include "images/drawing/colour.h"
+#include "images/drawing/style.h"
 
 namespace photorque {
 
@@ -34,7 +35,25 @@ struct MapPicture {
 
 // Colours as by colour_scale(map); hatched where a value is missing. Equal scales on x and y are
 // kept up to a ratio of 8 between the sides. InputError if the map's sizes disagree.
-MapPicture map_picture(const Map& map, const Provenance& provenance);
+MapPicture map_picture(const Map& map, const Provenance& provenance,
+                       PictureStyle style = PictureStyle::page);
+// As a page of vectors, on which the cells are an image.
+std::string map_svg(const Map& map, const Provenance& provenance, PictureStyle style);
+std::string map_pdf(const Map& map, const Provenance& provenance, const PdfText& text,
+                    PictureStyle style);
+
+// A number on a contour line of a smooth map: the middle of it in pixels from the top left corner
+// of `columns` × `rows` ones, along the line, upright.
+struct ContourLabel {
+  double column = 0.0, row = 0.0;
+  double turn_rad = 0.0;  // anticlockwise as seen
+  double value = 0.0;
+  std::string text;
+};
+// Every other level has at most one, `room` pixels from the next and from the edge; levels without
+// such a place have none.
+std::vector<ContourLabel> contour_labels(const Map& map, const ColourScale& scale, int columns,
+                                         int rows, double room);
 
 // Axes, colours and their bar alone as an <img> element of an HTML page, half as
 // wide as plots are there.

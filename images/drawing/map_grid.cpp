@@ -86,13 +86,17 @@ double smooth_value(const Map& map, double x, double y) {
   return sum;
 }
 
+Ticks contour_levels(const ColourScale& scale) {
+  constexpr int most_levels = 17;
+  return linear_ticks(scale.low, scale.high, most_levels);
+}
+
 // A smooth field with a thin line, as dark as it is near, wherever it passes one of even levels.
 class SmoothField {
  public:
   SmoothField(const Map& map, const ColourScale& scale, int columns, int rows)
       : scale_(scale), columns_(columns), rows_(rows) {
-    constexpr int most_levels = 17;
-    const Ticks ticks = linear_ticks(scale.low, scale.high, most_levels);
+    const Ticks ticks = contour_levels(scale);
     if (ticks.values.size() > 1) step_ = ticks.values[1] - ticks.values[0];
     for (int row = 0; row < rows; ++row) {
       for (int column = 0; column < columns; ++column) {
@@ -103,11 +107,11 @@ class SmoothField {
   }
 
   uint32_t pixel(int column, int row) const {
-    const double value = at(column, row);
+    const double value = this->value(column, row);
     if (!std::isfinite(value)) return 0u;
     constexpr double half_width = 0.9, darkest = 0.55;  // pixels
-    const double right = at(std::min(column + 1, columns_ - 1), row);
-    const double below = at(column, std::min(row + 1, rows_ - 1));
+    const double right = this->value(std::min(column + 1, columns_ - 1), row);
+    const double below = this->value(column, std::min(row + 1, rows_ - 1));
     const double slope = std::hypot(right - value, below - value);
     Rgb colour = scale_(value);
     if (step_ > 0.0 && std::isfinite(slope) && slope > 1e-3 * step_ * 1e-2) {
@@ -118,11 +122,11 @@ class SmoothField {
     return opaque(colour);
   }
 
- private:
-  double at(int column, int row) const {
+  double value(int column, int row) const {
     return value_[static_cast<size_t>(row) * columns_ + column];
   }
 
+ private:
   const ColourScale& scale_;
   int columns_, rows_;
   double step_ = 0.0;  // between contour lines
@@ -157,6 +161,63 @@ std::vector<uint32_t> plain_pixels(const Map& map, const ColourScale& scale, int
 }
 
 }  // namespace
+
+std::vector<ContourLabel> contour_labels(const Map& map, const ColourScale& scale, int columns,
+                                         int rows, double room) {
+  std::vector<ContourLabel> labels;
+  const Ticks levels = contour_levels(scale);
+  if (!map.smooth || levels.values.size() < 3) return labels;
+  const SmoothField field(map, scale, columns, rows);
+  const auto edge = static_cast<int>(0.6 * room);
+  // Where a whole label has values around it.
+  const auto is_inside = [&](int column, int row) {
+    for (const int i : {-edge, edge}) {
+      for (const int j : {-edge, 0, edge}) {
+        const int x = column + i, y = row + j;
+        if (x < 0 || y < 0 || x >= columns || y >= rows || !std::isfinite(field.value(x, y))) {
+          return false;
+        }
+      }
+    }
+    return true;
+  };
+  const auto distance_to_others = [&](double column, double row) {
+    double nearest = 1e9;
+    for (const ContourLabel& other : labels) {
+      nearest = std::min(nearest, std::hypot(other.column - column, other.row - row));
+    }
+    return nearest;
+  };
+  const auto first =
+      static_cast<int64_t>(std::llround(levels.values[0] / (levels.values[1] - levels.values[0])));
+  for (size_t l = 0; l < levels.values.size(); ++l) {
+    const double level = levels.values[l];
+    if ((first + static_cast<int64_t>(l)) % 2 != 0 || level == 0.0) continue;
+    // The flattest part of the line gives the label most room.
+    std::optional<ContourLabel> best;
+    double least_slope = std::numeric_limits<double>::infinity();
+    for (int row = edge; row + edge < rows; row += 2) {
+      for (int column = edge; column + edge < columns; column += 2) {
+        const double here = field.value(column, row);
+        if (!std::isfinite(here) || !is_inside(column, row)) continue;
+        const double right = 0.5 * (field.value(column + 1, row) - field.value(column - 1, row));
+        const double down = 0.5 * (field.value(column, row + 1) - field.value(column, row - 1));
+        const double slope = std::hypot(right, down);
+        if (!(std::abs(here - level) < 1.5 * slope) || slope >= least_slope) continue;
+        if (distance_to_others(column, row) < 2.0 * room) continue;
+        least_slope = slope;
+        // Along the line, the letters upright.
+        double turn = std::atan2(right, down);
+        if (turn > 0.5 * std::numbers::pi) turn -= std::numbers::pi;
+        if (turn <= -0.5 * std::numbers::pi) turn += std::numbers::pi;
+        best = {static_cast<double>(column), static_cast<double>(row), turn, level,
+                levels.labels[l]};
+      }
+    }
+    if (best) labels.push_back(*best);
+  }
+  return labels;
+}
 
 bool is_unsure(const Map& map, size_t bin) {
   if (!map.signed_values || map.standard_error.empty()) return false;

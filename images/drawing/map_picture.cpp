@@ -26,13 +26,13 @@ struct MapLayout {
   double width = 0.0;
 };
 
-PageBox grid_size(const Map& map) {
+PageBox grid_size(const Map& map, double scale = 1.0) {
   double ratio = 4.0 / 3.0;
   if (map.equal_scale) {
     ratio = std::abs((map.x_high - map.x_low) / (map.y_high - map.y_low));
     ratio = std::isfinite(ratio) ? std::clamp(ratio, 1.0 / largest_ratio, largest_ratio) : 1.0;
   }
-  const double width = std::min(max_side, tallest * ratio);
+  const double width = scale * std::min(max_side, tallest * ratio);
   return {0.0, 0.0, std::round(width), std::round(width / ratio)};
 }
 
@@ -54,9 +54,9 @@ Ticks cell_ticks(int cells) {
   return ticks;
 }
 
-MapLayout map_layout(const Map& map, const Provenance& provenance) {
+MapLayout map_layout(const Map& map, const Provenance& provenance, PictureStyle style) {
   MapLayout layout;
-  layout.grid = grid_size(map);
+  layout.grid = grid_size(map, page_scale(style));
   // A smooth map is drawn between its nodes, which are in the middles of bins.
   const double half_x = map.smooth ? 0.5 * (map.x_high - map.x_low) / map.width : 0.0;
   const double half_y = map.smooth ? 0.5 * (map.y_high - map.y_low) / map.height : 0.0;
@@ -68,13 +68,13 @@ MapLayout map_layout(const Map& map, const Provenance& provenance) {
     layout.x.ticks = cell_ticks(map.width);
     layout.y.ticks = cell_ticks(map.height);
   }
-  layout.bar_height = std::max(layout.grid.height, shortest_colour_bar);
+  layout.bar_height = std::max(layout.grid.height, page_scale(style) * shortest_colour_bar);
   layout.bar = colour_bar(colour_scale(map), map.unit, layout.bar_height);
   layout.grid.x = std::ceil(page_margin + vertical_axis_width(layout.y));
   layout.bar_x = layout.grid.right() + 20.0;
-  layout.width =
-      std::ceil(std::max(narrowest_page, layout.bar_x + layout.bar.width() + page_margin));
-  layout.text = page_text(map.title, map_caption(map), provenance, layout.width);
+  layout.width = std::ceil(std::max(style == PictureStyle::page ? narrowest_page : 0.0,
+                                    layout.bar_x + layout.bar.width() + page_margin));
+  layout.text = page_text(map.title, map_caption(map), provenance, layout.width, style);
   layout.bar_y = std::ceil(layout.text.body_top() + colour_bar_unit_height);
   layout.grid.y = layout.bar_y + std::floor(0.5 * (layout.bar_height - layout.grid.height));
   const double grid_bottom = layout.grid.bottom() + horizontal_axis_height(layout.x);
@@ -143,22 +143,42 @@ void require_consistent(const Map& map) {
   if (!map.weight.empty()) require_count(map, "weights", map.weight.size());
 }
 
-MapPicture map_picture(const Map& map, const Provenance& provenance) {
-  require_consistent(map);
-  const MapLayout layout = map_layout(map, provenance);
-  Canvas canvas = Canvas::of_pixels(
-      layout.width, std::ceil(layout.text.page_height(layout.body_height)), pixels_per_point);
-  const auto pixels = [](double points) {
-    return static_cast<int>(std::lround(points * pixels_per_point));
-  };
-  MapPicture result{{},
-                    pixels(layout.grid.x),
-                    pixels(layout.grid.y),
-                    pixels(layout.grid.width),
-                    pixels(layout.grid.height)};
+namespace {
+
+double page_height(const MapLayout& layout) {
+  return std::ceil(layout.text.page_height(layout.body_height));
+}
+
+// Numbers on contour lines, on a ground of the line's colour.
+void draw_contour_labels(Canvas& canvas, const Map& map, const MapLayout& layout, int columns,
+                         int rows) {
+  constexpr double size = 8.5;
+  const double per_point = columns / layout.grid.width;
+  TextStyle style{.size = size, .align = TextAlign::centre, .level = TextLevel::middle};
+  for (const ContourLabel& label :
+       contour_labels(map, layout.bar.scale, columns, rows, 32.0 * per_point)) {
+    const PagePoint at{layout.grid.x + label.column / per_point,
+                       layout.grid.y + label.row / per_point};
+    const double half = 0.5 * text_width(label.text, style) + 1.5, tall = 0.55 * size;
+    const double c = std::cos(label.turn_rad), s = std::sin(label.turn_rad);
+    const auto corner = [&](double u, double v) {
+      return PagePoint{at.x + c * u + s * v, at.y - s * u + c * v};
+    };
+    const Rgb ground = layout.bar.scale(label.value);
+    canvas.fill(std::array{corner(-half, -tall), corner(half, -tall), corner(half, tall),
+                           corner(-half, tall)},
+                ground);
+    style.colour = lab_from_rgb(ground).lightness > 55.0 ? ink : Rgb{1.0, 1.0, 1.0};
+    style.turn_rad = label.turn_rad;
+    canvas.text(label.text, at, style);
+  }
+}
+
+// The grid as an image of so many pixels, and all around it.
+void draw_map(Canvas& canvas, const Map& map, const MapLayout& layout, int columns, int rows) {
   if (!map.smooth) draw_hatching(canvas, layout.grid);
-  canvas.image(layout.grid, result.grid_width, result.grid_height,
-               map_pixels(map, layout.bar.scale, result.grid_width, result.grid_height));
+  canvas.image(layout.grid, columns, rows, map_pixels(map, layout.bar.scale, columns, rows));
+  if (map.smooth) draw_contour_labels(canvas, map, layout, columns, rows);
   if (are_cells(map)) draw_cell_numbers(canvas, map, layout.bar.scale, layout.grid);
   // Around the cells, not over them.
   canvas.outline(
@@ -168,8 +188,47 @@ MapPicture map_picture(const Map& map, const Provenance& provenance) {
   draw_vertical_axis(canvas, layout.grid, layout.y, vertical_axis_width(layout.y));
   draw_colour_bar(canvas, layout.bar, {layout.bar_x, layout.bar_y}, layout.bar_height);
   draw_page_text(canvas, layout.text, layout.body_height);
+}
+
+// On a page of vectors.
+std::string map_file(Canvas canvas, const Map& map, const MapLayout& layout) {
+  constexpr double per_point = 3.0;
+  draw_map(canvas, map, layout, static_cast<int>(per_point * layout.grid.width),
+           static_cast<int>(per_point * layout.grid.height));
+  return canvas.finish_file();
+}
+
+}  // namespace
+
+MapPicture map_picture(const Map& map, const Provenance& provenance, PictureStyle style) {
+  require_consistent(map);
+  const MapLayout layout = map_layout(map, provenance, style);
+  Canvas canvas = Canvas::of_pixels(layout.width, page_height(layout), pixels_per_point(style));
+  const auto pixels = [style](double points) {
+    return static_cast<int>(std::lround(points * pixels_per_point(style)));
+  };
+  MapPicture result{{},
+                    pixels(layout.grid.x),
+                    pixels(layout.grid.y),
+                    pixels(layout.grid.width),
+                    pixels(layout.grid.height)};
+  draw_map(canvas, map, layout, result.grid_width, result.grid_height);
   result.picture = canvas.finish_pixels();
   return result;
+}
+
+std::string map_svg(const Map& map, const Provenance& provenance, PictureStyle style) {
+  require_consistent(map);
+  const MapLayout layout = map_layout(map, provenance, style);
+  return map_file(Canvas::of_svg(layout.width, page_height(layout), Canvas::Letters::text), map,
+                  layout);
+}
+
+std::string map_pdf(const Map& map, const Provenance& provenance, const PdfText& text,
+                    PictureStyle style) {
+  require_consistent(map);
+  const MapLayout layout = map_layout(map, provenance, style);
+  return map_file(Canvas::of_pdf(layout.width, page_height(layout), text), map, layout);
 }
 
 std::string map_html(const Map& map) {
@@ -197,8 +256,10 @@ std::string map_html(const Map& map) {
       std::max(grid.bottom() + horizontal_axis_height(x), grid.y + bar_height + 8.0);
   Canvas canvas = Canvas::of_svg(width, std::ceil(bottom + 4.0));
   if (!map.smooth) draw_hatching(canvas, grid);
-  const int columns = static_cast<int>(std::lround(pixels_per_point * grid.width)),
-            rows = static_cast<int>(std::lround(pixels_per_point * grid.height));
+  const int columns =
+                static_cast<int>(std::lround(pixels_per_point(PictureStyle::page) * grid.width)),
+            rows =
+                static_cast<int>(std::lround(pixels_per_point(PictureStyle::page) * grid.height));
   canvas.image(grid, columns, rows, map_pixels(map, scale, columns, rows));
   canvas.outline(grid, {ink, 0.8});
   draw_horizontal_axis(canvas, grid, x);

@@ -7,7 +7,6 @@ namespace {
 
 constexpr double colour_bar_thickness = 16.0;
 constexpr double caption_gap = 10.0;
-constexpr Rgb grey = {0.45, 0.45, 0.45};
 constexpr Rgb alarm = {0.78, 0.1, 0.05};
 
 std::vector<std::string> words_of(const std::string& text) {
@@ -91,16 +90,17 @@ void draw_text(Canvas& canvas, const TextBlock& block, const PagePoint& top_left
 }
 
 double PageText::body_top() const {
-  return page_margin + title.height() + warnings.height() + 9.0;
+  const double text = title.height() + warnings.height();
+  return page_margin + (text > 0.0 ? text + 9.0 : 0.0);
 }
 
 double PageText::page_height(double body_height) const {
-  return body_top() + body_height + caption_gap + caption.height() + 4.0 + provenance.height() +
-         0.7 * page_margin;
+  const double below = caption.lines.empty() ? 0.0 : caption_gap + caption.height();
+  return body_top() + body_height + below + 0.7 * page_margin;
 }
 
 PageText page_text(const std::string& title, const std::string& caption,
-                   const Provenance& provenance, double page_width) {
+                   const Provenance& provenance, double page_width, PictureStyle style) {
   const double width = page_width - 2.0 * page_margin;
   std::string warnings;
   for (const std::string& warning : provenance.warnings) {
@@ -109,9 +109,9 @@ PageText page_text(const std::string& title, const std::string& caption,
   const TextStyle loud = {.size = 10.5, .colour = alarm, .bold = true};
   PageText page{fitted_text(title, width, {.size = 15.0, .bold = true}, 10.0, 2),
                 fitted_text(warnings, width, loud, 7.5, 4),
-                fitted_text(caption, width, {.size = 10.5}, 8.5, 3),
-                fitted_text(provenance.one_line(), width, {.size = 7.5, .colour = grey}, 6.5, 2)};
-  if (caption.empty()) page.caption.lines.clear();
+                fitted_text(caption, width, {.size = 10.5}, 8.5, 3)};
+  if (style == PictureStyle::paper) page.title.lines.clear();
+  if (caption.empty() || style != PictureStyle::page) page.caption.lines.clear();
   if (warnings.empty()) page.warnings.lines.clear();
   return page;
 }
@@ -119,9 +119,7 @@ PageText page_text(const std::string& title, const std::string& caption,
 void draw_page_text(Canvas& canvas, const PageText& text, double body_height) {
   draw_text(canvas, text.title, {page_margin, page_margin});
   draw_text(canvas, text.warnings, {page_margin, page_margin + text.title.height() + 2.0});
-  const double caption_top = text.body_top() + body_height + caption_gap;
-  draw_text(canvas, text.caption, {page_margin, caption_top});
-  draw_text(canvas, text.provenance, {page_margin, caption_top + text.caption.height() + 4.0});
+  draw_text(canvas, text.caption, {page_margin, text.body_top() + body_height + caption_gap});
 }
 
 double ColourBar::width() const {

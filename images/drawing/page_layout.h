@@ -1,4 +1,4 @@
-// The frame of a picture: title, caption, provenance, colour bar.
+// The frame of a picture: title, warnings, caption, colour bar.
 #pragma once
 
 #include <string>
@@ -8,12 +8,11 @@
 #include "images/drawing/axis.h"
 #include "images/drawing/canvas.h"
 #include "images/drawing/colour.h"
+#include "images/drawing/style.h"
 
 namespace photorque {
 
 inline constexpr double page_margin = 16.0;
-// Pixels per point of every PNG, so that it stays sharp on dense displays and in print.
-inline constexpr double pixels_per_point = 2.0;
 
 // Lines of one style.
 struct TextBlock {
@@ -34,12 +33,13 @@ struct PageText {
   TextBlock title;
   TextBlock warnings;  // beneath the title; no lines where all is well
   TextBlock caption;
-  TextBlock provenance;
   double body_top() const;
   double page_height(double body_height) const;
 };
+// Title and caption as the style has them; warnings of the provenance always.
 PageText page_text(const std::string& title, const std::string& caption,
-                   const Provenance& provenance, double page_width);
+                   const Provenance& provenance, double page_width,
+                   PictureStyle style = PictureStyle::page);
 void draw_page_text(Canvas& canvas, const PageText& text, double body_height);
 
 // An upright colour bar with numbers on its right and the unit above it.

@@ -43,7 +43,9 @@ AxisRange x_range(const std::vector<Plot::Panel>& panels, bool log) {
   for (const Plot::Panel& panel : panels) {
     for (const Plot::Curve& curve : panel.curves) {
       // As much room beside the outer bars as between two that stand at 1, 2, …
-      const double beside = curve.bars ? 1.0 - bar_half_width : 0.0;
+      const double beside = !curve.bars           ? 0.0
+                            : curve.x.size() < 30 ? 1.0 - bar_half_width
+                                                  : 0.5 * (curve.x[1] - curve.x[0]);
       for (const double x : curve.x) {
         extent.include(x - beside, log);
         extent.include(x + beside, log);
@@ -85,9 +87,9 @@ AxisRange y_range(const Plot::Panel& panel) {
 }
 
 // Of every panel: room for the tallest legend, and less of it the more panels there are.
-double usual_height(const std::vector<Plot::Panel>& panels) {
+double usual_height(const std::vector<Plot::Panel>& panels, double scale) {
   constexpr std::array<double, 4> usual = {330.0, 200.0, 150.0, 120.0};
-  double height = usual[std::min(panels.size(), usual.size()) - 1];
+  double height = scale * usual[std::min(panels.size(), usual.size()) - 1];
   for (const Plot::Panel& panel : panels) {
     height = std::max(height, legend_of(panel.curves, widest_legend).height);
   }
@@ -196,26 +198,31 @@ std::string caption_of(const Plot& plot) {
   return any ? "Bars and bands: ±1 standard error." : "";
 }
 
-// A plot with title, caption and provenance around it.
+// A plot with title and caption around it.
 struct PlotPage {
+  Plot plot;
+  double width = 0.0;
   PageText text;
   PlotLayout layout;
   double body_height() const { return layout.bottom - text.body_top(); }
   double height() const { return std::ceil(text.page_height(body_height())); }
 };
 
-PlotPage page_of(const Plot& plot, const Provenance& provenance) {
+PlotPage page_of(const Plot& plot, const Provenance& provenance, PictureStyle style) {
   require_consistent(plot);
   PlotPage page;
-  page.text = page_text(plot.title, caption_of(plot), provenance, page_width);
-  page.layout = plot_layout(plot, {.left = page_margin,
-                                   .right = page_width - page_margin,
-                                   .top = std::ceil(page.text.body_top())});
+  page.plot = in_readable_time(plot);
+  page.width = std::round(page_width * page_scale(style));
+  page.text = page_text(plot.title, caption_of(plot), provenance, page.width, style);
+  page.layout = plot_layout(page.plot, {.left = page_margin,
+                                        .right = page.width - page_margin,
+                                        .top = std::ceil(page.text.body_top()),
+                                        .scale = page_scale(style)});
   return page;
 }
 
-void draw_page(Canvas& canvas, const Plot& plot, const PlotPage& page) {
-  draw_plot(canvas, plot, page.layout);
+void draw_page(Canvas& canvas, const PlotPage& page) {
+  draw_plot(canvas, page.plot, page.layout);
   draw_page_text(canvas, page.text, page.body_height());
 }
 
@@ -248,7 +255,7 @@ PlotLayout plot_layout(const Plot& plot, const PlotRoom& room) {
   layout.axis_width = room.min_axis_width;
   for (const Plot::Panel& panel : panels) {
     const double wanted = layout.panels.empty() ? room.first_height : room.height_below;
-    const double height = wanted > 0.0 ? wanted : usual_height(panels);
+    const double height = wanted > 0.0 ? wanted : usual_height(panels, room.scale);
     ChartPanel chart{{0.0, 0.0, 0.0, height}, {}, {}, panel.curves, room.resolution};
     chart.y = vertical_axis(y_range(panel), panel.y_log, panel.y_label, height);
     layout.axis_width = std::max(layout.axis_width, std::ceil(vertical_axis_width(chart.y)));
@@ -294,29 +301,65 @@ void draw_plot(Canvas& canvas, const Plot& plot, const PlotLayout& layout) {
   }
 }
 
-Picture plot_picture(const Plot& plot, const Provenance& provenance) {
-  const PlotPage page = page_of(plot, provenance);
-  Canvas canvas = Canvas::of_pixels(page_width, page.height(), pixels_per_point);
-  draw_page(canvas, plot, page);
+Plot in_readable_time(Plot plot) {
+  const size_t unit = plot.x_label.size() < 8 ? std::string::npos : plot.x_label.size() - 3;
+  if (plot.x_log || unit == std::string::npos ||
+      plot.x_label.compare(unit - 4, 7, "ime [s]") != 0) {
+    return plot;
+  }
+  const AxisRange range = x_range(panels_of(plot), false);
+  const double span_s = range.high - range.low;
+  if (span_s < 600.0) return plot;
+  const auto [name, per_unit] = span_s < 7200.0     ? std::pair{"min", 60.0}
+                                : span_s < 259200.0 ? std::pair{"h", 3600.0}
+                                                    : std::pair{"d", 86400.0};
+  plot.x_label.replace(unit, 3, std::string("[") + name + "]");
+  const auto scale = [per_unit](std::vector<Plot::Curve>& curves) {
+    for (Plot::Curve& curve : curves) {
+      for (double& x : curve.x) x /= per_unit;
+    }
+  };
+  scale(plot.curves);
+  for (Plot::Panel& panel : plot.below) scale(panel.curves);
+  for (Plot::Interval& interval : plot.shaded) {
+    interval = {interval.from / per_unit, interval.to / per_unit};
+  }
+  return plot;
+}
+
+double seconds_of_unit(const Plot& plot) {
+  const std::string& label = plot.x_label;
+  return label.ends_with("ime [min]") ? 60.0
+         : label.ends_with("ime [h]") ? 3600.0
+         : label.ends_with("ime [d]") ? 86400.0
+                                      : 1.0;
+}
+
+Picture plot_picture(const Plot& plot, const Provenance& provenance, PictureStyle style) {
+  const PlotPage page = page_of(plot, provenance, style);
+  Canvas canvas = Canvas::of_pixels(page.width, page.height(), pixels_per_point(style));
+  draw_page(canvas, page);
   return canvas.finish_pixels();
 }
 
-std::string plot_svg(const Plot& plot, const Provenance& provenance) {
-  const PlotPage page = page_of(plot, provenance);
-  Canvas canvas = Canvas::of_svg(page_width, page.height());
-  draw_page(canvas, plot, page);
+std::string plot_svg(const Plot& plot, const Provenance& provenance, PictureStyle style) {
+  const PlotPage page = page_of(plot, provenance, style);
+  Canvas canvas = Canvas::of_svg(page.width, page.height(), Canvas::Letters::text);
+  draw_page(canvas, page);
   return canvas.finish_file();
 }
 
-std::string plot_pdf(const Plot& plot, const Provenance& provenance, const PdfText& text) {
-  const PlotPage page = page_of(plot, provenance);
-  Canvas canvas = Canvas::of_pdf(page_width, page.height(), text);
-  draw_page(canvas, plot, page);
+std::string plot_pdf(const Plot& plot, const Provenance& provenance, const PdfText& text,
+                     PictureStyle style) {
+  const PlotPage page = page_of(plot, provenance, style);
+  Canvas canvas = Canvas::of_pdf(page.width, page.height(), text);
+  draw_page(canvas, page);
   return canvas.finish_file();
 }
 
-std::string plot_html(const Plot& plot) {
-  require_consistent(plot);
+std::string plot_html(const Plot& of) {
+  require_consistent(of);
+  const Plot plot = in_readable_time(of);
   // Half of the last tick's label is beyond the frame.
   constexpr double half_label = 12.0;
   const PlotLayout layout = plot_layout(plot, {.left = 2.0,

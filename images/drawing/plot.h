@@ -7,6 +7,7 @@
 #include "core/provenance.h"
 #include "images/drawing/canvas.h"
 #include "images/drawing/curves.h"
+#include "images/drawing/style.h"
 
 namespace photorque {
 
@@ -18,8 +19,9 @@ struct PlotRoom {
   double left = 0.0, right = 0.0, top = 0.0;
   double min_axis_width = 0.0;  // left of the frames, so that frames of several plots line up
   double resolution = 0.5;      // of thinned lines
-  // Heights of the first panel and of those below it. Zero: the usual one for so many panels.
-  double first_height = 0.0, height_below = 0.0;
+  // Heights of the first panel and of those below it. Zero: the usual one for so many panels,
+  // times `scale`.
+  double first_height = 0.0, height_below = 0.0, scale = 1.0;
 };
 
 struct PlotLayout {
@@ -37,12 +39,22 @@ PlotLayout plot_layout(const Plot& plot, const PlotRoom& room);
 // Shaded intervals, grids, curves, levels, frames, axes and legends.
 void draw_plot(Canvas& canvas, const Plot& plot, const PlotLayout& layout);
 
-// Panels are stacked and share the x axis. Errors are drawn as ±1 standard error: bars on markers,
-// bands around lines. The legend stands in a free corner, or outside if there is none. Values that
-// are not finite, or not positive on a logarithmic axis, leave gaps. InputError if sizes disagree.
-Picture plot_picture(const Plot& plot, const Provenance& provenance);
-std::string plot_svg(const Plot& plot, const Provenance& provenance);
-std::string plot_pdf(const Plot& plot, const Provenance& provenance, const PdfText& text);
+// A plot whose x is "Time [s]", in minutes from ten minutes on, hours from two hours, days from
+// three days.
+Plot in_readable_time(Plot plot);
+// Seconds in the unit of its x axis: 60 of "Time [min]", 1 where it is no other time.
+double seconds_of_unit(const Plot& plot);
+
+// Panels are stacked and share the x axis, of time as by in_readable_time(). Errors are drawn as ±1
+// standard error: bars on markers, bands around lines. The legend stands in a free corner, or
+// outside if there is none. Values that are not finite, or not positive on a logarithmic axis,
+// leave gaps. InputError if sizes disagree.
+Picture plot_picture(const Plot& plot, const Provenance& provenance,
+                     PictureStyle style = PictureStyle::page);
+std::string plot_svg(const Plot& plot, const Provenance& provenance,
+                     PictureStyle style = PictureStyle::page);
+std::string plot_pdf(const Plot& plot, const Provenance& provenance, const PdfText& text,
+                     PictureStyle style = PictureStyle::page);
 
 // Width of charts in HTML pages, in the page's own units: a style of full width scales them.
 inline constexpr double html_chart_width = 920.0;

@@ -88,7 +88,8 @@ Picture scene_picture(const SceneView& view, const SceneLabels& labels,
   const std::optional<double> largest = largest_irradiance_W_m2(view);
   ColourScale scale =
       colour_scale(0.0, labels.scale_end_W_m2.value_or(largest.value_or(0.0)), false);
-  PageBox image{page_margin, 0.0, view.width / pixels_per_point, view.height / pixels_per_point};
+  const double per_point = pixels_per_point(PictureStyle::page);
+  PageBox image{page_margin, 0.0, view.width / per_point, view.height / per_point};
   const double bar_height = std::max(80.0, std::min(300.0, image.height - 60.0));
   const ColourBar bar = colour_bar(scale, labels.unit, bar_height);
   const double bar_room = largest ? 18.0 + bar.width() : 0.0;
@@ -99,7 +100,7 @@ Picture scene_picture(const SceneView& view, const SceneLabels& labels,
   const double body_height =
       std::max(image.height, bar_height + colour_bar_unit_height) + image.y - text.body_top();
   Canvas canvas =
-      Canvas::of_pixels(page_width, std::ceil(text.page_height(body_height)), pixels_per_point);
+      Canvas::of_pixels(page_width, std::ceil(text.page_height(body_height)), per_point);
   canvas.image(image, view.width, view.height, as_argb(shaded(view, scale)));
   if (largest) {
     const double slack = std::max(0.0, image.height - bar_height - colour_bar_unit_height);

@@ -153,6 +153,29 @@ Map disc(double reach, const Value& value) {
   return map;
 }
 
+// |T| of the maps "torque_x_NAME" + ending, … for body y and z; the error is that along T.
+Map size_of(const std::vector<Map>& maps, const std::string& name, const std::string& ending,
+            const std::string& seen_from) {
+  std::array<const Map*, 3> parts{};
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const std::string part = std::string("torque_") + "xyz"[axis] + "_" + name + ending;
+    parts[axis] = &*std::ranges::find(maps, part, &Map::name);
+  }
+  Map size = *parts[0];
+  size.name = "torque_size_" + name + ending;
+  size.title = "Size of the torque of light" + (name == "body" ? "" : " on " + name) + seen_from;
+  size.signed_values = false;
+  for (size_t i = 0; i < size.value.size(); ++i) {
+    const Vec3 torque(parts[0]->value[i], parts[1]->value[i], parts[2]->value[i]);
+    const Vec3 error(parts[0]->standard_error[i], parts[1]->standard_error[i],
+                     parts[2]->standard_error[i]);
+    size.value[i] = torque.norm();
+    size.standard_error[i] =
+        torque.norm() > 0.0 ? torque.normalized().cwiseProduct(error).norm() : error.norm();
+  }
+  return size;
+}
+
 }  // namespace
 
 std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name) {
@@ -175,6 +198,7 @@ std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name) {
       map.x_label = "tilt towards heading 0 [deg]";
       map.y_label = "tilt towards heading 90 [deg]";
       maps.push_back(std::move(map));
+      if (axis == 2) maps.push_back(size_of(maps, name, "_polar", ""));
       continue;
     }
     const bool sphere = std::abs(table.polar_rad.front() + 0.5 * pi) < same &&
@@ -193,6 +217,10 @@ std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name) {
       map.x_label = plus ? "towards +x" : "towards −x";
       map.y_label = "towards +y";
       maps.push_back(std::move(map));
+    }
+    if (axis < 2) continue;
+    for (const auto& [ending, side] : {std::pair{"_from_plus_z", "+z"}, {"_from_minus_z", "−z"}}) {
+      maps.push_back(size_of(maps, name, ending, std::string(", light from the side of ") + side));
     }
   }
   return maps;

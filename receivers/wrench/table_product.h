@@ -11,9 +11,10 @@
 
 namespace photorque {
 
-// Smooth maps of the torque's components about body x, y and z on `name`, from a table whose
-// headings or azimuths go all the way round in even steps; none from others.
-// - Tilt and heading: "torque_x_NAME_polar" …, the tilt from the middle outwards in degrees.
+// Smooth maps of the torque's components about body x, y and z, and of its size, on `name`, from a
+// table whose headings or azimuths go all the way round in even steps; none from others.
+// - Tilt and heading: "torque_x_NAME_polar" …, "torque_size_NAME_polar", the tilt from the middle
+// outwards in degrees.
 // - Elevation and azimuth over a whole sphere: "torque_x_NAME_from_plus_z" … and
 //   "…_from_minus_z", the halves of the sphere as seen from outside, in Lambert's equal areas.
 // Between the nodes: trigonometric in the angle around, cubic in the other, through the poles.

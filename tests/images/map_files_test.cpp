@@ -240,6 +240,36 @@ TEST(MapPicture, SmoothMapsAreDrawnBetweenTheirNodes) {
   EXPECT_LT(dark, 0.1 * drawn.grid_width);
 }
 
+// Of the field x from 0 to 4: labels stand on their lines, apart, along them (upright lines).
+TEST(MapPicture, IsAPageOfVectorsTooWhoseLettersAreText) {
+  const Map map = sample_map();
+  const std::string page = map_svg(map, {}, PictureStyle::page);
+  EXPECT_THAT(page, testing::HasSubstr(">" + map.title + "</text>"));
+  EXPECT_THAT(page, testing::HasSubstr("data:image/png;base64,"));
+  EXPECT_THAT(map_svg(map, {}, PictureStyle::paper),
+              testing::Not(testing::HasSubstr(">" + map.title + "</text>")));
+  EXPECT_THAT(map_pdf(map, {}, {"a", "b", "c"}, PictureStyle::page), testing::StartsWith("%PDF"));
+}
+
+TEST(MapPicture, ContourLinesHaveTheirNumbers) {
+  Map map;
+  map.name = map.title = "smooth";
+  map.width = map.height = 5;
+  for (int i = 0; i < 25; ++i) map.value.push_back(i % 5);
+  map.smooth = true;
+  const auto labels = contour_labels(map, colour_scale(map), 800, 800, 60.0);
+  ASSERT_GE(labels.size(), 3u);
+  for (const ContourLabel& label : labels) {
+    EXPECT_NEAR(4.0 * (label.column + 0.5) / 800.0, label.value, 0.02);
+    EXPECT_NEAR(std::stod(label.text), label.value, 1e-9);
+    EXPECT_NEAR(std::abs(label.turn_rad), std::numbers::pi / 2, 0.05);
+    for (const ContourLabel& other : labels) {
+      if (&other == &label) continue;
+      EXPECT_GE(std::hypot(other.column - label.column, other.row - label.row), 120.0);
+    }
+  }
+}
+
 TEST(MapPicture, SignedZeroIsTheNeutralMiddle) {
   Map map = sample_map();
   map.signed_values = true;

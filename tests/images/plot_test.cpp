@@ -336,5 +336,76 @@ TEST(Legend, NamesNoCurveWithoutPoints) {
   EXPECT_EQ(legend_of(curves, 170.0).curves, std::vector<size_t>{0});
 }
 
+// 600 s are the first minutes, 2 h the first hours, 3 d the first days.
+TEST(TimeAxis, HasTheUnitOfItsLength) {
+  const auto drawn = [](double duration_s, const char* label) {
+    Plot plot;
+    plot.x_label = label;
+    plot.curves = {{"", {0.0, duration_s}, {1.0, 2.0}}};
+    plot.below = {{"y", {{"", {0.0, duration_s}, {1.0, 2.0}}}}};
+    plot.shaded = {{0.5 * duration_s, duration_s}};
+    return in_readable_time(plot);
+  };
+  const std::vector<std::tuple<double, const char*, double>> known = {
+      {599.0, "Time [s]", 599.0},
+      {600.0, "Time [min]", 10.0},
+      {7199.0, "Time [min]", 7199.0 / 60},
+      {86400.0, "Time [h]", 24.0},
+      {259200.0, "Time [d]", 3.0}};
+  for (const auto& [duration_s, label, end] : known) {
+    const Plot plot = drawn(duration_s, "Time [s]");
+    EXPECT_EQ(plot.x_label, label);
+    EXPECT_DOUBLE_EQ(plot.curves[0].x[1], end);
+    EXPECT_DOUBLE_EQ(plot.below[0].curves[0].x[1], end);
+    EXPECT_DOUBLE_EQ(plot.shaded[0].to, end);
+    EXPECT_DOUBLE_EQ(end * seconds_of_unit(plot), duration_s);
+  }
+  EXPECT_EQ(drawn(1e6, "Voltage [V]").curves[0].x[1], 1e6);
+}
+
+// Forty bars of 100 and of 30 before them: the colours share the picture like that, without gaps.
+TEST(Plot, ManyBarsStandOnEachOther) {
+  Plot plot;
+  plot.name = plot.title = "shares";
+  for (const double top : {100.0, 30.0}) {
+    Plot::Curve curve;
+    for (int i = 0; i < 40; ++i) {
+      curve.x.push_back(2.5 * i);
+      curve.y.push_back(top);
+    }
+    curve.bars = true;
+    plot.curves.push_back(curve);
+  }
+  const Picture picture = plot_picture(plot, {});
+  std::array<double, 2> pixels{};
+  for (size_t i = 0; i < picture.rgb.size(); i += 3) {
+    for (size_t k = 0; k < 2; ++k) {
+      const auto colour = rgb_bytes(curve_stroke(k).colour);
+      pixels[k] += std::abs(picture.rgb[i] - colour[0]) < 4 &&
+                   std::abs(picture.rgb[i + 1] - colour[1]) < 4 &&
+                   std::abs(picture.rgb[i + 2] - colour[2]) < 4;
+    }
+  }
+  EXPECT_NEAR(pixels[1] / (pixels[0] + pixels[1]), 0.3, 0.01);
+  // 1200 by 660 pixels within the axes, at 6 % room above.
+  EXPECT_GT(pixels[0] + pixels[1], 0.8 * 0.94 * 1100 * 650);
+}
+
+TEST(Styles, PaperHasNoTitleAndRelativelyLargerLetters) {
+  Plot plot = constant_plot();
+  plot.title = "A long title";
+  const std::string page = plot_svg(plot, {}), paper = plot_svg(plot, {}, PictureStyle::paper);
+  EXPECT_THAT(page, ::testing::HasSubstr(">" + plot.title + "</text>"));
+  EXPECT_THAT(paper, ::testing::Not(::testing::HasSubstr(plot.title)));
+  const auto width = [](const std::string& svg) {
+    return std::stod(svg.substr(svg.find("width=\"") + 7));
+  };
+  EXPECT_NEAR(width(paper) / width(page), 0.62, 0.01);
+  // Letters have their size in points in both.
+  EXPECT_THAT(paper, ::testing::HasSubstr("font-size=\"10.50\""));
+  const Picture slide = plot_picture(plot, {}, PictureStyle::slide);
+  EXPECT_GT(slide.width, plot_picture(plot, {}).width);
+}
+
 }  // namespace
 }  // namespace photorque

@@ -41,6 +41,17 @@ TEST(LinearTicks, StepsAreOneTwoOrFive) {
   }
 }
 
+// 0.4 to 1.6 of a step holds one multiple of it; a scale needs two.
+TEST(LinearTicks, AreNeverAlone) {
+  for (const AxisRange& range : many_ranges()) {
+    for (const int at_most : {2, 3, 4, 9}) {
+      const Ticks ticks = linear_ticks(range.low, range.high, at_most);
+      EXPECT_GE(ticks.values.size(), 2u) << range.low << " " << range.high << " " << at_most;
+      EXPECT_LE(static_cast<int>(ticks.values.size()), at_most);
+    }
+  }
+}
+
 TEST(LinearTicks, FillTheIntervalWithoutLeavingIt) {
   for (const AxisRange& range : many_ranges()) {
     const double width = range.high - range.low;

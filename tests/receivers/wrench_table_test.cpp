@@ -23,7 +23,7 @@ WrenchTable numbered(std::vector<double> tilts_deg, std::vector<double> headings
 
 TEST(WrenchTableProduct, RegularGridBecomesMapsCentredOnItsNodes) {
   const Product product = wrench_table_product(numbered({0, 15, 30}, {0, 90, 180, 270}), "stasis");
-  EXPECT_EQ(product.maps.size(), 9u);  // three of them discs
+  EXPECT_EQ(product.maps.size(), 10u);  // four of them discs
   EXPECT_TRUE(product.plots.empty());
   const Map& map = map_named(product, "torque_y_stasis");
   EXPECT_EQ(map.width, 5);  // the first heading closes the round
@@ -44,6 +44,18 @@ TEST(WrenchTableProduct, RegularGridBecomesMapsCentredOnItsNodes) {
 TEST(WrenchTableProduct, DiscsOfTiltAndHeadingPassThroughTheNodes) {
   const Product product = wrench_table_product(numbered({0, 15, 30}, {0, 90, 180, 270}), "stasis");
   const Map& disc = map_named(product, "torque_y_stasis_polar");
+  const Map& size = map_named(product, "torque_size_stasis_polar");
+  EXPECT_FALSE(size.signed_values);
+  for (size_t i = 0; i < size.value.size(); ++i) {
+    double squares = 0.0;
+    for (const char* axis : {"x", "y", "z"}) {
+      const double part =
+          map_named(product, std::string("torque_") + axis + "_stasis_polar").value[i];
+      squares += part * part;
+    }
+    if (!std::isfinite(squares)) continue;
+    EXPECT_DOUBLE_EQ(size.value[i], std::sqrt(squares)) << i;
+  }
   EXPECT_TRUE(disc.smooth);
   const auto at = [&](double x_deg, double y_deg) {
     const double step_deg = (disc.x_high - disc.x_low) / disc.width;

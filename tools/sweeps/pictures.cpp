@@ -213,7 +213,7 @@ Plot pareto_plot(const SweepPlan& plan, const SweepResult& result, size_t second
   }
   add_points(plot, "outside the constraints", outside.x, outside.y, Plot::Colour::grey, true);
   add_points(plot, "designs", inside.x, inside.y, Plot::Colour::blue, true);
-  add_points(plot, "none is better in all", front.x, front.y, Plot::Colour::vermilion, false);
+  add_points(plot, "Pareto front", front.x, front.y, Plot::Colour::vermilion, false);
   add_points(plot, "the experiment as it stands", nominal.x, nominal.y, Plot::Colour::green, false);
   return plot;
 }
