@@ -9,10 +9,10 @@ namespace photorque {
 // that set it swinging acts before. Local cubics through a quarter of a period give angle, rate and
 // acceleration; one law of angle and rate (a constant, sin, cos and the angle itself, sign, rate,
 // rate |rate|) is fitted to all accelerations, robustly (Tukey's biweight). It swings freely from
-// where that law holds for a quarter of a period, to three times the usual scatter or a twentieth of
-// the accelerations around. What rests at the end does not count. `first` where it swings less than
-// three times or there are too few rows, and where that would leave out more than a quarter of the
-// rows.
+// where that law holds for a quarter of a period, to three times the usual scatter or a twentieth
+// of the accelerations around. What rests at the end does not count. `first` where it swings less
+// than three times or there are too few rows, and where that would leave out more than a quarter of
+// the rows.
 size_t released_at(const Observation& rows, const Vec3& axis, size_t first, size_t last);
 
 }  // namespace photorque

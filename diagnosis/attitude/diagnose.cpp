@@ -168,7 +168,8 @@ NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
       [&](const Observation& seen) { return seen.feels_attitude(stated.model.platform); });
   const Platform& platform = nominal.model.platform;
   // A twisted line pulls back to an angle that a rate alone shows as well.
-  const bool may_twist = platform.turns_about_one_axis() && std::abs(platform.axis.z()) > 0.5 &&
+  const bool may_twist = platform.turns_about_one_axis() && !platform.slides() &&
+                         std::abs(platform.axis.z()) > 0.5 &&
                          turns_little(data.train, platform.axis);
   nominal.model.holds_attitude = !is_seen && !may_twist && !depends_on_attitude(stated.model);
   return nominal;

@@ -11,7 +11,8 @@ namespace photorque {
 std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates& all,
                                        const RecordedData& data) {
   const AttitudeModel& model = nominal_fit.best.model;
-  if (!model.platform.turns_about_one_axis() || !std::isfinite(nominal_fit.chi2)) {
+  if (!model.platform.turns_about_one_axis() || model.platform.slides() ||
+      !std::isfinite(nominal_fit.chi2)) {
     return std::nullopt;
   }
   const AttitudeDomain domain(all);

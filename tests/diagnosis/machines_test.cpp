@@ -359,7 +359,7 @@ struct Swing {
         angle_rad += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
         rate += h / 6.0 * (w1 + 2.0 * w2 + 2.0 * w3 + w4);
         if (rate * sign >= 0.0) continue;
-        // What it turned back with since the turning point it did under the old sign.
+        // Since the turning point its rate grew under the old sign.
         const double old = acceleration(angle_rad, 0.0);
         sign = -sign;
         rests = std::abs(k * std::sin(angle_rad)) <= dry;
@@ -434,8 +434,8 @@ TEST(Machines, ADragHasNoRivalsInAHeadingThatNeverChanges) {
   expect_near_truth(d, "bearing_drag", "coefficient_N_m_s", c, 0.0);
 }
 
-// θ = A e^(−c t/2) cos(ω t), ω² = k − c²/4, its rate alone: nobody knows to which angle the line
-// pulls back.
+// θ = A e^(−c t/2) cos(ω t), ω² = k − c²/4, its rate alone: the angle to which the line pulls back
+// is unknown.
 TEST(Machines, ATwistedLineIsFoundByTheRateAlone) {
   constexpr double k = 0.16, c = 0.012, largest_rad = 2.5, noise_rad_s = 0.003;
   const double omega = std::sqrt(k - 0.25 * c * c);

@@ -423,6 +423,7 @@ bool pulls_back(const Candidate& candidate, AttitudeModel model) {
     if (candidate.is_strength(p)) acting.parameters[p].value += candidate.scale[p];
   }
   model.disturbances = {std::move(acting)};
+  if (model.platform.slides()) model.disturbances.push_back(translation());
   const Vec3& axis = model.platform.axis;
   const auto torque = [&](double angle_rad, double rate_rad_s) {
     PlatformState state = Dynamics(model).initial_state(rate_rad_s * axis);
@@ -527,9 +528,11 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
       return c.variable == (is_level ? "heading" : "tilt");
     });
     // A weight pulls back about a level axis, and a twisted line would do so nearly alike.
-    const bool has_weight = std::ranges::any_of(all.list, [&](const Candidate& c) {
-      return c.effect.how.needs == Requirement::gravity && pulls_back(c, nominal.model);
-    });
+    // What slides carries no line that is known to twist.
+    const bool has_weight =
+        context.platform.slides() || std::ranges::any_of(all.list, [&](const Candidate& c) {
+          return c.effect.how.needs == Requirement::gravity && pulls_back(c, nominal.model);
+        });
     std::erase_if(all.list, [&](const Candidate& c) {
       return has_weight && c.effect.how.needs == Requirement::bearing &&
              pulls_back(c, nominal.model);
