@@ -301,38 +301,48 @@ void draw_plot(Canvas& canvas, const Plot& plot, const PlotLayout& layout) {
   }
 }
 
+namespace {
+
+struct TimeUnit {
+  std::string_view name;
+  double seconds;
+  double shortest_axis_s;  // from which on the unit is used
+};
+constexpr TimeUnit long_units[] = {
+    {"d", 86400.0, 259200.0}, {"h", 3600.0, 7200.0}, {"min", 60.0, 600.0}};
+
+bool is_time_in(const std::string& label, std::string_view unit) {
+  const std::string end = "[" + std::string(unit) + "]";
+  return label.ends_with("Time " + end) || label.ends_with("time " + end);
+}
+
+}  // namespace
+
 Plot in_readable_time(Plot plot) {
-  const size_t unit = plot.x_label.size() < 8 ? std::string::npos : plot.x_label.size() - 3;
-  if (plot.x_log || unit == std::string::npos ||
-      plot.x_label.compare(unit - 4, 7, "ime [s]") != 0) {
-    return plot;
-  }
+  if (plot.x_log || !is_time_in(plot.x_label, "s")) return plot;
   const AxisRange range = x_range(panels_of(plot), false);
-  const double span_s = range.high - range.low;
-  if (span_s < 600.0) return plot;
-  const auto [name, per_unit] = span_s < 7200.0     ? std::pair{"min", 60.0}
-                                : span_s < 259200.0 ? std::pair{"h", 3600.0}
-                                                    : std::pair{"d", 86400.0};
-  plot.x_label.replace(unit, 3, std::string("[") + name + "]");
-  const auto scale = [per_unit](std::vector<Plot::Curve>& curves) {
+  const auto* const unit = std::ranges::find_if(
+      long_units, [&](const TimeUnit& u) { return range.high - range.low >= u.shortest_axis_s; });
+  if (unit == std::end(long_units)) return plot;
+  plot.x_label.replace(plot.x_label.size() - 2, 1, unit->name);
+  const auto scale = [&](std::vector<Plot::Curve>& curves) {
     for (Plot::Curve& curve : curves) {
-      for (double& x : curve.x) x /= per_unit;
+      for (double& x : curve.x) x /= unit->seconds;
     }
   };
   scale(plot.curves);
   for (Plot::Panel& panel : plot.below) scale(panel.curves);
   for (Plot::Interval& interval : plot.shaded) {
-    interval = {interval.from / per_unit, interval.to / per_unit};
+    interval = {interval.from / unit->seconds, interval.to / unit->seconds};
   }
   return plot;
 }
 
 double seconds_of_unit(const Plot& plot) {
-  const std::string& label = plot.x_label;
-  return label.ends_with("ime [min]") ? 60.0
-         : label.ends_with("ime [h]") ? 3600.0
-         : label.ends_with("ime [d]") ? 86400.0
-                                      : 1.0;
+  for (const TimeUnit& unit : long_units) {
+    if (is_time_in(plot.x_label, unit.name)) return unit.seconds;
+  }
+  return 1.0;
 }
 
 Picture plot_picture(const Plot& plot, const Provenance& provenance, PictureStyle style) {
