@@ -41,8 +41,7 @@ std::vector<LossStage> loss_waterfall(const ArrayResult& array, const LossInputs
   }
   double left_W = array.power_W.value;
   cells_W = without_rounding(cells_W, left_W);
-  stages.push_back({"each cell at its maximum power point",
-                    without_rounding(array.sum_of_cells_W.value, cells_W),
+  stages.push_back({"sum of cell maxima", without_rounding(array.sum_of_cells_W.value, cells_W),
                     "voltage below the photon's, fill factor"});
   stages.push_back({"cells in the network", cells_W, "uneven light"});
   stages.push_back({"array", left_W, "bypass and blocking diodes"});
