@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // A recording with this header and, from t = 0 on, every tenth of a second this rest of a row.
-Recording recording_of(const std::string& header, const std::string& row, int rows) {
+Recording repeated_row(const std::string& header, const std::string& row, int rows) {
   const fs::path path = fs::path(testing::TempDir()) / "bad_recording.csv";
   std::ofstream out(path);
   out << header << "\n";
@@ -33,23 +33,23 @@ std::string refusal_of(const Recording& recording) {
 }
 
 TEST(BadRecording, WithoutAttitudeNamesTheMissingChannel) {
-  const Recording currents = recording_of("t_s,battery_current_A", "0.1", 100);
+  const Recording currents = repeated_row("t_s,battery_current_A", "0.1", 100);
   EXPECT_EQ(refusal_of(currents),
             "run.csv: header: found no channel q_w and no gyro, expected the attitude q_w, q_x, "
             "q_y, q_z or roll_rad, pitch_rad, yaw_rad; or gyro_x_rad_s, gyro_y_rad_s, "
             "gyro_z_rad_s; or any of tilt_rad, heading_rad, rate_magnitude_rad_s");
-  const Recording three = recording_of("t_s,q_w,q_x,q_y", "1,0,0", 100);
+  const Recording three = repeated_row("t_s,q_w,q_x,q_y", "1,0,0", 100);
   EXPECT_NE(refusal_of(three).find("no channel q_z"), std::string::npos);
 }
 
 TEST(BadRecording, WithHardlyAnyAttitudeIsRefused) {
-  EXPECT_NE(refusal_of(recording_of("t_s,q_w,q_x,q_y,q_z", "1,0,0,0", 19)).find("19 complete"),
+  EXPECT_NE(refusal_of(repeated_row("t_s,q_w,q_x,q_y,q_z", "1,0,0,0", 19)).find("19 complete"),
             std::string::npos);
-  EXPECT_EQ(refusal_of(recording_of("t_s,q_w,q_x,q_y,q_z", "1,0,0,0", 20)), "");
+  EXPECT_EQ(refusal_of(repeated_row("t_s,q_w,q_x,q_y,q_z", "1,0,0,0", 20)), "");
 }
 
 TEST(BadRecording, QuaternionsWithoutLengthAreNoAttitude) {
-  EXPECT_NE(refusal_of(recording_of("t_s,q_w,q_x,q_y,q_z", "0,0,0,0", 200)).find("0 complete"),
+  EXPECT_NE(refusal_of(repeated_row("t_s,q_w,q_x,q_y,q_z", "0,0,0,0", 200)).find("0 complete"),
             std::string::npos);
 }
 
@@ -57,7 +57,7 @@ TEST(BadRecording, QuaternionsWithoutLengthAreNoAttitude) {
 // none.
 TEST(BadRecording, WhoseClockJumpsNamesTheInstants) {
   const auto with_pause = [](double pause_s) {
-    Recording r = recording_of("t_s,q_w,q_x,q_y,q_z", "1,0,0,0", 200);
+    Recording r = repeated_row("t_s,q_w,q_x,q_y,q_z", "1,0,0,0", 200);
     for (size_t row = 100; row < 200; ++row) r.time_s[row] += pause_s;
     r.report.gaps = {{r.time_s[99], r.time_s[100]}};
     return r;

@@ -30,7 +30,7 @@ CellTables tables() {
 }
 
 // Columns of one light each: 5, `second` and `third` ampere.
-std::vector<double> columns(double first, double second, double third) {
+std::vector<double> light_of_columns(double first, double second, double third) {
   std::vector<double> light;
   for (size_t i = 0; i < cells; ++i)
     light.push_back(i % 3 == 0 ? first : i % 3 == 1 ? second : third);
@@ -49,7 +49,8 @@ std::vector<TrackerRun> run(const LightHistory& light) {
 }
 
 TEST(PhotovoltaicTracker, EvenSteadyLightIsTrackedToTheStep) {
-  for (const TrackerRun& r : run({{0.0, 60.0}, {columns(5, 5, 5), columns(5, 5, 5)}})) {
+  for (const TrackerRun& r :
+       run({{0.0, 60.0}, {light_of_columns(5, 5, 5), light_of_columns(5, 5, 5)}})) {
     EXPECT_LE(r.energy_J, r.best_energy_J * (1 + 1e-12));
     EXPECT_EQ(r.false_maximum_s, 0.0);
     // A step of 1 % of the range costs less than 0.5 %; sweeps of 4 s in 14 s cost more.
@@ -61,10 +62,10 @@ TEST(PhotovoltaicTracker, EvenSteadyLightIsTrackedToTheStep) {
 
 // The light moves off two thirds of the array: the best voltage jumps to that of one column.
 TEST(PhotovoltaicTracker, StepwiseTrackersStayOnAFalseMaximumAndScansLeaveIt) {
-  const LightHistory light{
-      {0.0, 10.0, 11.0, 80.0},
-      {columns(5, 5, 5), columns(5, 5, 5), columns(5, 0.8, 0.8), columns(5, 0.8, 0.8)}};
-  const ArrayCurve shaded(three_substrings(), tables(), columns(5, 0.8, 0.8));
+  const LightHistory light{{0.0, 10.0, 11.0, 80.0},
+                           {light_of_columns(5, 5, 5), light_of_columns(5, 5, 5),
+                            light_of_columns(5, 0.8, 0.8), light_of_columns(5, 0.8, 0.8)}};
+  const ArrayCurve shaded(three_substrings(), tables(), light_of_columns(5, 0.8, 0.8));
   ASSERT_EQ(shaded.maxima().size(), 2u);
   const std::vector<TrackerRun> runs = run(light);
   const auto of = [&](Tracker::Kind kind) { return runs[static_cast<size_t>(kind)]; };

@@ -38,7 +38,7 @@ std::string emitter(const std::string& data, const std::string& kind = "Radiant"
 }
 
 // 100 (2 − v/45) in one plane, as LM-63 and as TM-33.
-const std::string small_ies =
+const std::string one_lamp_ies =
     "IESNA:LM-63-2002\nTILT=NONE\n1 1000 2 3 1 1 2 0 0 0\n1 1 10\n0 45 90\n0\n100 50 0\n";
 const std::vector<Direction> small_table = {{0, 0, 100}, {0, 45, 50}, {0, 90, 0}};
 const std::string small_data = "        <Multiplier>2</Multiplier>\n" + int_data(small_table);
@@ -51,7 +51,7 @@ void expect_same_table(const PhotometricFile& a, const PhotometricFile& b) {
   EXPECT_EQ(a.table.intensity, b.table.intensity);
 }
 
-void expect_refused(const std::string& text, const std::string& words, int line = 0) {
+void expect_refused_at(const std::string& text, const std::string& words, int line = 0) {
   try {
     read_photometric(text, "lamp.xml");
     ADD_FAILURE() << "accepted, instead of: " << words;
@@ -64,7 +64,7 @@ void expect_refused(const std::string& text, const std::string& words, int line 
 
 TEST(Tm33File, IsTheSameLampAsInLm63) {
   const PhotometricFile file = read_photometric(document(emitter(small_data)), "lamp.xml");
-  expect_same_table(file, read_ies(small_ies, ""));
+  expect_same_table(file, read_ies(one_lamp_ies, ""));
   EXPECT_EQ(file.format, "IESTM33-22");
   EXPECT_EQ(file.input_power_W, 10.0);
   EXPECT_FALSE(file.stated_flux_lm);
@@ -191,13 +191,13 @@ TEST(Tm33File, LightLeavesTheBottomFace) {
 }
 
 TEST(Tm33File, SaysWhatIsWrongAndWhere) {
-  expect_refused("<IESTM33-22>\n<Header>\n</Emitter>", "well-formed XML", 3);
-  expect_refused("<html>\n</html>", "<html>", 1);
-  expect_refused(document(""), "none with a table of intensities");
-  expect_refused(document(emitter(small_data) + emitter(small_data)), "a second one", 23);
-  expect_refused(document(emitter(small_data), "CUSTOM"), "CUSTOM");
+  expect_refused_at("<IESTM33-22>\n<Header>\n</Emitter>", "well-formed XML", 3);
+  expect_refused_at("<html>\n</html>", "<html>", 1);
+  expect_refused_at(document(""), "none with a table of intensities");
+  expect_refused_at(document(emitter(small_data) + emitter(small_data)), "a second one", 23);
+  expect_refused_at(document(emitter(small_data), "CUSTOM"), "CUSTOM");
   const auto refused = [](const std::string& data, const std::string& words) {
-    expect_refused(document(emitter(data)), words);
+    expect_refused_at(document(emitter(data)), words);
   };
   refused(int_data({{0, 0, 1}, {0, 90, 1}, {90, 0, 1}}), "none at h 90, v 90");
   refused(int_data({{0, 0, 1}, {0, 90, 1}, {0, 0, 1}}), "h 0, v 0 twice");
@@ -207,8 +207,8 @@ TEST(Tm33File, SaysWhatIsWrongAndWhere) {
   refused("<Symm>Symm_Arbitrary</Symm>" + small_data, "Symm_Arbitrary");
   refused("<Symm>Symm_Full</Symm>" + int_data({{0, 0, 1}, {0, 90, 1}, {90, 0, 1}, {90, 90, 1}}),
           "Symm_Full with 2 planes");
-  expect_refused(document(emitter("<Symm>Symm_None</Symm>" + small_data), "IES_B"),
-                 "Symm_None with angles from 0");
+  expect_refused_at(document(emitter("<Symm>Symm_None</Symm>" + small_data), "IES_B"),
+                    "Symm_None with angles from 0");
   refused("<NumberHorz>2</NumberHorz>" + small_data, "1, as many as there are");
   refused("<Multiplier>1e400</Multiplier>" + small_data, "a number");
   refused("<Multiplier>1e308</Multiplier>" + small_data, "overflows");

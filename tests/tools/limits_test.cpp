@@ -10,8 +10,8 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-const fs::path shipped_scenes = fs::path(PHOTORQUE_SOURCE_DIR) / "scenes";
-const std::string stasis_nominal = (shipped_scenes / "stasis" / "nominal.toml").string();
+const fs::path scenes_of_limits = fs::path(PHOTORQUE_SOURCE_DIR) / "scenes";
+const std::string stasis_nominal = (scenes_of_limits / "stasis" / "nominal.toml").string();
 const std::string quick_run = " --set trace.rays=16384", endless_run = " --set trace.rays=3e10";
 
 class Limits : public CommandTest {
@@ -52,7 +52,7 @@ TEST_F(Limits, NamesThatNoFileCanHaveAreRefusedBeforeTheTrace) {
 }
 
 TEST_F(Limits, EpochsWithinALeapSecondAreRefused) {
-  expect_refused("propagate " + (shipped_scenes / "stasis" / "attitude.toml").string() +
+  expect_refused("propagate " + (scenes_of_limits / "stasis" / "attitude.toml").string() +
                      " --set propagate.epoch=2016-12-31T23:59:60",
                  "expected no leap second");
 }
@@ -78,7 +78,7 @@ TEST_F(Limits, DevicesAreNoExperiments) {
 }
 
 TEST_F(Limits, ChargesBeyondTheBatteryAreRefused) {
-  expect_refused("propagate " + (shipped_scenes / "stasis" / "attitude.toml").string() +
+  expect_refused("propagate " + (scenes_of_limits / "stasis" / "attitude.toml").string() +
                      " --set platform.battery_capacity_Ah=1 --set propagate.initial_charge_Ah=2",
                  "expected at most the 1.000000 of platform.battery_capacity_Ah");
 }
@@ -86,7 +86,7 @@ TEST_F(Limits, ChargesBeyondTheBatteryAreRefused) {
 // The stasis model as its buffer inside the file; here the buffer lies elsewhere, behind a link.
 TEST_F(Limits, LinksOutOfTheModelsFolderAreFollowedOnlyWhenAllowed) {
   nlohmann::json model =
-      nlohmann::json::parse(file_text(shipped_scenes / "dumbbell" / "dumbbell.gltf"));
+      nlohmann::json::parse(file_text(scenes_of_limits / "dumbbell" / "dumbbell.gltf"));
   const std::string uri = model["buffers"][0]["uri"];
   ASSERT_TRUE(uri.starts_with("data:"));
   fs::create_directories(at("model"));
@@ -96,7 +96,7 @@ TEST_F(Limits, LinksOutOfTheModelsFolderAreFollowedOnlyWhenAllowed) {
   fs::create_symlink(at("secret.bin"), at("model/link.bin"));
   write("model/dumbbell.gltf", model.dump());
   const std::string experiment =
-      write("model/e.toml", file_text(shipped_scenes / "dumbbell" / "dumbbell.toml"));
+      write("model/e.toml", file_text(scenes_of_limits / "dumbbell" / "dumbbell.toml"));
   expect_refused("trace " + experiment + quick_run, "a link or path out of its folder");
   const Outcome allowed =
       run("trace " + experiment + quick_run + " --allow-outside --out " + at("o"));
@@ -105,7 +105,7 @@ TEST_F(Limits, LinksOutOfTheModelsFolderAreFollowedOnlyWhenAllowed) {
 
 TEST_F(Limits, CoincidentFacesAreNamed) {
   nlohmann::json model =
-      nlohmann::json::parse(file_text(shipped_scenes / "dumbbell" / "dumbbell.gltf"));
+      nlohmann::json::parse(file_text(scenes_of_limits / "dumbbell" / "dumbbell.gltf"));
   size_t with_mesh = 0;
   while (!model["nodes"][with_mesh].contains("mesh")) ++with_mesh;
   nlohmann::json twin = model["nodes"][with_mesh];
@@ -123,7 +123,7 @@ TEST_F(Limits, CoincidentFacesAreNamed) {
   if (!placed) model["scenes"][0]["nodes"].push_back(model["nodes"].size() - 1);
   write("dumbbell.gltf", model.dump());
   const std::string experiment =
-      write("e.toml", file_text(shipped_scenes / "dumbbell" / "dumbbell.toml"));
+      write("e.toml", file_text(scenes_of_limits / "dumbbell" / "dumbbell.toml"));
   const Outcome got = run("trace " + experiment + quick_run + " --out " + at("o"));
   ASSERT_EQ(got.status, 0) << got.err;
   EXPECT_THAT(got.out, HasSubstr("twin\" lie in each other and face alike: only the first"));

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using Clock = std::chrono::steady_clock;
 
-const std::string stasis =
+const std::string lit_platform =
     (fs::path(PHOTORQUE_SOURCE_DIR) / "scenes" / "stasis" / "nominal.toml").string();
 const std::string quick = " --set trace.rays=16384", endless = " --set trace.rays=3e10";
 
@@ -30,7 +30,7 @@ class OutputFolders : public CommandTest {
   // `photorque trace` on its own, as another process.
   pid_t start(const std::string& arguments) const {
     const std::string command = "exec " + std::string(PHOTORQUE_BINARY_DIR) + "/photorque trace " +
-                                stasis + arguments + " >/dev/null 2>&1";
+                                lit_platform + arguments + " >/dev/null 2>&1";
     const pid_t child = ::fork();
     if (child == 0) {
       ::signal(SIGINT, SIG_DFL);  // what a shell starts in the background ignores it
@@ -61,7 +61,7 @@ TEST_F(OutputFolders, ThatAreFilesAreFoundBeforeTheWork) {
   write("taken", "mine");
   const auto begin = Clock::now();
   for (const std::string out : {"taken", "taken/below"}) {
-    const Outcome got = run("trace " + stasis + endless + " --out " + at(out));
+    const Outcome got = run("trace " + lit_platform + endless + " --out " + at(out));
     EXPECT_EQ(got.status, 2);
     EXPECT_THAT(got.err, HasSubstr("--out: found"));
   }
@@ -71,7 +71,7 @@ TEST_F(OutputFolders, ThatAreFilesAreFoundBeforeTheWork) {
 
 // An improved.toml that is diagnosed again into its own folder, say.
 TEST_F(OutputFolders, WhoseResultIsTheInputAreFoundBeforeTheWork) {
-  const std::string text = file_text(stasis);
+  const std::string text = file_text(lit_platform);
   fs::create_directories(at("o"));
   write("o/again.toml", text);
   write("o/files.json", R"({"schema": "photorque.files/1",
@@ -83,13 +83,13 @@ TEST_F(OutputFolders, WhoseResultIsTheInputAreFoundBeforeTheWork) {
 }
 
 TEST_F(OutputFolders, ThatCannotBeWrittenAreFoundBeforeTheWork) {
-  const Outcome kernel = run("trace " + stasis + endless + " --out /sys/kernel/photorque");
+  const Outcome kernel = run("trace " + lit_platform + endless + " --out /sys/kernel/photorque");
   EXPECT_EQ(kernel.status, 2);
   EXPECT_THAT(kernel.err, HasSubstr("expected a folder that can be made"));
   fs::create_directories(at("locked"));
   fs::permissions(at("locked"), fs::perms::owner_read | fs::perms::owner_exec);
   if (::access(at("locked").c_str(), W_OK) == 0) GTEST_SKIP() << "the superuser may write anywhere";
-  const Outcome locked = run("trace " + stasis + endless + " --out " + at("locked"));
+  const Outcome locked = run("trace " + lit_platform + endless + " --out " + at("locked"));
   EXPECT_EQ(locked.status, 2);
   EXPECT_THAT(locked.err, HasSubstr("a folder that takes no files"));
 }
@@ -103,13 +103,13 @@ TEST_F(OutputFolders, BelongToOneRunAtATime) {
   const pid_t first = start(endless + " --out " + at("o"));
   wait_until([&] { return fs::exists(at("o")); });
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  const Outcome second = run("trace " + stasis + quick + " --out " + at("o"));
+  const Outcome second = run("trace " + lit_platform + quick + " --out " + at("o"));
   ::kill(first, SIGKILL);
   ::waitpid(first, nullptr, 0);
   EXPECT_EQ(second.status, 2);
   EXPECT_THAT(second.err, HasSubstr("a folder that another run is writing into"));
   // A killed run holds no lock.
-  EXPECT_EQ(run("trace " + stasis + quick + " --out " + at("o")).status, 0);
+  EXPECT_EQ(run("trace " + lit_platform + quick + " --out " + at("o")).status, 0);
 }
 
 TEST_F(OutputFolders, AreLeftCleanBySignalsWithinASecond) {
@@ -141,7 +141,7 @@ TEST_F(OutputFolders, AreFreeAsSoonAsARunWasStopped) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     ::kill(child, SIGINT);
     ::waitpid(child, nullptr, 0);
-    const Outcome next = run("trace " + stasis + " --set trace.rays=4096 --out " + at("o"));
+    const Outcome next = run("trace " + lit_platform + " --set trace.rays=4096 --out " + at("o"));
     EXPECT_EQ(next.status, 0) << next.err;
   }
 }
@@ -154,15 +154,15 @@ TEST_F(OutputFolders, AreClearedOfWhatKilledRunsLeft) {
   const std::string own = std::to_string(::getpid());
   name.replace(name.find(own), own.size(), std::to_string(child));
   fs::create_directories(fs::path(at("o")) / name);
-  ASSERT_EQ(run("trace " + stasis + quick + " --out " + at("o")).status, 0);
+  ASSERT_EQ(run("trace " + lit_platform + quick + " --out " + at("o")).status, 0);
   EXPECT_THAT(hidden("o"), testing::IsEmpty());
 }
 
 // Latin-1, say. What is written names the file as far as UTF-8 can.
 TEST_F(OutputFolders, AndExperimentsMayHaveNamesThatAreNotUtf8) {
-  const fs::path scenes = fs::path(stasis).parent_path();
-  fs::copy(scenes / "stasis.gltf", at("stasis.gltf"));
-  write("stand_g\xFC.toml", file_text(stasis));
+  const fs::path scenes = fs::path(lit_platform).parent_path();
+  fs::copy(scenes / "lit_platform.gltf", at("lit_platform.gltf"));
+  write("stand_g\xFC.toml", file_text(lit_platform));
   ASSERT_EQ(run("trace " + at("stand_g\xFC.toml") + quick + " --out " + at("o\xFC")).status, 0);
   for (const std::string file : {"files.json", "summary.json"}) {
     EXPECT_THAT(file_text(at("o\xFC/" + file)), HasSubstr("stand_g\xEF\xBF\xBD.toml")) << file;
@@ -171,10 +171,10 @@ TEST_F(OutputFolders, AndExperimentsMayHaveNamesThatAreNotUtf8) {
 
 TEST_F(OutputFolders, HoldFilesOfTheLastRunAlone) {
   const std::string rays = " --set trace.arriving_rays=4096";
-  ASSERT_EQ(run("trace " + stasis + quick + rays + " --out " + at("o")).status, 0);
+  ASSERT_EQ(run("trace " + lit_platform + quick + rays + " --out " + at("o")).status, 0);
   write("o/mine.csv", "mine");
   ASSERT_TRUE(fs::exists(at("o/rays_solar_array.tm25ray")));
-  ASSERT_EQ(run("trace " + stasis + quick + " --out " + at("o")).status, 0);
+  ASSERT_EQ(run("trace " + lit_platform + quick + " --out " + at("o")).status, 0);
   EXPECT_FALSE(fs::exists(at("o/rays_solar_array.tm25ray")));
   EXPECT_TRUE(fs::exists(at("o/mine.csv")));
 }
