@@ -161,7 +161,7 @@ TEST_F(OutputFolders, AreClearedOfWhatKilledRunsLeft) {
 // Latin-1, say. What is written names the file as far as UTF-8 can.
 TEST_F(OutputFolders, AndExperimentsMayHaveNamesThatAreNotUtf8) {
   const fs::path scenes = fs::path(lit_platform).parent_path();
-  fs::copy(scenes / "lit_platform.gltf", at("lit_platform.gltf"));
+  fs::copy(scenes / "stasis.gltf", at("stasis.gltf"));
   write("stand_g\xFC.toml", file_text(lit_platform));
   ASSERT_EQ(run("trace " + at("stand_g\xFC.toml") + quick + " --out " + at("o\xFC")).status, 0);
   for (const std::string file : {"files.json", "summary.json"}) {
