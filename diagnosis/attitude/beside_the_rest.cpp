@@ -133,18 +133,18 @@ class Contest {
     return {trial, stretches_.chi2(trial), chi2, static_cast<double>(held.fit.samples)};
   }
 
-  // What turns about three axes bends to anything: there a name has to account for half of what is
-  // left of what was held out.
+  // A motion about three axes bends to anything: there a name beside others has to account for half
+  // of what they leave of what was held out.
   bool tells_enough(const Contender& without, const Contender& with) const {
     const Platform& platform = answer_.trials.front().fit.best.model.platform;
     return platform.turns_about_one_axis() || platform.slides() ||
+           without.trial.candidates.empty() ||
            with.held_chi2 < answer_.all.limits.decision.max_held_out_fraction * without.held_chi2;
   }
 
   // By how many standard errors a name is missed by the stretches; not at all where it leads away
   // from what was held out.
   double missed(const Contender& without, const Contender& with) const {
-    if (!tells_enough(without, with)) return 0.0;
     constexpr double by_chance = 3.0;
     const double scatter = std::sqrt(2.0 * with.held_samples);
     if (with.held_chi2 > limits_.max_held_growth * without.held_chi2 + by_chance * scatter) {
@@ -174,13 +174,26 @@ class Contest {
     return *best;
   }
 
+  // Without the names that the stretches do not miss, then without those that do not tell enough:
+  // each of two names that share one effect tells little beside the other.
   Contender pruned(Contender best) {
+    best = without_least(std::move(best), [&](const Contender& without, const Contender& with) {
+      return missed(without, with);
+    });
+    return without_least(std::move(best), [&](const Contender& without, const Contender& with) {
+      return tells_enough(without, with) ? missed(without, with) : 0.0;
+    });
+  }
+
+  // Takes the name of the least `worth` away, again and again, while it is too small.
+  template <class Worth>
+  Contender without_least(Contender best, const Worth& worth) {
     while (!best.trial.candidates.empty()) {
       std::vector<Contender> fewer;
       sigma_.clear();
       for (size_t i = 0; i < best.trial.candidates.size(); ++i) {
         fewer.push_back(contender(trial_without(best.trial, i)));
-        sigma_.push_back(missed(fewer.back(), best));
+        sigma_.push_back(worth(fewer.back(), best));
       }
       const auto least = std::ranges::min_element(sigma_);
       if (*least >= limits_.min_sigma) break;

@@ -67,7 +67,8 @@ std::map<std::string, std::set<std::string>> rooms_of_the_sources() {
   for (const std::string& folder : top_folders) {
     for (const fs::path& file : sources_of(folder)) rooms[room_of(file)];
     for (const Include& include : includes_of(folder)) {
-      if (!include.quoted) continue;
+      // The precompiled header stands before every file; no file includes it.
+      if (!include.quoted || include.file.filename() == "precompiled.h") continue;
       const std::string from = room_of(include.file);
       const std::string to = fs::path(include.header).parent_path().generic_string();
       if (to != from) rooms[from].insert(to);
