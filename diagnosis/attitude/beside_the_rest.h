@@ -17,7 +17,7 @@ Candidates candidates_among(Among among, const NominalModel& nominal,
                             const std::vector<Observation>& runs, const Thresholds& limits);
 
 // What names are looked for among, with the rest counted as noise. Where angle and rate about one
-// axis are both read, each tells of the other's instrument whatever the torque.
+// axis are both read, each shows errors of the other's instrument whatever the torque.
 Among among_beside_the_rest(const NominalModel& nominal, const RecordedData& data);
 
 // One search, and the decision about it, with the noise that `data` has; from `near`, a trial of no

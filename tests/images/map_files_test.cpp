@@ -215,13 +215,19 @@ TEST_F(MapFiles, AMapInAPageHasTheColoursOfItsBins) {
   }
 }
 
-// A smooth map of x from node to node: colours change steadily, with lines at even steps.
-TEST(MapPicture, SmoothMapsAreDrawnBetweenTheirNodes) {
+// The field x from 0 to 4 between five nodes each way.
+Map smooth_ramp() {
   Map map;
   map.name = map.title = "smooth";
   map.width = map.height = 5;
   for (int i = 0; i < 25; ++i) map.value.push_back(i % 5);
   map.smooth = true;
+  return map;
+}
+
+// Colours of a smooth map change steadily from node to node, with lines at even steps.
+TEST(MapPicture, SmoothMapsAreDrawnBetweenTheirNodes) {
+  const Map map = smooth_ramp();
   const MapPicture drawn = map_picture(map, sample_provenance());
   const ColourMap colours = viridis();
   int exact = 0, dark = 0;
@@ -240,7 +246,6 @@ TEST(MapPicture, SmoothMapsAreDrawnBetweenTheirNodes) {
   EXPECT_LT(dark, 0.1 * drawn.grid_width);
 }
 
-// Of the field x from 0 to 4: labels stand on their lines, apart, along them (upright lines).
 TEST(MapPicture, IsAPageOfVectorsTooWhoseLettersAreText) {
   const Map map = sample_map();
   const std::string page = map_svg(map, {}, PictureStyle::page);
@@ -251,12 +256,9 @@ TEST(MapPicture, IsAPageOfVectorsTooWhoseLettersAreText) {
   EXPECT_THAT(map_pdf(map, {}, {"a", "b", "c"}, PictureStyle::page), testing::StartsWith("%PDF"));
 }
 
+// Of the field x from 0 to 4: labels stand on their lines, apart, along them (upright lines).
 TEST(MapPicture, ContourLinesHaveTheirNumbers) {
-  Map map;
-  map.name = map.title = "smooth";
-  map.width = map.height = 5;
-  for (int i = 0; i < 25; ++i) map.value.push_back(i % 5);
-  map.smooth = true;
+  const Map map = smooth_ramp();
   const auto labels = contour_labels(map, colour_scale(map), 800, 800, 60.0);
   ASSERT_GE(labels.size(), 3u);
   for (const ContourLabel& label : labels) {

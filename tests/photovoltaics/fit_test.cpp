@@ -532,8 +532,7 @@ TEST(PhotovoltaicFit, FilesOfInstrumentsAreRead) {
   EXPECT_NE(message("V,I,temperature\n0.1,0.5,25\n").find("K or °C"), std::string::npos);
 }
 
-// --- A shunt that follows the light
-// ----------------------------------------------------------------
+// --- A shunt that follows the light ------------------------------------------------------------
 
 // Figures of a module with R_sh = 100 Ω · 1000/G, n 1.1, R_s 0.3 Ω and I_0 5e-9 A, from its
 // equation with another program; maxima 235.641, 118.200, 46.027 and 22.282 W.

@@ -112,7 +112,7 @@ std::string message(const std::string& text, const std::string& name) {
 
 TEST(ModuleFile, WhatIsMissingOrAmbiguousIsRefused) {
   EXPECT_NE(message(library, "Advance").find("2 modules have it"), std::string::npos);
-  EXPECT_NE(message(library, "Nobody 100").find("0 modules have it"), std::string::npos);
+  EXPECT_NE(message(library, "Unlisted 100").find("0 modules have it"), std::string::npos);
   EXPECT_NE(message(library, "").find("module_name"), std::string::npos);
   EXPECT_NE(message("voltage_V,current_A\n1,2\n", "x").find("PVObject_=pvModule"),
             std::string::npos);
