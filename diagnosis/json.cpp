@@ -59,7 +59,13 @@ Json where_json(const Where& where) {
   for (const auto& i : where.intervals_s) intervals.push_back(numbers({i.from, i.to}));
   Json depends = Json::array();
   for (const auto& d : where.depends_on) {
-    depends.push_back({{"variable", d.variable}, {"strength", number(d.strength)}});
+    Json one = {{"variable", d.variable}, {"strength", number(d.strength)}};
+    // The name that this schema gives the yaw.
+    if (d.variable == "yaw") {
+      one["variable"] = "heading";
+      one["quantity"] = "yaw_deg";
+    }
+    depends.push_back(one);
   }
   Json json = {{"channels", list(where.channels, misfit_json)}, {"intervals_s", intervals}};
   json["band_Hz"] = where.band_Hz ? numbers({where.band_Hz->from, where.band_Hz->to}) : Json();

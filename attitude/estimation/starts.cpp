@@ -20,20 +20,20 @@ std::optional<double> first_of(const Observation& seen, Scalar scalar) {
   return std::nullopt;
 }
 
-// Attitudes of this tilt and heading that lean in eight directions; one where it stands upright.
-std::vector<Quat> leaning(double tilt_rad, double heading_rad) {
+// Attitudes of this tilt and yaw that lean in eight directions; one where it stands upright.
+std::vector<Quat> leaning(double tilt_rad, double yaw_rad) {
   constexpr int directions = 8;
   std::vector<Quat> all;
   for (int d = 0; d < directions; ++d) {
     const double towards = 2.0 * pi * d / directions;
     const Quat lean(Eigen::AngleAxisd(tilt_rad, Vec3(-std::sin(towards), std::cos(towards), 0.0)));
     // The lean turns body x a little, in the second order of the tilt.
-    double about_z = heading_rad;
+    double about_z = yaw_rad;
     Quat q;
     for (int i = 0; i < 8; ++i) {
       q = lean * Quat(Eigen::AngleAxisd(about_z, Vec3::UnitZ()));
-      const double now = scalar_reading(Scalar::heading, q, Vec3::Zero()).value;
-      about_z += scalar_difference(Scalar::heading, heading_rad, now);
+      const double now = scalar_reading(Scalar::yaw, q, Vec3::Zero()).value;
+      about_z += scalar_difference(Scalar::yaw, yaw_rad, now);
     }
     all.push_back(q);
     if (!(tilt_rad > 0.0)) break;
@@ -92,12 +92,12 @@ std::vector<Quat> attitudes_of(const AttitudeModel& model, const Observation& se
     return by_fields;
   }
   const auto roll = first_of(seen, Scalar::roll), pitch = first_of(seen, Scalar::pitch);
-  const auto tilt = first_of(seen, Scalar::tilt), heading = first_of(seen, Scalar::heading);
-  const double about_z = heading.value_or(first_of(seen, Scalar::yaw).value_or(0.0));
+  const auto tilt = first_of(seen, Scalar::tilt), yaw = first_of(seen, Scalar::yaw);
+  const double about_z = yaw.value_or(0.0);
   if (roll || pitch) {
     return {attitude_of_angles("zyx", {roll.value_or(0.0), pitch.value_or(0.0), about_z})};
   }
-  if (!tilt && !heading && !seen.has(Scalar::yaw)) return {otherwise};
+  if (!tilt && !yaw) return {otherwise};
   return leaning(tilt.value_or(0.0), about_z);
 }
 
@@ -122,8 +122,7 @@ std::vector<Vec3> rates_of(const Observation& seen, const Vec3& base, const Quat
     if (!is_read[static_cast<size_t>(k)]) known[k] = 0.0;
   }
   if (!magnitude) {
-    const double about_z = seen.has(Scalar::heading) ? first_slope(seen, Scalar::heading)
-                                                     : first_slope(seen, Scalar::yaw);
+    const double about_z = first_slope(seen, Scalar::yaw);
     const Vec3 rate = attitude.conjugate() * Vec3(0.0, 0.0, about_z);
     for (int k = 0; k < 3; ++k) {
       if (!is_read[static_cast<size_t>(k)]) known[k] = rate[k];

@@ -170,9 +170,8 @@ class FilterRun {
       update_by_gyro(model_, state, reading.gyro_rad_s, i == first_ ? unused : sum(out_.gyro),
                      i == first_ ? unused_likelihood : likelihood);
     }
-    if (settings.uses_attitude && std::isfinite(reading.heading_rad)) {
-      update(model_, state, model_.of_heading(state, reading.heading_rad), sum(out_.heading),
-             likelihood);
+    if (settings.uses_attitude && std::isfinite(reading.yaw_rad)) {
+      update(model_, state, model_.of_yaw(state, reading.yaw_rad), sum(out_.yaw), likelihood);
     }
     if (passed != nullptr) passed->after = state;
   }

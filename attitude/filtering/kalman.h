@@ -34,7 +34,7 @@ struct InnovationSum {
 
 struct Estimation {
   std::vector<AttitudeEstimate> filtered, smoothed;  // by row; the latter empty if not asked for
-  InnovationSum attitude, gyro, heading;
+  InnovationSum attitude, gyro, yaw;
   double log_likelihood = 0.0;  // of the readings after the first attitude
   // Parameters at the end, with their standard deviations, and what they were before.
   std::vector<std::string> parameter_names;

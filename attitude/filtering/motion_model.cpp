@@ -428,13 +428,13 @@ Measurement MotionModel::of_gyro(const FilterState& state, const Vec3& gyro_rad_
           std::pow(noise_rad_s, 2) * MatX::Identity(count, count)};
 }
 
-Measurement MotionModel::of_heading(const FilterState& state, double heading) const {
+Measurement MotionModel::of_yaw(const FilterState& state, double seen_rad) const {
   const Vec3 ahead = state.mean.lab_from_body * Vec3::UnitX();
   const Mat3 by_turn = -state.mean.lab_from_body.toRotationMatrix() * skew(Vec3::UnitX());
   MatX derivative = MatX::Zero(1, size_);
   derivative.leftCols<3>() =
       (ahead.x() * by_turn.row(1) - ahead.y() * by_turn.row(0)) / ahead.head<2>().squaredNorm();
-  const double difference_rad = std::remainder(heading - heading_rad(state.mean), 2.0 * pi);
+  const double difference_rad = std::remainder(seen_rad - yaw_rad(state.mean), 2.0 * pi);
   const double step_rad = sensors_.encoder ? sensors_.encoder->resolution_rad : 1e-4;
   // Even within a step.
   return {VecX::Constant(1, difference_rad), derivative,

@@ -83,7 +83,7 @@ class MotionModel {
   Measurement of_attitude(const FilterState& state, const Quat& lab_from_body,
                           const std::array<bool, 3>& sees_axis) const;
   Measurement of_gyro(const FilterState& state, const Vec3& gyro_rad_s) const;
-  Measurement of_heading(const FilterState& state, double heading_rad) const;
+  Measurement of_yaw(const FilterState& state, double yaw_rad) const;
   // Adds an error to an estimate; the dynamics are rebuilt where parameters have moved far.
   void add(FilterState& state, const VecX& error) const;
   // The error state that add() adds to `from` to give `to`.

@@ -27,9 +27,9 @@ Readings readings_of(const Recording& recording, const std::string& name, const 
   readings.unused = columns.unused();
   readings.first_s = recording.time_s.front();
   readings.last_s = recording.time_s.back();
-  // About one axis the heading is the attitude.
-  const Channel* heading =
-      platform.turns_about_one_axis() ? nullptr : recording.find("heading_rad");
+  // About one axis the yaw is the attitude, among three angles a part of it.
+  const Channel* yaw =
+      platform.turns_about_one_axis() || columns.has_angles() ? nullptr : recording.find("yaw_rad");
   double before_s = readings.first_s;
   bool any_attitude = false;
   for (size_t row = 0; row < recording.rows(); ++row) {
@@ -40,8 +40,8 @@ Readings readings_of(const Recording& recording, const std::string& name, const 
       reading.gyro_rad_s[static_cast<Eigen::Index>(k)] = columns.rate_rad_s(k, row);
     }
     readings.has_gyro = readings.has_gyro || reading.has_gyro();
-    if (heading != nullptr) reading.heading_rad = heading->values[row];
-    readings.has_heading = readings.has_heading || std::isfinite(reading.heading_rad);
+    if (yaw != nullptr) reading.yaw_rad = yaw->values[row];
+    readings.has_yaw = readings.has_yaw || std::isfinite(reading.yaw_rad);
     reading.begins_anew = columns.has_event(row);
     const Quat attitude =
         columns.has_attitude() ? columns.attitude(row) : Quat(empty_cell, 0, 0, 0);
@@ -61,7 +61,7 @@ Readings readings_of(const Recording& recording, const std::string& name, const 
     readings.all.push_back(reading);
   }
   if (!any_attitude) readings.sees_axis = {};
-  if (!any_attitude && !readings.has_gyro && !readings.has_heading) {
+  if (!any_attitude && !readings.has_gyro && !readings.has_yaw) {
     throw InputError({name, 0}, columns.first_name(), "no number in any row",
                      "attitudes of unit norm, or rates");
   }

@@ -19,7 +19,7 @@ struct Reading {
   std::optional<size_t> row;  // of the recording, whose estimate is wanted
   std::optional<Quat> lab_from_body;
   Vec3 gyro_rad_s = Vec3::Constant(empty_cell);
-  double heading_rad = empty_cell;
+  double yaw_rad = empty_cell;
   bool begins_anew = false;  // something hit the platform
 
   bool has_gyro() const { return !gyro_rad_s.array().isNaN().all(); }
@@ -32,7 +32,7 @@ struct Readings {
   Schedule schedule;
   // Lab axes about which the attitude is read.
   std::array<bool, 3> sees_axis = {false, false, false};
-  bool has_gyro = false, has_heading = false;
+  bool has_gyro = false, has_yaw = false;
   double first_s = 0.0, last_s = 0.0;
   double longest_gap_s = 0.0;       // between attitudes
   std::vector<std::string> unused;  // columns
@@ -40,7 +40,7 @@ struct Readings {
 };
 
 // Attitudes are dated back by `camera_delay_s`. Channels as MotionColumns reads them, and
-// heading_rad of an encoder. InputError when there is neither an attitude nor a rate, or only one
+// yaw_rad of an encoder. InputError when there is neither an attitude nor a rate, or only one
 // row.
 Readings readings_of(const Recording& recording, const std::string& name, const Platform& platform,
                      double camera_delay_s);

@@ -34,7 +34,7 @@ std::vector<Ingredients> ways_for(const EstimateStudy& study, const Readings& re
                      {"camera and gyro, rate walks", Motion::rate_walks, true, true},
                      {"camera and gyro, disturbances", Motion::disturbances, true, true},
                      {"gyro, disturbances", Motion::disturbances, false, true}};
-  const bool sees = readings.sees_attitude() || readings.has_heading;
+  const bool sees = readings.sees_attitude() || readings.has_yaw;
   const bool whole_gyro =
       std::ranges::any_of(readings.all, [](const Reading& r) { return r.gyro_rad_s.allFinite(); });
   std::vector<Ingredients> ways;
@@ -79,10 +79,10 @@ void set_walk(const EstimateStudy& study, const Readings& readings, FilterSettin
 std::vector<std::string> unseen_by(const Platform& platform, const Readings& readings,
                                    const Estimation& e) {
   std::vector<std::string> lines;
-  if (!readings.sees_attitude() && !readings.has_heading) {
+  if (!readings.sees_attitude() && !readings.has_yaw) {
     lines.push_back("no attitude was read: it counts from the start, and its error grows");
   } else if (!readings.sees_attitude()) {
-    lines.push_back("of the attitude the heading alone was read: level to 0.01 rad at the start");
+    lines.push_back("of the attitude the yaw alone was read: level to 0.01 rad at the start");
   } else if (!platform.turns_about_one_axis() &&
              !(readings.sees_axis[0] && readings.sees_axis[1] && readings.sees_axis[2])) {
     std::string axes;
@@ -211,7 +211,7 @@ EstimateResult estimate_ways(const EstimateStudy& study, const Readings& reading
     const MotionModel model(study.nominal.model, study.nominal.sensors, way.settings,
                             readings.schedule);
     EstimationOptions options;
-    if (!readings.sees_attitude() && readings.has_heading) {
+    if (!readings.sees_attitude() && readings.has_yaw) {
       options.unread_attitude_rad2 = Vec3(level_rad2, level_rad2, pi * pi).asDiagonal();
     }
     if (progress) {

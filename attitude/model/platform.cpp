@@ -129,6 +129,11 @@ double tilt_rad(const PlatformState& state) {
 }
 
 double heading_rad(const PlatformState& state) {
+  const Vec3 body_z_lab = state.lab_from_body * Vec3::UnitZ();
+  return std::atan2(body_z_lab.y(), body_z_lab.x());
+}
+
+double yaw_rad(const PlatformState& state) {
   const Vec3 body_x_lab = state.lab_from_body * Vec3::UnitX();
   return std::atan2(body_x_lab.y(), body_x_lab.x());
 }

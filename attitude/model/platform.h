@@ -79,8 +79,9 @@ struct PlatformState {
 
 // Angle between body z and lab z, in [0, π].
 double tilt_rad(const PlatformState& state);
-// Direction in the lab's horizontal plane in which body x points, from east towards north, in
-// (−π, π].
+// Azimuths from lab x towards y, in (−π, π]: the heading of the direction in which body z leans (0
+// upright), and the yaw of body x in the horizontal plane.
 double heading_rad(const PlatformState& state);
+double yaw_rad(const PlatformState& state);
 
 }  // namespace photorque

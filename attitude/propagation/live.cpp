@@ -72,7 +72,7 @@ LiveRow LiveInstruments::read(double time_s, std::span<const double> y, const Ze
   recorder_.add({.time_s = time_s,
                  .lab_from_body_seen = seen(row.truth),
                  .rate_body_rad_s = row.truth.rate_body_rad_s,
-                 .heading_rad = heading_rad(row.truth),
+                 .yaw_rad = yaw_rad(row.truth),
                  .gyro_rad_s = first_lane(now.gyro_rad_s),
                  .camera_error_rad = first_lane(now.camera_error_rad),
                  .command_body_N_m = row.command_body_N_m,
@@ -81,7 +81,7 @@ LiveRow LiveInstruments::read(double time_s, std::span<const double> y, const Ze
   const auto last = [&](const char* name) { return recorder_.last(name); };
   row.lab_from_body_seen = {last("q_w"), last("q_x"), last("q_y"), last("q_z")};
   row.gyro_rad_s = {last("gyro_x_rad_s"), last("gyro_y_rad_s"), last("gyro_z_rad_s")};
-  row.heading_rad = last("heading_rad");
+  row.yaw_rad = last("yaw_rad");
   row.battery_current_A = last("battery_current_A");
   row.array_power_W = last("array_power_W");
   return row;

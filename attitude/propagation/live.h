@@ -21,7 +21,7 @@ struct LiveRow {
   double time_s = 0.0;
   Quat lab_from_body_seen = Quat::Identity();  // by the camera, with its noise and latency
   Vec3 gyro_rad_s = Vec3::Zero();
-  double heading_rad = 0.0;  // of the encoder
+  double yaw_rad = 0.0;  // of the encoder
   // Of the interval that ends here; not rows of the recording, which know the command that follows.
   double battery_current_A = 0.0;
   double array_power_W = 0.0;

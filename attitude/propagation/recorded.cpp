@@ -172,7 +172,7 @@ void RecordedRun::record(const Look& look, const std::vector<double>& y, const P
   recorder_.add({.time_s = state.time_s,
                  .lab_from_body_seen = seen,
                  .rate_body_rad_s = state.rate_body_rad_s,
-                 .heading_rad = heading_rad(state),
+                 .yaw_rad = yaw_rad(state),
                  .place_m_m_s = place_of(dynamics_, y),
                  .gyro_rad_s = in_lane(now.gyro_rad_s, lane),
                  .camera_error_rad = in_lane(now.camera_error_rad, lane),

@@ -17,9 +17,11 @@ constexpr double max_run_s = 1e10;  // three centuries
 
 namespace propagate_key {
 constexpr NumberKey duration("duration_s", 600.0, {0.0, max_run_s, true, false}, "of the run");
-constexpr NumberKey output_rate("output_rate_Hz", 10.0, Range::positive(),
-                                "rows of the recording, at most 2e7 in all");
-constexpr IntegerKey history_rows("history_rows", 20000, 2, 20'000'000,
+constexpr NumberKey output_rate("output_rate_Hz", Range::positive(),
+                                "rows of the recording, at most 2e7 in all",
+                                {.usually = "10, or a row every 0.2, 0.5, 1, 2, 5 … s where that "
+                                            "gives more than 45000 rows"});
+constexpr IntegerKey history_rows("history_rows", 5000, 2, 20'000'000,
                                   "rows of `time_history.csv` at most");
 constexpr NumberKey tolerance("tolerance", PropagationOptions{}.tolerance,
                               {1e-13, 1e-3, false, false}, "of a step");
@@ -31,7 +33,10 @@ constexpr NumberKey tick_rate(
 constexpr IntegerKey seed("seed", 1, 0, INT64_MAX, "of the sensors' noise; also `--seed`");
 constexpr NumberKey initial_tilt("initial_tilt_deg", 0.0, {0.0, pi, false, false},
                                  "leans by the tilt towards the heading; *or*");
-constexpr NumberKey initial_heading("initial_heading_deg", 0.0, {}, "where it leans to");
+constexpr NumberKey initial_heading("initial_heading_deg", 0.0, {},
+                                    "azimuth of the direction it leans to");
+constexpr NumberKey initial_yaw("initial_yaw_deg", {}, "azimuth of body x",
+                                {.usually = "that of a lean without a turn about body z"});
 constexpr NumbersKey initial_attitude("initial_attitude", {},
                                       "[w, x, y, z], lab from body, unit to 1e-3",
                                       {.optional = true, .size = 4});
@@ -140,11 +145,30 @@ Schedule read_schedule(const Settings& settings) {
   return schedule;
 }
 
+// Leaning as `lean`, with body x at the azimuth that [propagate] states.
+Quat with_initial_yaw(const Settings& settings, const Quat& lean) {
+  const double yaw_rad = settings.get(propagate_key::initial_yaw);
+  const Vec3 up = lean * Vec3::UnitZ(), level(std::cos(yaw_rad), std::sin(yaw_rad), 0.0);
+  constexpr double least = 1e-6;  // of the slope of body x, below which its azimuth is undefined
+  if (std::abs(up.z()) < least) {
+    throw settings.error(propagate_key::initial_yaw, "a platform that leans by 90 deg",
+                         "initial_attitude instead: body x has no azimuth of choice there");
+  }
+  // Body x is perpendicular to body z, above or below the level line of that azimuth.
+  const Vec3 x = (std::abs(up.z()) * level -
+                  std::copysign(up.dot(level), up.z() * up.dot(level)) * Vec3::UnitZ())
+                     .normalized();
+  Mat3 axes;
+  axes << x, up.cross(x), up;
+  return Quat(axes);
+}
+
 Quat read_initial_attitude(const Settings& settings) {
   if (!settings.has(propagate_key::initial_attitude)) {
     const double tilt_rad = settings.get(propagate_key::initial_tilt);
     const double heading_rad = settings.get(propagate_key::initial_heading);
-    return lab_from_body_at(tilt_rad, heading_rad).rotation;
+    const Quat lean = lab_from_body_at(tilt_rad, heading_rad).rotation;
+    return settings.has(propagate_key::initial_yaw) ? with_initial_yaw(settings, lean) : lean;
   }
   const std::vector<double> q = settings.get(propagate_key::initial_attitude);
   if (q.size() != 4) {
@@ -258,6 +282,16 @@ NominalModel read_attitude_model(const Settings& root) {
   return nominal;
 }
 
+// A row has up to 220 bytes: a day's recording at most 10 MB.
+double usual_output_rate_Hz(double duration_s) {
+  constexpr double most_rows = 45000.0;
+  for (double decade = 0.1;; decade *= 10.0) {
+    for (const double mantissa : {1.0, 2.0, 5.0}) {
+      if (duration_s <= most_rows * mantissa * decade) return 1.0 / (mantissa * decade);
+    }
+  }
+}
+
 PropagationRun read_propagation(const Settings& root) {
   NominalModel nominal = read_attitude_model(root);
   PropagationRun run;
@@ -265,7 +299,8 @@ PropagationRun read_propagation(const Settings& root) {
   run.sensors = std::move(nominal.sensors);
   const Settings settings = own_table(root, "propagate", false);
   run.duration_s = settings.get(propagate_key::duration);
-  run.output_rate_Hz = settings.get(propagate_key::output_rate);
+  run.output_rate_Hz =
+      settings.get_or(propagate_key::output_rate, usual_output_rate_Hz(run.duration_s));
   constexpr double max_rows = 2e7;
   if (run.duration_s * run.output_rate_Hz > max_rows) {
     throw settings.error(propagate_key::output_rate, "more than 20 million rows", "a lower rate");
@@ -349,8 +384,8 @@ Key propagate_table() {
   using namespace propagate_key;
   return propagate_key::propagate.of(
       {duration, output_rate, history_rows, tolerance, longest_step, tick_rate, seed, initial_tilt,
-       initial_heading, initial_attitude, initial_rate, initial_position, initial_velocity,
-       initial_charge, initial_time, commands,
+       initial_heading, initial_yaw, initial_attitude, initial_rate, initial_position,
+       initial_velocity, initial_charge, initial_time, commands,
        command.of({time, torque, force, force_body, battery_current, led_current}), epoch});
 }
 

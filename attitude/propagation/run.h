@@ -24,7 +24,7 @@ struct PropagationRun {
   PlatformState initial;
   double duration_s = 0.0;
   double output_rate_Hz = 10.0;  // rows of the recording
-  size_t history_rows = 20000;   // at most so many, evenly from the recording's, and its last
+  size_t history_rows = 5000;    // at most so many, evenly from the recording's, and its last
   PropagationOptions options;
   uint64_t seed = 1;
   std::string epoch;  // calendar time of t = 0, ISO 8601, for files that need one
@@ -52,8 +52,9 @@ struct NominalModel {
 NominalModel read_attitude_model(const Settings& root);
 
 // Reads the model and [propagate], which may be absent:
-//   duration_s (default 600); output_rate_Hz (of the recording, default 10); history_rows (of the
-//     time history at most, default 20000); tolerance (default 1e-8); longest_step_s; seed (1);
+//   duration_s (default 600); output_rate_Hz (of the recording; default 10, less where that gives
+//   more than 45000 rows); history_rows (of the
+//     time history at most, default 5000); tolerance (default 1e-8); longest_step_s; seed (1);
 //   tick_rate_Hz (default 0, none): a step ends at every tick, as in a run in real time;
 //   initial_attitude = [w, x, y, z], or initial_tilt_deg and initial_heading_deg (default 0), see
 //     lab_from_body_at(); initial_rate_rad_s[3] (default 0); initial_charge_Ah (drawn, default 0);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
+#include "attitude/model/platform.h"
 #include "core/constants.h"
 #include "core/snapshot.h"
 
@@ -19,6 +21,7 @@ enum Column : size_t {
   q_z,
   tilt,
   heading,
+  yaw,
   rate_x,
   rate_y,
   rate_z,
@@ -34,6 +37,7 @@ constexpr const char* fixed_names[fixed] = {"t_s",
                                             "q_z",
                                             "tilt_deg",
                                             "heading_deg",
+                                            "yaw_deg",
                                             "rate_x_rad_s",
                                             "rate_y_rad_s",
                                             "rate_z_rad_s",
@@ -110,6 +114,74 @@ std::vector<double> unwrapped_deg(std::vector<double> angle_deg) {
   return angle_deg;
 }
 
+// How far the body went from where it began.
+struct Excursion {
+  double largest_tilt_rad = 0.0, largest_tilt_at_s = 0.0;
+  double yaw_rad = 0.0;  // from the least to the largest, whole turns counted
+};
+Excursion excursion_of(const std::vector<PlatformState>& states) {
+  Excursion found;
+  double yaw = 0.0, least = 0.0, most = 0.0, before = 0.0;
+  for (size_t i = 0; i < states.size(); ++i) {
+    const double tilt = tilt_rad(states[i]), here = yaw_rad(states[i]);
+    if (i == 0 || tilt > found.largest_tilt_rad) {
+      found.largest_tilt_rad = tilt;
+      found.largest_tilt_at_s = states[i].time_s;
+    }
+    if (i > 0) yaw += std::remainder(here - before, 2.0 * pi);
+    before = here;
+    least = std::min(least, yaw);
+    most = std::max(most, yaw);
+  }
+  found.yaw_rad = most - least;
+  return found;
+}
+
+// Bars that stand on each other: means over each 120th of the run, in percent of the sum of all,
+// the strongest at the bottom.
+std::vector<Plot::Curve> stacked_shares(const std::vector<double>& t,
+                                        const std::vector<std::string>& labels,
+                                        const std::vector<std::vector<double>>& sizes) {
+  constexpr size_t most_parts = 120, most_named = 6;
+  const size_t parts = std::min(most_parts, t.size()), kinds = sizes.size();
+  std::vector<std::vector<double>> shares(kinds, std::vector<double>(parts));
+  std::vector<double> x(parts), of(kinds);
+  for (size_t p = 0; p < parts; ++p) {
+    const size_t begin = p * t.size() / parts, end = (p + 1) * t.size() / parts;
+    x[p] =
+        std::lerp(t.front(), t.back(), (static_cast<double>(p) + 0.5) / static_cast<double>(parts));
+    double sum = 0.0;
+    for (size_t k = 0; k < kinds; ++k) {
+      for (size_t i = begin; i < end; ++i) shares[k][p] += sizes[k][i];
+      sum += shares[k][p];
+    }
+    for (size_t k = 0; k < kinds; ++k) {
+      shares[k][p] *= sum > 0.0 ? 100.0 / sum : 0.0;
+      of[k] += shares[k][p];
+    }
+  }
+  std::vector<size_t> order(kinds);
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::ranges::stable_sort(order, [&](size_t a, size_t b) { return of[a] > of[b]; });
+  std::vector<Plot::Curve> curves;
+  std::vector<double> top(parts);
+  for (size_t place = 0; place < kinds; ++place) {
+    for (size_t p = 0; p < parts; ++p) top[p] += shares[order[place]][p];
+    const bool is_named = place < most_named;
+    if (!is_named && place + 1 < kinds) continue;
+    Plot::Curve curve;
+    curve.label = is_named ? labels[order[place]] : std::to_string(kinds - most_named) + " others";
+    if (!is_named) curve.colour = Plot::Colour::grey;
+    curve.x = x;
+    curve.y = top;
+    curve.bars = true;
+    curves.push_back(std::move(curve));
+  }
+  // The tallest first: each covers the lower part of the one before.
+  std::ranges::reverse(curves);
+  return curves;
+}
+
 Quantity exact(const std::string& name, double value) {
   return {name, {value, 0.0}};
 }
@@ -152,6 +224,7 @@ void TimeHistory::add(const PlatformState& state, const Dynamics::Instants& now,
   for (const double x : {q.w(), q.x(), q.y(), q.z()}) put(x);
   put(tilt_rad(state) / degree_rad);
   put(heading_rad(state) / degree_rad);
+  put(yaw_rad(state) / degree_rad);
   for (const double x : state.rate_body_rad_s) put(x);
   put(state.charge_drawn_C / 3600.0);
   put(now.battery_current_A[lane]);
@@ -204,7 +277,7 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
                                   {"z [" + unit + "]", {curve("", t, values(x + 2))}, false}};
   };
   add_plot("tilt", "Tilt", "Tilt [deg]", {curve("", t, values(tilt))});
-  add_plot("heading", "Heading", "Heading [deg]", {curve("", t, unwrapped_deg(values(heading)))});
+  add_plot("yaw", "Yaw", "Yaw [deg]", {curve("", t, unwrapped_deg(values(yaw)))});
   add_vector_plot("rates", "Body rates", "rad/s", rate_x);
   if (any_nonzero(values(charge))) {
     add_plot("charge", "Charge missing from the battery", "Charge [Ah]",
@@ -235,6 +308,10 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
     std::erase_if(all, [](const Plot::Curve& one) {
       return std::none_of(one.y.begin(), one.y.end(), [](double y) { return std::isfinite(y); });
     });
+    std::vector<std::string> names;
+    for (const size_t i : shown) names.push_back(labels_[i]);
+    add_plot("torque_shares", "Share of every torque in the sum of their sizes", "Share [%]",
+             stacked_shares(t, names, sizes));
     add_plot("torques", "Size of every torque, largest within each 240th of the run",
              "Torque [N m]", std::move(all));
     product.plots.back().y_log = true;
@@ -242,15 +319,15 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
 
   const std::vector<double>& tilts = values(tilt);
   if (!t.empty()) {
-    double largest_tilt_rad = 0.0;
-    for (const PlatformState& state : states) {
-      largest_tilt_rad = std::max(largest_tilt_rad, tilt_rad(state));
-    }
+    const Excursion excursion = excursion_of(states);
     product.quantities = {
         exact("final_time_s", t.back()),
         exact("final_tilt_deg", tilts.back()),
-        exact("largest_tilt_deg", largest_tilt_rad / degree_rad),
+        exact("largest_tilt_deg", excursion.largest_tilt_rad / degree_rad),
+        exact("largest_tilt_time_s", excursion.largest_tilt_at_s),
+        exact("yaw_excursion_deg", excursion.yaw_rad / degree_rad),
         exact("final_heading_deg", values(heading).back()),
+        exact("final_yaw_deg", values(yaw).back()),
         exact("final_rate_rad_s",
               std::hypot(values(rate_x).back(), values(rate_y).back(), values(rate_z).back())),
         exact("final_charge_drawn_Ah", values(charge).back()),

@@ -70,8 +70,6 @@ constexpr std::array<ChannelTraits, channel_count> all_traits = {{
     {"rate_magnitude_rad_s", "Magnitude of the rate", "the rate's magnitude", "rad/s", 1.0,
      Measures::rate, "rate_magnitude_rad_s"},
     {"tilt_arcsec", "Tilt", "the tilt", "arcsec", per_arcsec, Measures::angle, "tilt_rad", false},
-    {"heading_arcsec", "Heading", "the heading", "arcsec", per_arcsec, Measures::angle,
-     "heading_rad", true},
     {"roll_arcsec", "Roll", "the roll", "arcsec", per_arcsec, Measures::angle, "roll_rad", true},
     {"pitch_arcsec", "Pitch", "the pitch", "arcsec", per_arcsec, Measures::angle, "pitch_rad",
      true},
@@ -108,10 +106,6 @@ double of_attitude(Scalar scalar, const Quat& q) {
     case Scalar::tilt:
       // sin(tilt/2)² = x² + y²: exact near zero, where the cosine of the tilt is blind.
       return 2.0 * std::atan2(std::hypot(q.x(), q.y()), std::hypot(q.w(), q.z()));
-    case Scalar::heading: {
-      const Vec3 body_x_lab = q * Vec3::UnitX();
-      return std::atan2(body_x_lab.y(), body_x_lab.x());
-    }
     case Scalar::roll:
       return angles_of_attitude("zyx", q)[0];
     case Scalar::pitch:
@@ -159,8 +153,7 @@ namespace {
 constexpr const char* quaternion_names[] = {"q_w", "q_x", "q_y", "q_z"};
 constexpr const char* gyro_names[] = {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"};
 constexpr const char* euler_names[] = {"roll_rad", "pitch_rad", "yaw_rad"};
-constexpr const char* angle_names[] = {"angle_rad", "roll_rad", "pitch_rad", "yaw_rad",
-                                       "heading_rad"};
+constexpr const char* angle_names[] = {"angle_rad", "roll_rad", "pitch_rad", "yaw_rad"};
 constexpr const char* event_names[] = {"thruster", "impulse", "event"};
 // Channels that Recording::schedule() uses.
 constexpr const char* schedule_names[] = {
@@ -240,7 +233,7 @@ MotionColumns::MotionColumns(const Recording& recording, const Platform& platfor
                          "which column is one"
                        : "the attitude q_w, q_x, q_y, q_z or roll_rad, pitch_rad, yaw_rad; or "
                          "gyro_x_rad_s, gyro_y_rad_s, gyro_z_rad_s; or any of tilt_rad, "
-                         "heading_rad, rate_magnitude_rad_s");
+                         "yaw_rad, rate_magnitude_rad_s");
 }
 
 // A single number beside a whole attitude or three rates contains nothing new.
@@ -261,8 +254,7 @@ void MotionColumns::take_scalars() {
     put(static_cast<Scalar>(s), channel_traits(vector_channels + s).column);
   }
   if (has_attitude()) return;
-  for (const Scalar angle :
-       {Scalar::tilt, Scalar::heading, Scalar::roll, Scalar::pitch, Scalar::yaw}) {
+  for (const Scalar angle : {Scalar::tilt, Scalar::roll, Scalar::pitch, Scalar::yaw}) {
     put(angle, channel_traits(vector_channels + static_cast<int>(angle)).column);
   }
 }

@@ -42,10 +42,9 @@ inline constexpr int vector_channels = 6;
 enum class Scalar {
   rate_magnitude,  // |ω| [rad/s]
   tilt,            // angle between body z and lab z, in [0, π]
-  heading,         // of body x in the horizontal plane, from lab x towards y; whole turns count
   roll,            // the three of "zyx" (angle_sequences)
   pitch,
-  yaw,
+  yaw,              // that of yaw_rad()
   accelerometer_x,  // specific force [m/s²] and magnetic field [T], body axes
   accelerometer_y,
   accelerometer_z,
@@ -57,7 +56,7 @@ enum class Scalar {
   velocity_x,
   velocity_y,
 };
-inline constexpr int scalar_count = 16;
+inline constexpr int scalar_count = 15;
 // From here on what a model reads is not of attitude and rate alone (Dynamics::Instants).
 inline constexpr int first_field = static_cast<int>(Scalar::accelerometer_x);
 // And from here on it is of place and velocity, the four extra states of a translation.
@@ -93,11 +92,10 @@ double scalar_difference(Scalar scalar, double measured, double predicted);
 //
 //   attitude: q_w, q_x, q_y, q_z; or roll_rad, pitch_rad, yaw_rad in the sequence that the
 //     recording states (angle_sequences), "zyx" where it states none; of a platform that turns
-//     about one axis one of angle_rad, roll_rad, pitch_rad, yaw_rad, heading_rad, which may pass
-//     whole turns;
+//     about one axis one of angle_rad, roll_rad, pitch_rad, yaw_rad, which may pass whole turns;
 //   rates: gyro_x_rad_s, gyro_y_rad_s, gyro_z_rad_s, any of them; about one axis also rate_rad_s;
-//   where there is no attitude: any of tilt_rad, heading_rad, roll_rad, pitch_rad, yaw_rad; where
-//     there are not three rates: rate_magnitude_rad_s, or a rate_rad_s that is never negative;
+//   where there is no attitude: any of tilt_rad, roll_rad, pitch_rad, yaw_rad; where there
+//     are not three rates: rate_magnitude_rad_s, or a rate_rad_s that is never negative;
 //   of a platform that slides: x_m, y_m, velocity_x_m_s, velocity_y_m_s, any of them;
 //   accelerometer and magnetometer: accel_x_m_s2 …, mag_x_T …;
 //   what was done: commands, currents, wheel speeds (Recording::schedule());

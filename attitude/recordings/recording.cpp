@@ -12,11 +12,14 @@
 #include "attitude/recordings/text_lines.h"
 #include "core/files.h"
 #include "core/numerics/steady_stretches.h"
+#include "core/old_names.h"
 #include "core/text/parse.h"
 
 namespace photorque {
 
 namespace {
+
+constexpr std::string_view old_yaw = "heading_rad", new_yaw = "yaw_rad";
 
 // The contract's channels. A header may name them in another unit of the same kind.
 constexpr std::string_view known_channels[] = {
@@ -38,7 +41,7 @@ constexpr std::string_view known_channels[] = {
     "cell_temperature_K",
     "led_current_A",
     "battery_voltage_V",
-    "heading_rad",
+    old_yaw,
     "angle_rad",
     "roll_rad",
     "pitch_rad",
@@ -198,6 +201,7 @@ class RecordingReader {
     }
     if (time_column_ == cells_.size()) return false;
     separator_ = separator;
+    take_old_names();
     for (size_t i = 0; i < columns_.size(); ++i) {
       if (i == time_column_) continue;
       const std::string& name = columns_[i].name;
@@ -208,11 +212,29 @@ class RecordingReader {
       recording_.channels.push_back({name, {}});
     }
     for (const auto& [channel, written] : options_.columns) {
-      const std::string name = column_named(written, options_).name;
+      const std::string name = successor_of(column_named(written, options_).name);
       const bool has = std::ranges::find(columns_, name, &FileColumn::name) != columns_.end();
       if (!has) recording_.report.absent_columns.insert(written);
     }
     return true;
+  }
+
+  // A motion has a yaw, of body x; its old name is that of the direction of the lean, which a
+  // column beside a yaw is.
+  void take_old_names() {
+    if (std::ranges::find(columns_, new_yaw, &FileColumn::name) != columns_.end()) return;
+    const auto column = std::ranges::find(columns_, old_yaw, &FileColumn::name);
+    if (column == columns_.end()) return;
+    column->name = new_yaw;
+    has_old_yaw_ = true;
+    note_old_name(path_.string() +
+                  ": column heading is read as yaw, the azimuth of body x; name it " +
+                  std::string(new_yaw) + " (heading: the direction of the lean)");
+  }
+
+  // Of a channel of this file.
+  std::string successor_of(const std::string& channel) const {
+    return has_old_yaw_ && channel == old_yaw ? std::string(new_yaw) : channel;
   }
 
   void take_row(std::string_view line) {
@@ -312,6 +334,7 @@ class RecordingReader {
   std::vector<std::string_view> cells_;
   size_t time_column_ = 0;
   char separator_ = ',';
+  bool has_old_yaw_ = false;
   int64_t kept_cells_ = 0;
   std::optional<InputError> first_malformed_, first_without_time_;
 };

@@ -42,8 +42,8 @@ constexpr NumberKey place_noise("noise_m", 0.0, Range::not_negative(),
 constexpr NumberKey velocity_noise("noise_m_s", 0.0, Range::not_negative(),
                                    "the same of a velocity; 0: none is recorded");
 constexpr TableKey place("position", "position of a planar platform");
-constexpr NumberKey resolution("resolution_arcsec", Range::positive(), "step of the heading");
-constexpr TableKey encoder("encoder", "heading");
+constexpr NumberKey resolution("resolution_arcsec", Range::positive(), "step of the yaw");
+constexpr TableKey encoder("encoder", "yaw");
 constexpr NumberKey current_noise("current_noise_A", 0.0, Range::not_negative(),
                                   "on the battery's current");
 constexpr NumberKey power_noise("power_noise_W", 0.0, Range::not_negative(),
@@ -293,7 +293,7 @@ void Recorder::add(const Truth& truth) {
   if (truth.place_m_m_s) add_place(truth);
   if (sensors_.encoder) {
     const double step_rad = sensors_.encoder->resolution_rad;
-    put("heading_rad", step_rad * std::round(truth.heading_rad / step_rad));
+    put("yaw_rad", step_rad * std::round(truth.yaw_rad / step_rad));
   }
   put("command_x_N_m", truth.command_body_N_m.x());
   put("command_y_N_m", truth.command_body_N_m.y());

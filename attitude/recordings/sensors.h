@@ -115,7 +115,7 @@ struct Truth {
   double time_s = 0.0;
   Quat lab_from_body_seen = Quat::Identity();  // at time − camera delay
   Vec3 rate_body_rad_s = Vec3::Zero();
-  double heading_rad = 0.0;
+  double yaw_rad = 0.0;
   // Place and velocity of a platform that slides.
   std::optional<std::array<double, 4>> place_m_m_s = {};
   Vec3 gyro_rad_s = Vec3::Zero();  // Dynamics::Instants, for this row

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "attitude/model/platform.h"
 #include "core/constants.h"
 #include "core/text/format.h"
 #include "diagnosis/attitude/account.h"
@@ -159,7 +160,7 @@ const char* symbol_of(MotionVariable variable) {
 }
 
 const char* meaning_of(MotionVariable variable) {
-  constexpr const char* meanings[] = {"ψ the heading",      "θ the tilt",
+  constexpr const char* meanings[] = {"ψ the yaw",          "θ the tilt",
                                       "ω the rate",         "t the recording's time",
                                       "q the charge drawn", "c the command"};
   return meanings[static_cast<size_t>(variable)];
@@ -175,10 +176,9 @@ std::string of_one(const EmpiricalShape& shape, const Numbers& numbers) {
     case FunctionForm::harmonics:
       if (f.orders.size() != 1 || shape.components() != 1) return "";
       return "T = " +
-             wave_text(
-                 numbers, 0, 1, 1.0, "N m",
-                 times(f.orders[0],
-                       f.of == MotionVariable::heading ? "ψ" : "2π t/" + numbers.own(0) + " s")) +
+             wave_text(numbers, 0, 1, 1.0, "N m",
+                       times(f.orders[0],
+                             f.of == MotionVariable::yaw ? "ψ" : "2π t/" + numbers.own(0) + " s")) +
              " " + direction_of(shape.axes.front());
     case FunctionForm::power:
       return by_axes(shape, numbers, ratio(f) + "^" + numbers.own(0));
@@ -216,7 +216,7 @@ std::string of_drag(const EmpiricalShape& shape, const Numbers& numbers) {
   return text.empty() ? "" : text + ")";
 }
 
-std::string likeness_to_heading(const MotionFunction& f) {
+std::string likeness_to_yaw(const MotionFunction& f) {
   switch (f.orders.front()) {
     case 1:
       return "one direction of the room: a draught from one side, a magnet or iron beside the "
@@ -234,14 +234,14 @@ std::string likeness_to_heading(const MotionFunction& f) {
 std::string likeness(const EmpiricalShape& shape, const Numbers& numbers) {
   const MotionFunction& f = shape.functions.front();
   if (shape.functions.size() == 2) {
-    return f.of == MotionVariable::heading
+    return f.of == MotionVariable::yaw
                ? "a bearing whose gap is not the same all round, or that scrapes over part of a "
                  "turn"
                : "a film of air that gets thinner on one side as the platform leans";
   }
   switch (f.of) {
-    case MotionVariable::heading:
-      return likeness_to_heading(f);
+    case MotionVariable::yaw:
+      return likeness_to_yaw(f);
     case MotionVariable::tilt:
       if (f.form == FunctionForm::table) {
         return "a stop, seal or cable that is reached at a certain tilt";
@@ -305,7 +305,7 @@ struct Abscissa {
 };
 
 Abscissa abscissa_of(const std::string& variable) {
-  if (variable == "heading") return {"deg", true};
+  if (variable == "yaw") return {"deg", true};
   if (variable == "tilt") return {"deg"};
   if (variable == "rate") return {"rad/s"};
   if (variable == "charge") return {"C"};
@@ -315,7 +315,7 @@ Abscissa abscissa_of(const std::string& variable) {
 
 double value_of(const std::string& variable, const AttitudeModel& model,
                 const PlatformState& state) {
-  if (variable == "heading") return heading_rad(state) / degree_rad;
+  if (variable == "yaw") return yaw_rad(state) / degree_rad;
   if (variable == "tilt") return tilt_rad(state) / degree_rad;
   if (variable == "rate") return state.rate_body_rad_s.norm();
   if (variable == "charge") return state.charge_drawn_C;

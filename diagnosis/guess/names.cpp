@@ -240,10 +240,10 @@ MeantQuantity quantity_of(const std::vector<std::string>& words) {
       (!axis.empty() && (any("rate") || is_one_of(words[0], {"w", "wx", "wy", "wz"})))) {
     return {axis.empty() ? "rate" : "gyro_" + axis, "rad_s"};
   }
-  for (const char* angle : {"roll", "pitch", "yaw", "heading", "tilt"}) {
+  for (const char* angle : {"roll", "pitch", "yaw", "tilt"}) {
     if (any(angle)) return {angle, "rad"};
   }
-  if (any("azimuth")) return {"heading", "rad"};
+  if (any("heading", "azimuth")) return {"yaw", "rad"};
   if (any("inclination")) return {"tilt", "rad"};
   if (any("angle", "theta", "encoder", "phi", "winkel", "angul", "ngulo", "angolo")) {
     return {"angle", "rad"};

@@ -9,6 +9,7 @@
 
 #include "core/product.h"
 #include "core/provenance.h"
+#include "images/drawing/style.h"
 
 namespace photorque {
 
@@ -17,6 +18,8 @@ namespace photorque {
 class Writer {
  public:
   virtual ~Writer() = default;
+
+  PictureStyle style = PictureStyle::page;  // of what is drawn
 
   // Writes what the format can express of `product` into `folder` (made if absent), one file per
   // item, named after it; returns the paths in order. A format that has nothing to say writes

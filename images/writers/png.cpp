@@ -18,11 +18,12 @@ class PngWriter final : public Writer {
     std::vector<std::filesystem::path> paths;
     for (const Map& map : product.maps) {
       paths.push_back(file_in(folder, map.name, "png"));
-      write_png(paths.back(), map_picture(map, provenance).picture, map_metadata(map, provenance));
+      write_png(paths.back(), map_picture(map, provenance, style).picture,
+                map_metadata(map, provenance));
     }
     for (const Plot& plot : product.plots) {
       paths.push_back(file_in(folder, plot.name, "png"));
-      write_png(paths.back(), plot_picture(plot, provenance),
+      write_png(paths.back(), plot_picture(plot, provenance, style),
                 picture_metadata(plot.title, provenance));
     }
     return paths;

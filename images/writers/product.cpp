@@ -61,13 +61,19 @@ fs::path file_in(const fs::path& folder, const std::string& name, const std::str
   return folder / ((stem.empty() ? "unnamed" : stem) + "." + extension);
 }
 
+void require_formats(const std::vector<std::string>& formats) {
+  kinds_named(formats);
+}
+
 std::vector<fs::path> write_formats(const Product& product, const Provenance& provenance,
-                                    const fs::path& folder,
-                                    const std::vector<std::string>& formats) {
+                                    const fs::path& folder, const std::vector<std::string>& formats,
+                                    PictureStyle style) {
   require_distinct_files(product);
   std::vector<fs::path> paths;
   for (const WriterKind& kind : kinds_named(formats)) {
-    const std::vector<fs::path> written = kind.make()->write(product, provenance, folder);
+    const std::unique_ptr<Writer> writer = kind.make();
+    writer->style = style;
+    const std::vector<fs::path> written = writer->write(product, provenance, folder);
     paths.insert(paths.end(), written.begin(), written.end());
   }
   return paths;

@@ -8,6 +8,7 @@
 
 #include "core/product.h"
 #include "core/provenance.h"
+#include "images/drawing/style.h"
 
 namespace photorque {
 
@@ -19,12 +20,16 @@ std::vector<std::filesystem::path> write_product(const Product& product,
                                                  const std::filesystem::path& folder,
                                                  const std::vector<std::string>& formats = {});
 
+// InputError for the name of no writer kind.
+void require_formats(const std::vector<std::string>& formats);
+
 // Writes directly into `folder`, which may then hold a part when something fails: for folders that
 // are published as one (StagedFiles).
 std::vector<std::filesystem::path> write_formats(const Product& product,
                                                  const Provenance& provenance,
                                                  const std::filesystem::path& folder,
-                                                 const std::vector<std::string>& formats = {});
+                                                 const std::vector<std::string>& formats = {},
+                                                 PictureStyle style = PictureStyle::page);
 
 inline constexpr const char* summary_schema = "photorque.summary/1";
 

@@ -97,7 +97,7 @@ void bind_motion(py::module_& module) {
             return py::cast(table_called(self.cast<const MotionHandle&>().result, "time_history"),
                             py::return_value_policy::reference_internal, self);
           },
-          "Table over time: tilt, heading, rates, charge, every torque.")
+          "Table over time: tilt, heading, yaw, rates, charge, every torque.")
       .def_property_readonly("recording", &recording_of,
                              "Channels of camera, gyro and power as recording.csv holds them.")
       .def_property_readonly("events", &events_of, "(name, time_s) in order of time.")

@@ -139,11 +139,11 @@ py::dict provenance_of(const Provenance& provenance) {
 }
 
 py::list write_of(const RunResult& result, const std::filesystem::path& folder,
-                  const std::string& command) {
+                  const std::string& command, const std::vector<std::string>& formats) {
   std::vector<std::filesystem::path> paths;
   {
     const py::gil_scoped_release release;
-    paths = write_run(result, folder, command);
+    paths = write_run(result, folder, command, {.further = formats});
   }
   paths.push_back(folder / "summary.json");
   for (const RunFile& file : result.files) paths.push_back(folder / file.name);

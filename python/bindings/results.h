@@ -2,6 +2,7 @@
 #pragma once
 
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
 #include <string>
@@ -22,7 +23,7 @@ py::dict maps_of(const RunResult& result, const py::object& owner);
 py::dict provenance_of(const Provenance& provenance);
 // As the results of this command of the program.
 py::list write_of(const RunResult& result, const std::filesystem::path& folder,
-                  const std::string& command);
+                  const std::string& command, const std::vector<std::string>& formats);
 // NumericalError if there is none of this name.
 const Table& table_called(const RunResult& result, const std::string& name);
 
@@ -60,10 +61,13 @@ void add_result(py::class_<Run, More...>& type, const std::string& command) {
           "What the program writes as summary.json.")
       .def(
           "write",
-          [result_of, command](const py::object& self, const std::filesystem::path& folder) {
-            return write_of(result_of(self), folder, command);
+          [result_of, command](const py::object& self, const std::filesystem::path& folder,
+                               const std::vector<std::string>& formats) {
+            return write_of(result_of(self), folder, command, formats);
           },
-          py::arg("folder"), "Writes every file that the program writes; gives their paths.");
+          py::arg("folder"), py::arg("formats") = std::vector<std::string>{},
+          "Writes every file that the program writes, and further formats as by --format; gives "
+          "their paths.");
 }
 
 }  // namespace photorque::python

@@ -39,7 +39,7 @@ class Measurement:
     t_s: float
     attitude: tuple[float, ...]  # of the camera: w, x, y, z, lab from body
     gyro_rad_s: tuple[float, ...]  # body axes
-    heading_rad: float
+    yaw_rad: float  # azimuth of body x by the encoder
     battery_current_A: float
     array_power_W: float
     command_body_N_m: tuple[float, ...]  # that acted until now
@@ -55,6 +55,11 @@ class Measurement:
     refused: int  # packets of anybody that were refused so far
     sequence: int
     sent_ns: int
+
+    @property
+    def heading_rad(self) -> float:
+        """The old name of yaw_rad."""
+        return self.yaw_rad
 
 
 def seal(kind: int, sequence: int, tick: int, run: int, body: bytes = b"") -> bytes:
@@ -77,7 +82,7 @@ def unseal(packet: bytes) -> tuple[int, Measurement] | None:
     v = _MEASUREMENT.unpack_from(packet, _HEADER.size)
     flags = v[25]
     return run, Measurement(
-        tick=tick, now_tick=v[0], t_s=v[3], attitude=v[4:8], gyro_rad_s=v[8:11], heading_rad=v[11],
+        tick=tick, now_tick=v[0], t_s=v[3], attitude=v[4:8], gyro_rad_s=v[8:11], yaw_rad=v[11],
         battery_current_A=v[12], array_power_W=v[13], command_body_N_m=v[14:17],
         command_sequence=v[1], command_sent_ns=v[2], true_attitude=v[17:21],
         true_rate_rad_s=v[21:24], step_s=v[24], is_new=bool(flags & NEW),

@@ -6,6 +6,7 @@
 
 #include "attitude/disturbances/unknown/shape.h"
 #include "core/errors.h"
+#include "core/old_names.h"
 #include "tests/attitude/disturbance_bench.h"
 
 namespace photorque {
@@ -32,14 +33,14 @@ void expect_near(const Vec3& found, const Vec3& expected) {
       << found.transpose() << " against " << expected.transpose();
 }
 
-// Heading 0.7 rad, then leaning by 0.2 rad about body x: body z leans to the right of the nose.
+// Yaw 0.7 rad, then leaning by 0.2 rad about body x: body z leans to the right of the nose.
 const Quat attitude = turned(0.7, Vec3::UnitZ()) * turned(0.2, Vec3::UnitX());
 const Vec3 vertical = attitude.conjugate() * Vec3::UnitZ();
 
-TEST(EmpiricalTorque, HarmonicsOfTheHeading) {
+TEST(EmpiricalTorque, HarmonicsOfTheYaw) {
   expect_near(
       torque({{"axes", words({"vertical"})},
-              {"heading_orders", numbers({1, 3})},
+              {"yaw_orders", numbers({1, 3})},
               {"coefficients_N_m", numbers({1e-6, 2e-6, -3e-6, 4e-6})}},
              attitude),
       (1e-6 * std::cos(0.7) + 2e-6 * std::sin(0.7) - 3e-6 * std::cos(2.1) + 4e-6 * std::sin(2.1)) *
@@ -129,10 +130,10 @@ TEST(EmpiricalTorque, ChargeIsHeldBeyondItsRange) {
 }
 
 // Two functions: every term of the first with every term of the second.
-TEST(EmpiricalTorque, DragThatDependsOnTheHeading) {
+TEST(EmpiricalTorque, DragThatDependsOnTheYaw) {
   const Vec3 rate(0.03, -0.04, 0.12);
   const Vec3 found = torque({{"axes", words({"rate"})},
-                             {"heading_orders", numbers({2})},
+                             {"yaw_orders", numbers({2})},
                              {"rate_powers", numbers({1, 2})},
                              {"coefficients_N_m", numbers({1e-6, 2e-6, 3e-6, 4e-6})}},
                             attitude, rate);
@@ -206,11 +207,11 @@ TEST(EmpiricalTorque, StepsEndAtTheKnotsOfATableInTime) {
 // Written shapes are read back unchanged.
 TEST(EmpiricalTorque, ShapesAreWrittenAsTheyAreRead) {
   const std::vector<Entries> all = {
-      {{"axes", words({"vertical", "lab"})}, {"heading_orders", numbers({1, 3})}},
+      {{"axes", words({"vertical", "lab"})}, {"yaw_orders", numbers({1, 3})}},
       {{"axes", words({"lean"})}, {"tilt_exponent", node(2.5)}, {"tilt_reference_deg", node(7)}},
       {{"axes", words({"rate"})},
        {"rate_knots_rad_s", numbers({0, 0.1, 0.2, 0.25})},
-       {"heading_orders", numbers({2})}},
+       {"yaw_orders", numbers({2})}},
       {{"axes", words({"body"})}, {"time_constant_s", node(30)}, {"time_range_s", numbers({0, 9})}},
       {{"axes", words({"body"})}, {"time_period_s", node(30)}, {"time_orders", numbers({1, 2})}},
       {{"axes", words({"body"})}, {"time_span_s", node(30)}, {"time_cosines", numbers({1, 2})}},
@@ -254,20 +255,37 @@ std::string complaint(const Entries& entries) {
   return "";
 }
 
+TEST(EmpiricalTorque, TakesTheOldNameOfTheYawWithANotice) {
+  const auto law = [](const char* key) {
+    return make(bench_model(), "empirical_torque",
+                {{"axes", words({"vertical"})},
+                 {key, numbers({3})},
+                 {"coefficients_N_m", numbers({1e-6, 2e-6})}});
+  };
+  const auto has_notice = [] {
+    return std::ranges::any_of(old_name_notices(), [](const std::string& notice) {
+      return notice.find("heading_orders") != std::string::npos &&
+             notice.find("yaw_orders") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(has_notice());
+  law("heading_orders");
+  EXPECT_TRUE(has_notice());
+}
+
 TEST(EmpiricalTorque, SaysWhatIsWrongWithItsKeys) {
   using testing::HasSubstr;
   const std::pair<std::string, SettingsNode> about = {"axes", words({"vertical"})};
   const std::pair<std::string, SettingsNode> two = {"coefficients_N_m", numbers({1e-6, 2e-6})};
-  const std::pair<std::string, SettingsNode> heading = {"heading_orders", numbers({3})};
-  EXPECT_EQ(complaint({about, heading, two}), "");
+  const std::pair<std::string, SettingsNode> yaw = {"yaw_orders", numbers({3})};
+  EXPECT_EQ(complaint({about, yaw, two}), "");
   EXPECT_THAT(complaint({about, two}), HasSubstr("one or two"));
-  EXPECT_THAT(complaint({heading, two}), HasSubstr("axes"));
-  EXPECT_THAT(complaint({{"axes", words({"sideways"})}, heading, two}), HasSubstr("sideways"));
-  EXPECT_THAT(complaint({about, heading, {"coefficients_N_m", numbers({1e-6})}}),
+  EXPECT_THAT(complaint({yaw, two}), HasSubstr("axes"));
+  EXPECT_THAT(complaint({{"axes", words({"sideways"})}, yaw, two}), HasSubstr("sideways"));
+  EXPECT_THAT(complaint({about, yaw, {"coefficients_N_m", numbers({1e-6})}}),
               HasSubstr("an array of 2 numbers"));
-  EXPECT_THAT(complaint({about, {"heading_orders", numbers({2.5})}, two}),
-              HasSubstr("whole numbers"));
-  EXPECT_THAT(complaint({{"axes", words({"lean"})}, heading, two}),
+  EXPECT_THAT(complaint({about, {"yaw_orders", numbers({2.5})}, two}), HasSubstr("whole numbers"));
+  EXPECT_THAT(complaint({{"axes", words({"lean"})}, yaw, two}),
               HasSubstr("without a function of the tilt"));
   EXPECT_THAT(complaint({about, {"tilt_exponent", node(2)}, {"tilt_powers", numbers({1})}, two}),
               HasSubstr("one function of a variable"));

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "attitude/environment/sun.h"
+#include "attitude/model/platform.h"
 #include "attitude/propagation/propagator.h"
 #include "core/errors.h"
 #include "tests/attitude/disturbance_bench.h"
@@ -82,7 +83,7 @@ TEST(Commands, AreHitExactly) {
   const PlatformState end =
       propagate(dynamics, dynamics.initial_state(), std::vector<double>{t}).states.back();
   EXPECT_NEAR(end.rate_body_rad_s.z(), rate, 1e-14);
-  EXPECT_NEAR(heading_rad(end), angle, 1e-13);
+  EXPECT_NEAR(yaw_rad(end), angle, 1e-13);
 }
 
 TEST(Propagation, IsTheSameToTheBitWhateverIsAskedOfIt) {

@@ -295,7 +295,7 @@ TEST(Estimates, TakeTheHeadingOfAnEncoder) {
   const auto heading_error_rad = [&](bool uses_encoder) {
     settings.uses_attitude = uses_encoder;
     const Readings readings = readings_of(simulated.recording, "run", run.model.platform, 0.0);
-    EXPECT_TRUE(readings.has_heading);
+    EXPECT_TRUE(readings.has_yaw);
     EXPECT_FALSE(readings.sees_attitude());
     const MotionModel model(run.model, run.sensors, settings, readings.schedule);
     EstimationOptions options;

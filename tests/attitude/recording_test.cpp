@@ -11,6 +11,7 @@
 #include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/old_names.h"
 #include "tests/attitude/settings_bench.h"
 #include "tests/outside.h"
 
@@ -146,6 +147,22 @@ TEST(Recording, ColumnsMayHaveOtherNamesAndUnits) {
   const RecordingOptions from_file = read_recording_options(settings_of(
       table({{"columns", table({{"t_ms", node("Stamp")}, {"gyro_z_deg_s", node("wz")}})}})));
   EXPECT_EQ(from_file.columns, options.columns);
+}
+
+TEST(Recording, OldNameOfTheYawIsReadWithANotice) {
+  const Recording old = read("t_s,heading_deg\n0,90\n1,91\n");
+  ASSERT_NE(old.find("yaw_rad"), nullptr);
+  EXPECT_DOUBLE_EQ(old.find("yaw_rad")->values[0], pi / 2);
+  EXPECT_THAT(old_name_notices(), testing::Contains(testing::HasSubstr("read as yaw")));
+  // Beside a yaw it is the direction of the lean.
+  const Recording both = read("t_s,heading_deg,yaw_deg\n0,90,10\n1,91,11\n");
+  EXPECT_DOUBLE_EQ(both.find("yaw_rad")->values[0], 10 * degree_rad);
+  EXPECT_DOUBLE_EQ(both.find("heading_rad")->values[0], pi / 2);
+  RecordingOptions named;
+  named.columns = {{"heading_rad", "psi"}};
+  const Recording renamed = read("t_s,psi\n0,1.5\n1,1.6\n", named);
+  EXPECT_DOUBLE_EQ(renamed.find("yaw_rad")->values[0], 1.5);
+  EXPECT_TRUE(renamed.report.absent_columns.empty());
 }
 
 TEST(Recording, FlippedAndBadQuaternionsAreMended) {

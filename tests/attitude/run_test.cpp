@@ -7,6 +7,7 @@
 #include <functional>
 #include <set>
 
+#include "attitude/model/platform.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "tests/attitude/disturbance_bench.h"
@@ -158,6 +159,48 @@ TEST(Experiment, BeginsAsItsBearingsAllow) {
   EXPECT_THAT(about("y", {0, 0.05, 0}, 10.0), HasSubstr("propagate.initial_tilt_deg"));
 }
 
+// Rz(yaw) turns body x; a lean towards the heading turns body z (docs/disturbances.md).
+TEST(Experiment, BeginsAtTheStatedHeadingAndYaw) {
+  SettingsNode root = experiment();
+  at(root, "propagate", "initial_tilt_deg") = node(20.0);
+  at(root, "propagate", "initial_heading_deg") = node(-130.0);
+  const auto begins = [&] { return read_propagation(settings_of(root)).initial; };
+  EXPECT_NEAR(heading_rad(begins()), -130 * degree_rad, 1e-12);
+  at(root, "propagate", "initial_yaw_deg") = node(75.0);
+  EXPECT_NEAR(heading_rad(begins()), -130 * degree_rad, 1e-12);
+  EXPECT_NEAR(yaw_rad(begins()), 75 * degree_rad, 1e-12);
+  EXPECT_NEAR(tilt_rad(begins()), 20 * degree_rad, 1e-12);
+  at(root, "propagate", "initial_tilt_deg") = node(150.0);  // beyond the horizontal
+  EXPECT_NEAR(yaw_rad(begins()), 75 * degree_rad, 1e-12);
+  EXPECT_NEAR(tilt_rad(begins()), 150 * degree_rad, 1e-12);
+  at(root, "propagate", "initial_tilt_deg") = node(0.0);
+  const Quat upright = begins().lab_from_body;
+  EXPECT_LT(upright.angularDistance(Quat(Eigen::AngleAxisd(75 * degree_rad, Vec3::UnitZ()))),
+            1e-12);
+  EXPECT_THAT(complaint([](SettingsNode& r) {
+                at(r, "propagate", "initial_tilt_deg") = node(90.0);
+                at(r, "propagate", "initial_yaw_deg") = node(10.0);
+              }),
+              HasSubstr("propagate.initial_yaw_deg"));
+}
+
+// 40 bytes of time and quaternion and up to 180 of the rest: a day has at most 10 MB.
+TEST(Experiment, LongRunsHaveFewerRows) {
+  const auto rate = [](double duration_s) {
+    SettingsNode root = experiment();
+    at(root, "propagate", "duration_s") = node(duration_s);
+    return read_propagation(settings_of(root)).output_rate_Hz;
+  };
+  EXPECT_DOUBLE_EQ(rate(600.0), 10.0);
+  EXPECT_DOUBLE_EQ(rate(4500.0), 10.0);
+  EXPECT_DOUBLE_EQ(rate(4501.0), 5.0);
+  EXPECT_DOUBLE_EQ(rate(86400.0), 0.5);
+  for (const double duration_s : {5e3, 2e4, 1e6, 1e9}) {
+    EXPECT_LE(rate(duration_s) * duration_s, 45000.0);
+    EXPECT_GE(rate(duration_s) * duration_s, 45000.0 / 2.5);
+  }
+}
+
 TEST(Run, GivesHistoryPlotsAndRecording) {
   const PropagationResult result = propagate(read_propagation(settings_of(experiment())));
   EXPECT_EQ(result.recording.rows(), 301u);
@@ -171,12 +214,12 @@ TEST(Run, GivesHistoryPlotsAndRecording) {
     columns.insert(column.name);
   }
   for (const Plot& plot : result.product.plots) plots.insert(plot.name);
-  for (const char* name : {"t_s", "q_w", "tilt_deg", "heading_deg", "rate_z_rad_s",
+  for (const char* name : {"t_s", "q_w", "tilt_deg", "heading_deg", "yaw_deg", "rate_z_rad_s",
                            "torque_static_unbalance_x_N_m", "torque_bearing_drag_z_N_m"}) {
     EXPECT_TRUE(columns.contains(name)) << name;
   }
-  for (const char* name :
-       {"tilt", "heading", "rates", "torques", "torque_static_unbalance", "torque_bearing_drag"}) {
+  for (const char* name : {"tilt", "yaw", "rates", "torques", "torque_shares",
+                           "torque_static_unbalance", "torque_bearing_drag"}) {
     EXPECT_TRUE(plots.contains(name)) << name;
   }
   EXPECT_FALSE(columns.contains("torque_gyro_bias_x_N_m"));

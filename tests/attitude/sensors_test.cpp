@@ -155,7 +155,7 @@ TEST(Encoder, CountsWholeSteps) {
   run.sensors.encoder = Sensors::Encoder{2 * pi / 4096};
   const PropagationResult result = propagate(run);
   for (size_t i = 0; i < result.states.size(); ++i) {
-    const double reading = values(result.recording, "heading_rad")[i];
+    const double reading = values(result.recording, "yaw_rad")[i];
     EXPECT_NEAR(reading, 0.1 * result.recording.time_s[i], pi / 4096 + 1e-12);
     EXPECT_NEAR(std::remainder(reading, 2 * pi / 4096), 0.0, 1e-12);
   }

@@ -14,7 +14,7 @@ namespace {
 constexpr double I_kg_m2 = 0.19;  // of the bench platform about z
 
 // Turned about z, between −π and π.
-double heading_rad(const Quat& q) {
+double yaw_rad(const Quat& q) {
   const double angle = 2.0 * std::atan2(q.z(), q.w());
   return std::remainder(angle, 2.0 * pi);
 }
@@ -47,8 +47,8 @@ TEST(Sticking, IsCrossedInFewSteps) {
   const Trajectory t =
       propagate(dynamics, state_of(model, Quat::Identity(), {0, 0, held.start_rad_s}), times_s);
   // The law's smooth layer moves the stop by about creep/rate of the stopping time, some 1e-4 rad.
-  EXPECT_NEAR(std::remainder(heading_rad(t.states[0].lab_from_body) - held.angle_rad(1e5), 2 * pi),
-              0.0, 1e-5);
+  EXPECT_NEAR(std::remainder(yaw_rad(t.states[0].lab_from_body) - held.angle_rad(1e5), 2 * pi), 0.0,
+              1e-5);
   EXPECT_NEAR(t.states[0].rate_body_rad_s.z(), held.creeps_rad_s(), 1e-12);
   // Steps as short as fixed-point iteration needs while it sticks, I · creep/friction = 0.02 s
   // times a few, would be a million.
@@ -67,11 +67,11 @@ TEST(Sticking, HasExactDerivatives) {
     AttitudeModel changed = model;
     changed.disturbances.back().parameters[0].value += by_N_m;
     const Dynamics dynamics(changed);
-    return heading_rad(propagate(dynamics,
-                                 state_of(changed, Quat::Identity(), {0, 0, held.start_rad_s}),
-                                 times_s, options)
-                           .states[0]
-                           .lab_from_body);
+    return yaw_rad(propagate(dynamics,
+                             state_of(changed, Quat::Identity(), {0, 0, held.start_rad_s}), times_s,
+                             options)
+                       .states[0]
+                       .lab_from_body);
   };
   const Dynamics dynamics(model);
   const Trajectory t =
@@ -121,7 +121,7 @@ TEST(Sticking, EveryReversalIsSeen) {
         propagate(dynamics, state_of(model, turned(amplitude_rad, {0, 0, 1})), times_s);
     for (int half = 1; half <= 40; ++half) {
       const double left_rad = amplitude_rad - 2 * half * friction_N_m / k;
-      const double at_rad = heading_rad(t.states[static_cast<size_t>(half - 1)].lab_from_body);
+      const double at_rad = yaw_rad(t.states[static_cast<size_t>(half - 1)].lab_from_body);
       EXPECT_NEAR(at_rad, half % 2 == 1 ? -left_rad : left_rad, 3e-7) << start << " " << half;
     }
   }
@@ -168,7 +168,7 @@ TEST(Sticking, AboutOneAxisLosesFourTimesFrictionOverStiffnessACycle) {
     times_s.push_back(part * swing.half_period_s());
   const Trajectory t = swing.at(times_s);
   for (size_t i = 0; i < times_s.size(); ++i) {
-    EXPECT_NEAR(heading_rad(t.states[i].lab_from_body), swing.angle_rad(times_s[i]), 1e-8) << i;
+    EXPECT_NEAR(yaw_rad(t.states[i].lab_from_body), swing.angle_rad(times_s[i]), 1e-8) << i;
   }
   EXPECT_EQ(t.states.back().rate_body_rad_s.z(), 0.0);
   EXPECT_LT(t.statistics.steps, 200);
@@ -212,7 +212,7 @@ TEST(Tether, CountsItsTurns) {
     EXPECT_NEAR(end.rate_body_rad_s.z(), amplitude_rad * omega_1_s * std::cos(omega_1_s * time_s),
                 1e-9);
     const double off_rad =
-        heading_rad(end.lab_from_body) - amplitude_rad * std::sin(omega_1_s * time_s);
+        yaw_rad(end.lab_from_body) - amplitude_rad * std::sin(omega_1_s * time_s);
     EXPECT_NEAR(std::remainder(off_rad, 2 * pi), 0.0, 1e-8);
   }
 }

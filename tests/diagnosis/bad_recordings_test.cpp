@@ -37,7 +37,7 @@ TEST(BadRecording, WithoutAttitudeNamesTheMissingChannel) {
   EXPECT_EQ(refusal_of(currents),
             "run.csv: header: found no channel q_w and no gyro, expected the attitude q_w, q_x, "
             "q_y, q_z or roll_rad, pitch_rad, yaw_rad; or gyro_x_rad_s, gyro_y_rad_s, "
-            "gyro_z_rad_s; or any of tilt_rad, heading_rad, rate_magnitude_rad_s");
+            "gyro_z_rad_s; or any of tilt_rad, yaw_rad, rate_magnitude_rad_s");
   const Recording three = repeated_row("t_s,q_w,q_x,q_y", "1,0,0", 100);
   EXPECT_NE(refusal_of(three).find("no channel q_z"), std::string::npos);
 }

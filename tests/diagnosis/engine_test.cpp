@@ -250,7 +250,7 @@ TEST(Diagnose, CallsCoggingUnexplainedAndMeasuresItsTorque) {
   ASSERT_EQ(d.verdict, Verdict::unexplained);
   EXPECT_TRUE(d.effects.empty());
   ASSERT_FALSE(d.where.depends_on.empty());
-  EXPECT_EQ(d.where.depends_on.front().variable, "heading");
+  EXPECT_EQ(d.where.depends_on.front().variable, "yaw");
   ASSERT_EQ(d.empirical.size(), 1u);
   const EmpiricalTorque& torque = d.empirical.front();
   ASSERT_EQ(torque.standard_error_N_m.size(), torque.at.size());

@@ -28,6 +28,7 @@ TEST(DiagnosisJson, HoldsEveryKeyOfTheSchema) {
   EXPECT_EQ(json["where"]["intervals_s"], Json::parse("[[120.0, 400.0]]"));
   EXPECT_EQ(json["where"]["band_Hz"], Json::parse("[0.0, 0.1]"));
   EXPECT_EQ(json["where"]["depends_on"][0]["variable"], "heading");
+  EXPECT_EQ(json["where"]["depends_on"][0]["quantity"], "yaw_deg");
   EXPECT_EQ(json["where"]["depends_on"][0]["strength"], 0.8);
   EXPECT_EQ(json["effects"][0]["kind"], "magnetic_dipole");
   EXPECT_EQ(json["effects"][0]["probability"], 0.983);

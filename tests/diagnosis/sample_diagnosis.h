@@ -36,7 +36,7 @@ inline Diagnosis sample_diagnosis() {
   d.where.channels = {{"attitude_z_arcsec", 8.5}, {"gyro_x_rad_s", 1.01}};
   d.where.intervals_s = {{120.0, 400.0}};
   d.where.band_Hz = Where::Interval{0.0, 0.1};
-  d.where.depends_on = {{"heading", 0.8}};
+  d.where.depends_on = {{"yaw", 0.8}};
   d.effects = {
       {"magnetic_dipole",
        0.983,

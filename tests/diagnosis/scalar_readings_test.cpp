@@ -84,26 +84,26 @@ TEST(ScalarReadings, SlopesAreThoseOfTheAngles) {
   const Quat q = Quat(0.8, -0.2, 0.35, 0.44).normalized();
   const Vec3 rate(0.3, -0.4, 1.2);
   const auto matrix_tilt = [](const Quat& at) { return std::acos(at.toRotationMatrix()(2, 2)); };
-  const auto matrix_heading = [](const Quat& at) {
+  const auto matrix_yaw = [](const Quat& at) {
     const Mat3 m = at.toRotationMatrix();
     return std::atan2(m(1, 0), m(0, 0));
   };
   EXPECT_NEAR(scalar_reading(Scalar::tilt, q, rate).value, matrix_tilt(q), 1e-14);
-  EXPECT_NEAR(scalar_reading(Scalar::heading, q, rate).value, matrix_heading(q), 1e-14);
+  EXPECT_NEAR(scalar_reading(Scalar::yaw, q, rate).value, matrix_yaw(q), 1e-14);
   for (int k = 0; k < 3; ++k) {
     constexpr double step = 1e-6;
     const Quat on = Quat(Eigen::AngleAxisd(step, Vec3::Unit(k))) * q,
                back = Quat(Eigen::AngleAxisd(-step, Vec3::Unit(k))) * q;
     EXPECT_NEAR(scalar_reading(Scalar::tilt, q, rate).by_rotation_lab[k],
                 (matrix_tilt(on) - matrix_tilt(back)) / (2 * step), 1e-8);
-    EXPECT_NEAR(scalar_reading(Scalar::heading, q, rate).by_rotation_lab[k],
-                (matrix_heading(on) - matrix_heading(back)) / (2 * step), 1e-8);
+    EXPECT_NEAR(scalar_reading(Scalar::yaw, q, rate).by_rotation_lab[k],
+                (matrix_yaw(on) - matrix_yaw(back)) / (2 * step), 1e-8);
   }
   const ScalarReading length = scalar_reading(Scalar::rate_magnitude, q, rate);
   EXPECT_NEAR(length.value, 1.3, 1e-15);
   EXPECT_NEAR((length.by_rate - Vec3(3, -4, 12) / 13).norm(), 0.0, 1e-15);
   // A heading that has turned twice more is the same heading.
-  EXPECT_NEAR(scalar_difference(Scalar::heading, 4 * pi + 0.1, 0.0), 0.1, 1e-14);
+  EXPECT_NEAR(scalar_difference(Scalar::yaw, 4 * pi + 0.1, 0.0), 0.1, 1e-14);
 }
 
 TEST(ScalarReadings, AnglesInAnotherSequenceAreReadInTheirs) {
@@ -177,7 +177,7 @@ TEST(ScalarReadings, AGyroWithExchangedAxesIsNotTakenForAnotherSequence) {
 TEST(ScalarReadings, ADipoleIsNamedByTiltAndHeadingAlone) {
   const auto written = [](unsigned seed) {
     return rewritten(
-        rigid_body::recorded(seed, dipole_torque), {"tilt_rad", "heading_rad"},
+        rigid_body::recorded(seed, dipole_torque), {"tilt_rad", "yaw_rad"},
         [](const Quat& q) {
           const Mat3 m = q.toRotationMatrix();
           return std::vector<double>{std::acos(m(2, 2)), std::atan2(m(1, 0), m(0, 0))};
@@ -197,13 +197,13 @@ TEST(ScalarReadings, ADipoleIsNamedByTiltAndHeadingAlone) {
   EXPECT_THAT(d.warnings, Contains(HasSubstr("mirror image")));
   std::vector<std::string> channels;
   for (const auto& channel : d.where.channels) channels.push_back(channel.name);
-  EXPECT_THAT(channels, UnorderedElementsAre("tilt_arcsec", "heading_arcsec"));
+  EXPECT_THAT(channels, UnorderedElementsAre("tilt_arcsec", "yaw_arcsec"));
 }
 
 TEST(ScalarReadings, NothingIsNamedByTiltAndHeadingWhereNothingIsMissing) {
   const auto nothing = [](const rigid_body::State&) -> Vec3 { return Vec3::Zero(); };
   const NamedRecording run = rewritten(
-      rigid_body::recorded(4, nothing), {"tilt_rad", "heading_rad"},
+      rigid_body::recorded(4, nothing), {"tilt_rad", "yaw_rad"},
       [](const Quat& q) {
         const Mat3 m = q.toRotationMatrix();
         return std::vector<double>{std::acos(m(2, 2)), std::atan2(m(1, 0), m(0, 0))};

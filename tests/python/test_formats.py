@@ -20,7 +20,7 @@ class Formats(FolderTest):
     def setUp(self):
         super().setUp()
         self.power = photorque.power(photorque.Experiment(nominal, keys={"trace.rays": 65536}))
-        self.power.write(self.folder)
+        self.power.write(self.folder, formats=["vtkhdf"])
 
     @unittest.skipUnless(there("h5py"), "no h5py (python3-h5py)")
     def test_h5py_reads_everything_of_the_run(self):

@@ -241,7 +241,7 @@ TEST_F(ArrayCommand, PowerReportsLossesTrackersDayTargetAndWiring) {
           " --set 'array.target={power_W=30,efficiency=0.38}' --set 'array.day={load_W=25}'"
           " --set 'array.chain={wall_plug_efficiency=0.45,converter_efficiency=0.95}'"
           " --set 'array.layout={most_tried=20}'"
-          " --set 'array.tracker={time_s=[0,4],tilt_deg=[0,30]}' --out " +
+          " --set 'array.tracker={time_s=[0,4],tilt_deg=[0,30]}' --verbose --out " +
           at("out"));
   ASSERT_EQ(got.status, 0) << got.err;
   // 730 nm: hc/λ = 1.698 eV; 0.38 × 1.698 V = 0.645 V; 30 W cos 30° = 25.98 W.
@@ -260,8 +260,9 @@ TEST_F(ArrayCommand, PowerReportsLossesTrackersDayTargetAndWiring) {
 TEST_F(ArrayCommand, TargetTakesItsFiguresFromWhatWasPublished) {
   const std::string stasis =
       (fs::path(PHOTORQUE_SOURCE_DIR) / "scenes/stasis/nominal.toml").string();
-  const std::string common =
-      "power " + stasis + " --set trace.rays=65536 --set 'array.target={}' --out " + at("out");
+  const std::string common = "power " + stasis +
+                             " --set trace.rays=65536 --set 'array.target={}' --verbose --out " +
+                             at("out");
   const Outcome paper = run(common);
   ASSERT_EQ(paper.status, 0) << paper.err;
   EXPECT_THAT(paper.out, HasSubstr("What 30 W and 38 % require"));
@@ -276,8 +277,8 @@ TEST_F(ArrayCommand, TargetTakesItsFiguresFromWhatWasPublished) {
 TEST_F(ArrayCommand, LightAtASlantIsAStageOfTheLosses) {
   const std::string stasis =
       (fs::path(PHOTORQUE_SOURCE_DIR) / "scenes/stasis/nominal.toml").string();
-  const std::string common = "power " + stasis + " --set trace.rays=65536 --out " + at("out") +
-                             " --set attitude.tilt_deg=60 ";
+  const std::string common = "power " + stasis + " --set trace.rays=65536 --verbose --out " +
+                             at("out") + " --set attitude.tilt_deg=60 ";
   const Outcome glass = run(common + "--set 'array.cover={refractive_index=1.526}'");
   ASSERT_EQ(glass.status, 0) << glass.err;
   // Duffie and Beckman, example 5.1.1: (1 − 0.093)/(1 − 0.0434) = 0.948 at 60 deg; the beams

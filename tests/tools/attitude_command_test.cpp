@@ -53,11 +53,13 @@ TEST_F(AttitudeCommands, PropagateWritesWhatTheContractNames) {
       run("propagate " + stasis + " --set propagate.duration_s=30 --out " + at("o"));
   ASSERT_EQ(got.status, 0) << got.err;
   const auto all = files("o");
-  for (const char* name : {"summary.json", "time_history.csv", "recording.csv", "attitude.aem",
-                           "tilt.png", "tilt.svg", "heading.png", "rates.svg", "torques.png",
-                           "torque_static_unbalance.png", "torque_radiation_pressure.svg"}) {
+  for (const char* name :
+       {"summary.json", "time_history.csv", "recording.csv", "attitude.aem", "run.h5", "tilt.png",
+        "yaw.png", "rates.png", "torques.png", "torque_shares.png", "torque_static_unbalance.png",
+        "torque_radiation_pressure.png"}) {
     EXPECT_TRUE(all.contains(name)) << name;
   }
+  EXPECT_FALSE(all.contains("tilt.svg"));
   EXPECT_THAT(all.at("recording.csv"), HasSubstr("\nt_s,q_w,q_x,q_y,q_z,gyro_x_rad_s"));
   EXPECT_THAT(all.at("attitude.aem"), HasSubstr("CCSDS_AEM_VERS = 1.0"));
   EXPECT_THAT(all.at("recording.csv"), HasSubstr("light_torque.csv:"));
@@ -101,7 +103,7 @@ TEST_F(AttitudeCommands, BalanceFindsTheOffsetThatMadeTheRecording) {
 }
 
 TEST_F(AttitudeCommands, BudgetRanksAndComparesWithThePaper) {
-  const Outcome got = run("budget " + stasis + " --out " + at("o"));
+  const Outcome got = run("budget " + stasis + " --verbose --format svg --out " + at("o"));
   ASSERT_EQ(got.status, 0) << got.err;
   const size_t unbalance = got.out.find("static_unbalance"), light = got.out.find("radiation_pr");
   EXPECT_LT(unbalance, light);

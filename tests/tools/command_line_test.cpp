@@ -125,9 +125,41 @@ double value_in(const std::string& summary, const std::string& key, const char* 
   return std::stod(summary.substr(summary.find(':', at) + 1));
 }
 
+TEST_F(CommandLine, ResultsAreLeanAndTheTextIsShort) {
+  const std::string few = "power " + nominal + " --set trace.rays=65536 --out " + at("o");
+  const auto has = [this](const std::string& name) { return fs::exists(folder_ / "o" / name); };
+  const Outcome usual = run(few);
+  ASSERT_EQ(usual.status, 0) << usual.err;
+  EXPECT_LE(std::ranges::count(usual.out, '\n'), 30) << usual.out;
+  for (const char* name : {"summary.json", "run.h5", "iv.csv", "iv_curve.png", "cell_power.png",
+                           "irradiance_solar_array.exr", "irradiance_solar_array.tiff",
+                           "irradiance_solar_array.csv", "irradiance_solar_array.png"}) {
+    EXPECT_TRUE(has(name)) << name;
+  }
+  for (const char* name : {"iv_curve.svg", "iv_curve.pdf", "cell_power.exr", "cell_power.csv",
+                           "irradiance_solar_array.vtkhdf"}) {
+    EXPECT_FALSE(has(name)) << name;
+  }
+  const Outcome full = run(few + " --format exr,csv,vtkhdf,svg,pdf --style paper --verbose");
+  ASSERT_EQ(full.status, 0) << full.err;
+  EXPECT_GT(std::ranges::count(full.out, '\n'), 50);
+  for (const char* name : {"iv_curve.svg", "iv_curve.pdf", "cell_power.exr", "cell_power.csv",
+                           "cell_power.svg", "irradiance_solar_array.vtkhdf"}) {
+    EXPECT_TRUE(has(name)) << name;
+  }
+  EXPECT_FALSE(has("cell_power.tiff"));
+  // Letters are text.
+  EXPECT_THAT(file_text(folder_ / "o" / "iv_curve.svg"), HasSubstr(">Voltage [V]</text>"));
+  const Outcome wrong = run(few + " --format jpeg");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("exr, tiff, png"));
+  EXPECT_EQ(run(few + " --style poster").status, 2);
+}
+
 TEST_F(CommandLine, DirectLightIsTheSameGatheredAndByRays) {
-  const Outcome got = run("trace " + nominal +
-                          " --set attitude.tilt_deg=30 --set trace.rays=1048576 --out " + at("o"));
+  const Outcome got =
+      run("trace " + nominal +
+          " --set attitude.tilt_deg=30 --set trace.rays=1048576 --verbose --out " + at("o"));
   ASSERT_EQ(got.status, 0) << got.err;
   EXPECT_THAT(got.out, HasSubstr("gathered and by rays differ by"));
   const std::string summary = file_text(folder_ / "o" / "summary.json");

@@ -245,7 +245,7 @@ TEST_F(CoupledCommand, APlateOnAJointTakesTheLightOfItsAngle) {
 // A table that forgot the yaw would give the same body torque after a quarter turn.
 TEST_F(CoupledCommand, TableAndTraceAgreeUnderALampToOneSide) {
   const std::string file = experiment(lamp);
-  const Outcome tabled = run("propagate " + file + " --out " + at("table"));
+  const Outcome tabled = run("propagate " + file + " --verbose --out " + at("table"));
   ASSERT_EQ(tabled.status, 0) << tabled.err;
   EXPECT_THAT(tabled.out, HasSubstr("depends on the yaw"));
   const Outcome traced =

@@ -12,7 +12,8 @@ const std::string stasis_file = std::string(PHOTORQUE_SOURCE_DIR) + "/scenes/sta
 class DirectRouteCommand : public CommandTest {};
 
 TEST_F(DirectRouteCommand, ManyPairsAreLeftToTheRaysWithANote) {
-  const std::string few_rays = "trace " + stasis_file + " --set trace.rays=65536 --out " + at("o");
+  const std::string few_rays =
+      "trace " + stasis_file + " --set trace.rays=65536 --verbose --out " + at("o");
   // 49 lamps over 640 × 640 bins: 2.01 s at 0.1 µs a pair.
   const Outcome left = run(few_rays + " --set receiver[0].bins=[640,640]");
   ASSERT_EQ(left.status, 0) << left.err;

@@ -112,13 +112,14 @@ TEST_F(SupplyCommand, LightIsThatOfPower) {
 }
 
 TEST_F(SupplyCommand, WritesTablesAndPictures) {
-  const Outcome got = run("supply " + write("s.toml", fed_platform) + " --out " + at("o"));
+  const Outcome got =
+      run("supply " + write("s.toml", fed_platform) + " --verbose --out " + at("o"));
   ASSERT_EQ(got.status, 0) << got.err;
   EXPECT_THAT(got.out, HasSubstr("25 W x 24 h is 600 Wh; 360 Wh is 15 W x 24 h"));
   const auto all = files("o");
   for (const char* name :
        {"summary.json", "supply.csv", "supply_by_tilt.csv", "supply_figures.csv",
-        "paper_supply.csv", "supply_over_tilt.png", "battery_torque_by_charge.svg"}) {
+        "paper_supply.csv", "supply_over_tilt.png", "battery_torque_by_charge.png"}) {
     EXPECT_TRUE(all.contains(name)) << name;
   }
 }

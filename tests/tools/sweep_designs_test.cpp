@@ -160,13 +160,13 @@ from = 500
 to = 1000
 count = 3
 )");
-  ASSERT_EQ(sweep().status, 0);
+  ASSERT_EQ(sweep("--format svg,csv").status, 0);
   const auto has_picture = [this](const std::string& name) {
     return std::filesystem::exists(at("out/" + name + ".png"));
   };
   EXPECT_TRUE(has_picture("sweep_power_on_plate_W_map"));
   EXPECT_TRUE(has_picture("pareto_abs_torque_y_body_body_N_m"));
-  // Letters are drawn as outlines; the title and the map's columns are text.
+  // The title and the map's columns are text.
   EXPECT_THAT(file_text(at("out/sweep_power_on_plate_W.svg")),
               HasSubstr("<title>Power on plate over irradiance</title>"));
   EXPECT_EQ(

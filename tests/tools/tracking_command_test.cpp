@@ -29,7 +29,7 @@ TEST_F(TrackingCommands, TheStatedBoardAndLensGiveThePapersErrors) {
   EXPECT_NEAR(figure(summary, "in_plane_error_arcsec"), 12.0, 1.0);
   EXPECT_NEAR(figure(summary, "out_of_plane_error_arcsec"), 37.0, 2.0);
   const auto all = files("o");
-  for (const char* name : {"design.png", "error_over_tilt.svg", "out_of_plane_error.png",
+  for (const char* name : {"design.png", "error_over_tilt.png", "out_of_plane_error.png",
                            "degradation.csv", "images.csv", "markers.csv"}) {
     EXPECT_TRUE(all.contains(name)) << name;
   }

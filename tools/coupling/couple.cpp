@@ -372,7 +372,7 @@ void attempt(CoupledResult& result, const Console& console, const ExperimentFile
   if (settings.mode == LightSettings::Mode::table) {
     result.table = result.light->make_table(console, table_tilt_rad);
     result.warnings = missed_tolerance(*result.table, settings.tolerance);
-    print_light_table(console, *result.table);
+    print_light_table(console.details(), *result.table);
     run.model.disturbances.push_back(light_from_table(result.table, lamp_groups(outputs)));
     if (!result.light->sun_direction_lab() && table_tilt_rad < pi) {
       auto& limit_rad = run.model.platform.tilt_limit_rad;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "attitude/model/platform.h"
 #include "attitude/recordings/aem.h"
 #include "core/constants.h"
 #include "tools/coupling/report.h"
@@ -14,25 +15,33 @@ namespace {
 
 void print_run(const Console& console, const PropagationRun& run, const CoupledResult& coupled) {
   const PropagationResult& result = coupled.motion;
-  console.line("Disturbances");
+  console.line(std::to_string(run.model.disturbances.size()) + " disturbances");
   for (const Disturbance& disturbance : run.model.disturbances)
-    console.line("  " + disturbance.kind);
+    console.details().line("  " + disturbance.kind);
   console.heading("Trajectory");
   const PlatformState& end = result.states.back();
   const auto row = [&](const std::string& name, double value, const std::string& unit) {
-    console.line("  " + name + std::string(24 - name.size(), ' ') + show(value) + " " + unit);
+    console.line("  " + padded(name, 24) + show_brief(value) + " " + unit);
   };
-  row("until", end.time_s, "s");
+  console.line("  " + padded("until", 24) + show_duration(end.time_s));
+  const auto figure = [&](const char* name) {
+    const auto at = std::ranges::find(result.product.quantities, name, &Quantity::name);
+    return at == result.product.quantities.end() ? 0.0 : at->estimate.value;
+  };
+  console.line("  " + padded("largest tilt", 24) + show_brief(figure("largest_tilt_deg")) +
+               " deg at " + show_duration(figure("largest_tilt_time_s")));
+  console.line("  " + padded("yaw excursion", 24) + show_brief(figure("yaw_excursion_deg")) +
+               " deg from least to largest");
   row("tilt at the end", tilt_rad(end) / degree_rad, "deg");
-  row("heading at the end", heading_rad(end) / degree_rad, "deg, between -180 and 180");
+  row("yaw at the end", yaw_rad(end) / degree_rad, "deg, between -180 and 180");
   row("rate at the end", end.rate_body_rad_s.norm(), "rad/s");
   if (end.charge_drawn_C != 0.0) row("charge missing", end.charge_drawn_C / 3600.0, "Ah");
-  console.line("  in " + std::to_string(result.statistics.steps) + " steps");
+  console.details().line("  in " + std::to_string(result.statistics.steps) + " steps");
   if (coupled.attitude_error_rad) {
     console.line("  the error of the table of light turns the body by less than " +
                  show(*coupled.attitude_error_rad / degree_rad) + " deg until then");
   }
-  constexpr size_t max_events = 12;
+  constexpr size_t max_events = 5;
   if (!result.events.empty()) console.heading("Events");
   for (size_t i = 0; i < std::min(max_events, result.events.size()); ++i) {
     const Event& event = result.events[i];

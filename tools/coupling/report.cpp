@@ -11,6 +11,7 @@ namespace {
 struct EnergyRow {
   std::string name;
   double energy_J;
+  bool is_detail = false;  // printed with --verbose alone
 };
 
 // Where every joule went.
@@ -21,18 +22,18 @@ std::vector<EnergyRow> energy_rows(const CoupledRun& run) {
   if (run.emitted_J() > 0.0) rows.push_back({"light emitted by lamps", run.emitted_J()});
   rows.push_back({"light on the cells", e.on_cells.value()});
   if (supply.design().array.heat) {
-    rows.push_back({"reflected by the cells", e.reflected.value()});
-    rows.push_back({"heat given off by the cells", e.given_off.value()});
+    rows.push_back({"reflected by the cells", e.reflected.value(), true});
+    rows.push_back({"heat given off by the cells", e.given_off.value(), true});
   }
   rows.push_back({"electric, from the array", e.array.value()});
-  rows.push_back({"electric, at the array's best point", e.best.value()});
-  rows.push_back({"lost in the converter", e.converter.value()});
+  rows.push_back({"electric, at the array's best point", e.best.value(), true});
+  rows.push_back({"lost in the converter", e.converter.value(), true});
   rows.push_back({"load", e.load.value()});
   if (supply.design().battery) {
     rows.push_back({"unserved load", e.unserved.value()});
-    rows.push_back({"into the battery", e.into_battery.value()});
+    rows.push_back({"into the battery", e.into_battery.value(), true});
     rows.push_back({"out of the battery", e.out_of_battery.value()});
-    rows.push_back({"lost in the battery", e.battery_loss.value()});
+    rows.push_back({"lost in the battery", e.battery_loss.value(), true});
   }
   return rows;
 }
@@ -77,30 +78,13 @@ Plot::Curve curve(const std::string& label, const std::vector<double>& x,
   return c;
 }
 
-// Seconds, or hours where there are many.
-struct TimeAxis {
-  std::string label;
-  double per_s;
-};
-TimeAxis time_axis(double duration_s) {
-  if (duration_s > 7200.0) return {"Time [h]", 1.0 / 3600.0};
-  return {"Time [s]", 1.0};
-}
-
-std::vector<double> scaled(std::vector<double> values, double by) {
-  for (double& value : values) value *= by;
-  return values;
-}
-
 Plot together(const Table& power, const Table& history) {
-  const std::vector<double>& seconds = power.column("t_s").values;
-  const TimeAxis axis = time_axis(seconds.back() - seconds.front());
-  const std::vector<double> t = scaled(seconds, axis.per_s);
-  const std::vector<double> moved = scaled(history.column("t_s").values, axis.per_s);
+  const std::vector<double>& t = power.column("t_s").values;
+  const std::vector<double>& moved = history.column("t_s").values;
   Plot plot;
   plot.name = "power_and_attitude";
   plot.title = "Power, charge, attitude and torque";
-  plot.x_label = axis.label;
+  plot.x_label = "Time [s]";
   plot.y_label = "Power [W]";
   Plot::Curve load = curve("load served", t, power.column("load_power_W").values);
   load.colour = Plot::Colour::grey;
@@ -213,9 +197,12 @@ Product power_product(const CoupledRun& run, const Product& history, size_t max_
   const auto motion = std::ranges::find(history.tables, "time_history", &Table::name);
   if (motion != history.tables.end()) product.plots.push_back(together(power, *motion));
   product.tables.push_back(power);
-  Table energies = Table::of("energy_balance", "Energy balance", {"what", "energy_J"});
+  Table energies = Table::of("energy_balance", "Energy balance", {"what", "energy_J", "energy_Wh"});
   for (const EnergyRow& row : energy_rows(run)) {
-    energies.row().set("what", row.name).set("energy_J", row.energy_J);
+    energies.row()
+        .set("what", row.name)
+        .set("energy_J", row.energy_J)
+        .set("energy_Wh", row.energy_J / 3600.0);
   }
   product.tables.push_back(std::move(energies));
   const SupplyEnergies& e = run.supply()->energies();
@@ -225,6 +212,9 @@ Product power_product(const CoupledRun& run, const Product& history, size_t max_
       {"array_energy_J", {e.array.value(), 0.0}},
       {"load_energy_J", {e.load.value(), 0.0}},
       {"load_unserved_J", {e.unserved.value(), 0.0}},
+      {"array_energy_Wh", {e.array.value() / 3600.0, 0.0}},
+      {"load_energy_Wh", {e.load.value() / 3600.0, 0.0}},
+      {"load_unserved_Wh", {e.unserved.value() / 3600.0, 0.0}},
       {"energy_closure", {closure.largest(), 0.0}},
       {"energy_closure_cells", {closure.cells, 0.0}},
       {"energy_closure_bus", {closure.bus, 0.0}},
@@ -242,7 +232,16 @@ Product power_product(const CoupledRun& run, const Product& history, size_t max_
         {"mean_array_power_W", {sum / static_cast<double>(run.rows().size()), 0.0}});
   }
   if (run.supply()->design().battery) {
-    product.quantities.push_back({"battery_left_J", {run.supply()->stored_J(), 0.0}});
+    const auto least = std::ranges::min_element(run.rows(), {}, &PowerRow::stored_J);
+    product.quantities.insert(
+        product.quantities.end(),
+        {{"battery_left_J", {run.supply()->stored_J(), 0.0}},
+         {"battery_left_Wh", {run.supply()->stored_J() / 3600.0, 0.0}},
+         {"least_battery_charge_J", {least->stored_J, 0.0}},
+         {"least_battery_charge_Wh", {least->stored_J / 3600.0, 0.0}},
+         {"least_battery_charge_fraction",
+          {least->stored_J / run.supply()->design().battery->capacity_J, 0.0}},
+         {"least_battery_charge_time_s", {least->time_s, 0.0}}});
   }
   return product;
 }
@@ -264,16 +263,22 @@ void print_power(const Console& console, const CoupledRun& run) {
                show_temperature(run.supply()->temperature_K()) + ", " +
                (array.heat ? array.heat->in_words() : origin_of_temperature(array)));
   for (const EnergyRow& row : energy_rows(run)) {
-    console.line("  " + padded(row.name, 38) + show(row.energy_J / 3600.0) + " Wh");
+    (row.is_detail ? console.details() : console)
+        .line("  " + padded(row.name, 38) + show(row.energy_J / 3600.0) + " Wh");
   }
   if (run.supply()->design().battery) {
     console.line("  " + padded("left in the battery", 38) +
                  show(run.supply()->stored_J() / 3600.0) + " Wh");
+    const auto least = std::ranges::min_element(run.rows(), {}, &PowerRow::stored_J);
+    if (least != run.rows().end()) {
+      console.line("  " + padded("least charge", 38) + show(least->stored_J / 3600.0) + " Wh at " +
+                   show_duration(least->time_s));
+    }
   }
   const SupplyClosure closure = run.supply()->closure();
-  console.line("  balance closed to " + show(closure.largest()) + " (cells " + show(closure.cells) +
-               ", converter and load " + show(closure.bus) + ", battery " + show(closure.battery) +
-               ")");
+  console.details().line("  balance closed to " + show(closure.largest()) + " (cells " +
+                         show(closure.cells) + ", converter and load " + show(closure.bus) +
+                         ", battery " + show(closure.battery) + ")");
 }
 
 Product pointing_product(const std::vector<PlatformState>& states) {
@@ -329,14 +334,12 @@ Product pointing_product(const std::vector<PlatformState>& states) {
 
 void print_pointing(const Console& console, const Product& pointing) {
   if (pointing.quantities.empty()) return;
-  console.heading("Pointing of body z about its mean direction");
-  const auto row = [&](const std::string& name, size_t i) {
-    console.line("  " + padded(name, 24) + show(pointing.quantities[i].estimate.value) + " deg");
+  const auto figure = [&](size_t i) {
+    return show_brief(pointing.quantities[i].estimate.value) + " deg";
   };
-  row("rms", 0);
-  row("95 % within", 1);
-  row("99.7 % within", 2);
-  row("largest", 3);
+  console.heading("Pointing of body z about its mean direction: rms " + figure(0) +
+                  ", 95 % within " + figure(1) + ", 99.7 % within " + figure(2) + ", largest " +
+                  figure(3));
 }
 
 }  // namespace photorque

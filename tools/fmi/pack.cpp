@@ -74,6 +74,9 @@ void append_variable(pugi::xml_node variables, const UnitVariable& variable,
     set_attribute(element, "max", unit.max_torque_N_m);
     set_attribute(element, "start", 0.0);
   }
+  if (!variable.old_name.empty()) {
+    set_attribute(element.append_child("Alias"), "name", variable.old_name);
+  }
 }
 
 // Outputs at a tick depend on no input at that tick.

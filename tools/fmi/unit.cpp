@@ -20,7 +20,7 @@ constexpr uint32_t first_flag_reference =
 enum Place : uint32_t {
   place_attitude = 0,
   place_gyro = 4,
-  place_heading = 7,
+  place_yaw = 7,
   place_current = 8,
   place_power = 9,
   place_true_attitude = 10,
@@ -57,7 +57,10 @@ std::vector<UnitVariable> unit_variables(const Sensors& sensors) {
     all.push_back({first_flag_reference + 1, "gyro_is_new", Kind::flag, "",
                    "the gyro has read at this tick; else its last reading is held"});
   }
-  if (sensors.encoder) add(place_heading, "heading_rad", "rad", "heading by the encoder");
+  if (sensors.encoder) {
+    add(place_yaw, "yaw_rad", "rad", "azimuth of body x by the encoder");
+    all.back().old_name = "heading_rad";
+  }
   add(place_current, "battery_current_A", "A", "drawn from the battery until this tick");
   add(place_power, "array_power_W", "W", "of the solar array until this tick");
   for (uint32_t i = 0; i < 4; ++i) {
@@ -83,7 +86,7 @@ void UnitOutputs::take(const LiveRow& row) {
   flags_[1] = std::isfinite(row.gyro_rad_s.x());
   if (flags_[0]) put_attitude(place_attitude, row.lab_from_body_seen);
   if (flags_[1]) put_vector(place_gyro, row.gyro_rad_s);
-  if (std::isfinite(row.heading_rad)) put(place_heading, row.heading_rad);
+  if (std::isfinite(row.yaw_rad)) put(place_yaw, row.yaw_rad);
   put(place_current, std::isfinite(row.battery_current_A) ? row.battery_current_A : 0.0);
   put(place_power, std::isfinite(row.array_power_W) ? row.array_power_W : 0.0);
   put_attitude(place_true_attitude, row.truth.lab_from_body);

@@ -24,6 +24,7 @@ struct UnitVariable {
   Kind kind = Kind::output;
   std::string unit;  // of modelDescription.xml; empty: a pure number
   std::string meaning;
+  std::string old_name = {};  // under which a program may still ask for it
 };
 
 // References of the standard; outputs follow in the order of UnitOutputs::values.

@@ -68,7 +68,7 @@ std::vector<Shown> shown_figures(const Product& product) {
       shown.push_back({{label, unit}, table, values});
   };
   add("tilt", "deg", history, "tilt_deg");
-  add("heading", "deg", history, "heading_deg");
+  add("yaw", "deg", history, "yaw_deg");
   for (const char* axis : {"x", "y", "z"}) {
     add((std::string("rate about body ") + axis).c_str(), "rad/s", history,
         (std::string("rate_") + axis + "_rad_s").c_str());
@@ -170,7 +170,7 @@ StagePart rod_along_x(double length_m) {
 
 RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageHead& head) {
   RunPage page = page_of(run.result, head,
-                         {"largest_tilt_deg", "final_heading_deg", "final_rate_rad_s",
+                         {"largest_tilt_deg", "final_yaw_deg", "final_rate_rad_s",
                           "mean_array_power_W", "battery_left_J", "pointing_rms_deg"});
   const std::optional<OpticalRun> light = optical_run(run, options);
   SceneStage stage =
@@ -212,8 +212,9 @@ RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageH
   page.stage = std::move(stage);
   for (const Plot& plot : run.result.product.plots) {
     if (plot.x_label == "Time [s]") page.cursors.push_back({plot.name, 0, 1.0});
-    if (plot.x_label == "Time [h]") page.cursors.push_back({plot.name, 0, 1.0 / 3600.0});
   }
+  // A page draws no areas.
+  std::erase_if(page.product.plots, [](const Plot& plot) { return plot.name == "torque_shares"; });
   // The plot with all curves over one axis of time comes first.
   std::ranges::stable_partition(page.product.plots,
                                 [](const Plot& plot) { return plot.name == "power_and_attitude"; });

@@ -14,8 +14,10 @@
 #include <system_error>
 
 #include "core/errors.h"
+#include "core/old_names.h"
 #include "core/provenance.h"
 #include "core/settings/settings.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 #include "images/writers/loading.h"
 #include "images/writers/staged_files.h"
@@ -70,7 +72,11 @@ int run(int argc, char** argv, Interruption& interruption) {
   const CommandOptions& options = *line.command.options;
   if (options.out && options.out->empty()) throw InputError({"--out"}, "", "nothing", "a folder");
   hold_memory(options.max_memory_GB);
-  return run_command(line.command, {verbs, &interruption});
+  const int status = run_command(line.command, {verbs, &interruption});
+  for (const std::string& notice : old_name_notices()) {
+    if (!options.quiet) std::fprintf(stderr, "note: %s\n", clean_text(notice).c_str());
+  }
+  return status;
 }
 
 // The last resort: one line and a documented status where a library, or this program, would end by

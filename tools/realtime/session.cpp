@@ -340,7 +340,7 @@ photorque_measurement_packet Session::packet_of(const LiveRow& row) const {
     packet.gyro_rad_s[i] = row.gyro_rad_s[i];
     packet.command_body_N_m[i] = row.command_body_N_m[i];
   }
-  packet.heading_rad = row.heading_rad;
+  packet.yaw_rad = row.yaw_rad;
   packet.battery_current_A = row.battery_current_A;
   packet.array_power_W = row.array_power_W;
   if (settings_.send_truth) {

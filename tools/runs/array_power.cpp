@@ -147,7 +147,7 @@ std::string origin_of_temperature(const ArrayDesign& design) {
 }
 
 std::string show_temperature(double kelvin) {
-  return show(kelvin) + " K (" + readable_number(kelvin - 273.15, 3) + " °C)";
+  return readable_number(kelvin, 4) + " K (" + readable_number(kelvin - 273.15, 3) + " °C)";
 }
 
 std::optional<std::string> above_rated(const ArrayDesign& design, double kelvin) {
@@ -190,19 +190,20 @@ void print_array(const Console& console, const ArrayDesign& design, const ArrayR
   const double emitted = result.power_balance.emitted_W;
   console.heading("Solar array (maximum power point)");
   console.line("  light on the cells      " + show(array.power_on_cells_W, "W") + "  (" +
-               show(100 * array.power_on_cells_W.value / emitted) + " % of emitted)");
+               show_percent(array.power_on_cells_W.value / emitted) + " of emitted)");
   console.line("  electric power          " + show(array.power_W, "W") + "  (" +
-               show(100 * array.efficiency.value) + " % of the light on the cells)");
+               show_percent(array.efficiency.value) + " of the light on the cells)");
   console.line("  voltage, current        " + show(array.voltage_V, "V") + ", " +
                show(array.current_A, "A"));
   console.line("  cell temperature        " + show_temperature(array.temperature_K.value) + ", " +
                origin_of_temperature(design));
   if (array.power_W.value > 0.0) {
-    console.line("  power over temperature  " + show(array.power_per_K_W) + " W/K  (" +
-                 show(100.0 * array.power_per_K_W / array.power_W.value) + " %/K)");
+    console.details().line("  power over temperature  " + show_brief(array.power_per_K_W) +
+                           " W/K  (" + show_percent(array.power_per_K_W / array.power_W.value) +
+                           "/K)");
   }
   console.line("  sum of cell maxima      " + show(array.sum_of_cells_W, "W") + "  (" +
-               show(100 * array.mismatch_loss.value) + " % lost to uneven light and diodes)");
+               show_percent(array.mismatch_loss.value) + " lost to uneven light and diodes)");
   if (array.mismatch_loss.value > 0.2) {
     console.line(
         "  note: the weakest cells limit the rest; bypass diodes (array.bypass_every) or another "
@@ -210,8 +211,8 @@ void print_array(const Console& console, const ArrayDesign& design, const ArrayR
   }
   const auto reversed = std::count_if(array.cells.voltages_V.begin(), array.cells.voltages_V.end(),
                                       [](double v) { return v < 0.0; });
-  console.line("  local maxima of power   " + std::to_string(array.maxima.size()) +
-               "; cells in reverse at the best one: " + std::to_string(reversed));
+  console.details().line("  local maxima of power   " + std::to_string(array.maxima.size()) +
+                         "; cells in reverse at the best one: " + std::to_string(reversed));
 }
 
 }  // namespace photorque

@@ -206,7 +206,7 @@ void print_losses(const Console& console, const std::vector<LossStage>& stages) 
   console.heading("From the light to the load");
   for (size_t i = 0; i < stages.size(); ++i) {
     std::string line =
-        "  " + padded(stages[i].name, 30) + padded(show(stages[i].power_W) + " W", 14);
+        "  " + padded(stages[i].name, 30) + padded(show_brief(stages[i].power_W) + " W", 14);
     if (i > 0 && stages[i - 1].power_W > 0) {
       line += show_percent(lost_fraction(stages[i - 1], stages[i])) + " lost to " + stages[i].loss;
     }
@@ -315,10 +315,10 @@ Product report_array(const Console& console, const OpticalRun& run, const ArrayP
     in.tracker_efficiency = runs.front().efficiency;
   }
   const std::vector<LossStage> stages = loss_waterfall(result, in);
-  print_losses(console, stages);
+  print_losses(console.details(), stages);
   append(product, loss_product(stages));
   const Table even = uniformity_table(result, array.design.wiring);
-  print_uniformity(console, even);
+  print_uniformity(console.details(), even);
   product.tables.push_back(even);
   if (report.target) {
     const Attitude& attitude = run.experiment().file.attitude;

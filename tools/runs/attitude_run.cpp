@@ -113,7 +113,7 @@ std::vector<std::pair<std::string, std::string>> look_through_scene(const Experi
 }
 
 void print_table(const Console& console, const Table& table,
-                 const std::vector<PrintedColumn>& columns) {
+                 const std::vector<PrintedColumn>& columns, size_t most_rows) {
   std::vector<std::vector<std::string>> cells;
   std::vector<bool> is_text;
   for (const PrintedColumn& wanted : columns) {
@@ -136,7 +136,7 @@ void print_table(const Console& console, const Table& table,
       line += "  " + (is_text[c] ? cells[c][row] + space : space + cells[c][row]);
     }
     line.erase(line.find_last_not_of(' ') + 1);
-    console.line(line);
+    (row <= most_rows ? console : console.details()).line(line);
   }
 }
 

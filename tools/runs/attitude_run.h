@@ -40,7 +40,8 @@ struct PrintedColumn {
   std::string title;
   std::string name;  // of the table's column; left out where there is none
 };
+// At most so many rows without --verbose.
 void print_table(const Console& console, const Table& table,
-                 const std::vector<PrintedColumn>& columns);
+                 const std::vector<PrintedColumn>& columns, size_t most_rows = 1000000);
 
 }  // namespace photorque

@@ -37,6 +37,13 @@ void Console::heading(const std::string& text) const {
   line(text);
 }
 
+Console Console::details() const {
+  if (sinks_.has_details) return *this;
+  ConsoleSinks sinks = sinks_;
+  sinks.line = {};
+  return Console(std::move(sinks));
+}
+
 std::function<void(double)> Console::progress(const std::string& what) const {
   if (!sinks_.progress) return {};
   return [progress = sinks_.progress, what](double fraction) { progress(what, fraction); };
@@ -85,7 +92,24 @@ std::string show(const Estimate& estimate, const std::string& unit) {
 }
 
 std::string show_percent(double fraction) {
-  return show(100.0 * fraction) + " %";
+  return show_brief(100.0 * fraction) + " %";
+}
+
+std::string show_brief(double value) {
+  if (value == 0.0 || !std::isfinite(value)) return show(value);
+  const int exponent = magnitude(value);
+  if (exponent >= 6 || exponent < -3)
+    return fixed(value / std::pow(10.0, exponent), 1) + "×10" + superscript(exponent);
+  const double unit = std::pow(10.0, exponent - 2);
+  return show(std::round(value / unit) * unit);
+}
+
+std::string show_duration(double seconds) {
+  const double size = std::abs(seconds);
+  if (size < 120.0) return show_brief(seconds) + " s";
+  if (size < 7200.0) return show_brief(seconds / 60.0) + " min";
+  if (size < 259200.0) return show_brief(seconds / 3600.0) + " h";
+  return show_brief(seconds / 86400.0) + " d";
 }
 
 std::string padded(std::string text, size_t width) {

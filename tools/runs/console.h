@@ -16,6 +16,7 @@ struct ConsoleSinks {
   std::function<void(const std::string& what, double fraction)> progress;
   std::function<void(const std::string&)> note;  // how far a long task is, in words
   std::function<void()> done;                    // the task of `progress` is over
+  bool has_details = true;                       // what details() says is wanted
 };
 
 class Console {
@@ -25,6 +26,9 @@ class Console {
 
   void line(const std::string& text = "") const;
   void heading(const std::string& text) const;
+
+  // For what only --verbose prints: silent without it.
+  Console details() const;
 
   // For TraceOptions::progress and the like; empty without a listener.
   std::function<void(double)> progress(const std::string& what) const;
@@ -37,8 +41,12 @@ class Console {
 
 // "79.112 ± 0.004 W": as many digits as the error supports; exact numbers with six.
 std::string show(const Estimate& estimate, const std::string& unit);
-// "38 %" of a fraction.
+// "38.2 %" of a fraction, three digits.
 std::string show_percent(double fraction);
+// "3.4 h": seconds, minutes, hours or days, three digits.
+std::string show_duration(double seconds);
+// Three significant digits, for checks and percentages: "2.02".
+std::string show_brief(double value);
 // Filled up to `width` letters, which may have several bytes; at least one space at the end.
 std::string padded(std::string text, size_t width);
 // Six significant digits, exponents as ×10ⁿ: "1.127×10⁻⁹".

@@ -123,8 +123,9 @@ OpticalRun::OpticalRun(const RunOptions& options, const Console& console)
   provenance_.inputs = experiment_.inputs;
   for (const std::string& notice : experiment_.notices) console.line("note: " + notice);
   for (const std::string& warning : experiment_.warnings) console.line("WARNING: " + warning);
-  console.line("Sources");
-  for (const std::string& text : beam_shape_lines(experiment_.beams)) console.line("  " + text);
+  const Console details = console.details();
+  details.line("Sources");
+  for (const std::string& text : beam_shape_lines(experiment_.beams)) details.line("  " + text);
 }
 
 size_t OpticalRun::add_receiver(NamedReceiver receiver) {
@@ -340,6 +341,34 @@ bool misses_everything(const PowerBalance& balance) {
          std::ranges::all_of(balance.force_N, [](const Estimate& f) { return f.value == 0.0; });
 }
 
+void print_direct_checks(const Console& console, const OpticalRun& run,
+                         const OpticalResult& result) {
+  const std::string inside = run.inside_light(result);
+  if (!inside.empty()) console.line("  note: " + inside);
+  for (const std::string& notice : result.direct.notices) console.line("  note: " + notice);
+  for (const DirectLight& direct : result.direct.gathered) {
+    console.line("  direct light on " + direct.name + ": gathered and by rays differ by " +
+                 show_brief(std::abs(direct.difference_sigma)) + " standard errors in all, " +
+                 show_brief(std::sqrt(direct.mean_square)) + " (rms) in a bin");
+  }
+  for (const DirectTorque& direct : result.direct.torques) {
+    console.line("  torque of direct light on " + direct.name +
+                 ": gathered and by rays differ by at most " + show_brief(direct.worst_sigma) +
+                 " standard errors");
+  }
+  for (const DirectWrench& direct : result.direct.wrenches) {
+    console.line("  force and torque of direct light on " + direct.name +
+                 ": gathered and by rays differ by at most " + show_brief(direct.worst_sigma) +
+                 " standard errors");
+  }
+  console.line("  largest standard error of a bin above a tenth of the peak: " +
+               show_brief(100.0 * result.worst_bin_error) + " %");
+  console.line("  " + std::to_string(result.rays) + " rays, " + std::to_string(result.segments) +
+               " segments in " + show_brief(result.wall_s) + " s (" +
+               show_brief(static_cast<double>(result.segments) / result.wall_s / 1e6) +
+               " million segments/s)");
+}
+
 }  // namespace
 
 void print_trace(const Console& console, const OpticalRun& run, const OpticalResult& result) {
@@ -347,13 +376,14 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
   const auto row = [&](const std::string& name, const Estimate& power) {
     const double percent = 100.0 * power.value / power_balance.emitted_W;
     console.line("  " + name + std::string(24 - std::min<size_t>(24, name.size()), ' ') +
-                 show(power, "W") + "  (" + show(std::round(percent * 1000) / 1000) + " %)");
+                 show(power, "W") + "  (" + show_brief(percent) + " %)");
   };
   console.heading("Power");
   row("emitted", {power_balance.emitted_W, 0.0});
   row("absorbed", power_balance.absorbed_W);
   row("escaped", power_balance.escaped_W);
-  row("truncated", power_balance.truncated_W);
+  const bool loses = power_balance.truncated_W.value > 1e-9 * power_balance.emitted_W;
+  if (loses) row("truncated", power_balance.truncated_W);
   if (misses_everything(power_balance)) {
     console.line(
         "  note: no light meets the scene: check the position and direction of the sources");
@@ -380,35 +410,12 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
   }
   console.heading("Checks");
   console.line("  power: emitted = absorbed + escaped + truncated to " +
-               show(power_balance.closure));
+               show_brief(power_balance.closure));
   console.line("  momentum: surfaces and rays differ by at most " +
-               show(momentum_disagreement(power_balance, result.sums[run.wrench_index()],
-                                          run.wrench(), run.experiment().scene.radius_m())) +
+               show_brief(momentum_disagreement(power_balance, result.sums[run.wrench_index()],
+                                                run.wrench(), run.experiment().scene.radius_m())) +
                " standard errors");
-  const std::string inside = run.inside_light(result);
-  if (!inside.empty()) console.line("  note: " + inside);
-  for (const std::string& notice : result.direct.notices) console.line("  note: " + notice);
-  for (const DirectLight& direct : result.direct.gathered) {
-    console.line("  direct light on " + direct.name + ": gathered and by rays differ by " +
-                 show(std::abs(direct.difference_sigma)) + " standard errors in all, " +
-                 show(std::sqrt(direct.mean_square)) + " (rms) in a bin");
-  }
-  for (const DirectTorque& direct : result.direct.torques) {
-    console.line("  torque of direct light on " + direct.name +
-                 ": gathered and by rays differ by at most " + show(direct.worst_sigma) +
-                 " standard errors");
-  }
-  for (const DirectWrench& direct : result.direct.wrenches) {
-    console.line("  force and torque of direct light on " + direct.name +
-                 ": gathered and by rays differ by at most " + show(direct.worst_sigma) +
-                 " standard errors");
-  }
-  console.line("  largest standard error of a bin above a tenth of the peak: " +
-               show(100.0 * result.worst_bin_error) + " %");
-  console.line("  " + std::to_string(result.rays) + " rays, " + std::to_string(result.segments) +
-               " segments in " + show(result.wall_s) + " s (" +
-               show(static_cast<double>(result.segments) / result.wall_s / 1e6) +
-               " million segments/s)");
+  print_direct_checks(console.details(), run, result);
   for (const std::string& warning : run.warnings(result)) console.line("WARNING: " + warning);
 }
 

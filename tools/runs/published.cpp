@@ -73,9 +73,9 @@ Product compare_published(const std::vector<PublishedFigure>& figures, double ti
       }
       console.line("  " + figure.quantity + ": published " + show(figure.value) + ", ours " +
                    show(quantity.estimate, "") +
-                   (figure.value == 0.0 ? "" : " (ratio " + show(ours / figure.value) + ")") +
+                   (figure.value == 0.0 ? "" : " (ratio " + show_brief(ours / figure.value) + ")") +
                    verdict);
-      if (!figure.why.empty()) console.line("    " + figure.why);
+      if (!figure.why.empty()) console.details().line("    " + figure.why);
     }
   }
   Product compared;

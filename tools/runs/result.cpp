@@ -1,7 +1,9 @@
 #include "tools/runs/result.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <sstream>
 
 #include "core/errors.h"
 #include "core/files.h"
@@ -15,6 +17,20 @@ int64_t now_ns() {
   return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
 }
 
+bool is_one_of(const std::string& name, const std::vector<std::string>& names) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+// The maps that users script against, and tables where they are wanted.
+Product with_irradiance_alone(const Product& product, bool tables) {
+  Product part;
+  for (const Map& map : product.maps) {
+    if (map.name.starts_with("irradiance_")) part.maps.push_back(map);
+  }
+  if (tables) part.tables = product.tables;
+  return part;
+}
+
 }  // namespace
 
 void check_figures(const RunResult& result) {
@@ -25,13 +41,38 @@ void check_figures(const RunResult& result) {
   }
 }
 
+std::vector<std::string> formats_in(const std::string& list) {
+  std::vector<std::string> formats;
+  std::istringstream words(list);
+  for (std::string word; std::getline(words, word, ',');) {
+    if (!word.empty()) formats.push_back(word);
+  }
+  require_formats(formats);
+  return formats;
+}
+
 std::vector<std::filesystem::path> write_run(const RunResult& result,
                                              const std::filesystem::path& folder,
-                                             const std::string& command) {
+                                             const std::string& command,
+                                             const RunFormats& formats) {
   check_figures(result);
+  require_formats(formats.further);
   StagedFiles staged(folder);
-  std::vector<std::filesystem::path> paths =
-      write_formats(result.product, result.provenance, staged.path());
+  std::vector<std::filesystem::path> paths;
+  const auto write = [&](const Product& product, const std::vector<std::string>& names) {
+    const auto written =
+        write_formats(product, result.provenance, staged.path(), names, formats.style);
+    paths.insert(paths.end(), written.begin(), written.end());
+  };
+  std::vector<std::string> whole = {"png", "h5"}, irradiance;
+  for (const char* name : {"exr", "tiff", "csv"}) {
+    (is_one_of(name, formats.further) ? whole : irradiance).emplace_back(name);
+  }
+  for (const std::string& name : formats.further) {
+    if (!is_one_of(name, whole) && name != "json") whole.push_back(name);
+  }
+  write(result.product, whole);
+  write(with_irradiance_alone(result.product, is_one_of("csv", irradiance)), irradiance);
   for (std::filesystem::path& path : paths) path = folder / path.filename();
   for (const RunFile& file : result.files) file.write(staged.path() / file.name);
   write_file_whole(staged.path() / "summary.json", result.summary());

@@ -9,6 +9,7 @@
 
 #include "core/product.h"
 #include "core/provenance.h"
+#include "images/drawing/style.h"
 #include "images/writers/product.h"
 
 namespace photorque {
@@ -32,12 +33,23 @@ struct RunResult {
 // NumericalError for a headline figure that came out as no finite number.
 void check_figures(const RunResult& result);
 
-// Writes every item of the product, the further files and summary.json into the folder, all
-// together and in place of what `command` wrote there last (StagedFiles); gives the paths of the
-// first.
+// The files that a run is written as.
+struct RunFormats {
+  std::vector<std::string> further = {};  // names of writer kinds, beside the usual files
+  PictureStyle style = PictureStyle::page;
+};
+
+// Writes figures (PNG), tables (CSV), run.h5, the further files and summary.json into the folder,
+// all together and in place of what `command` wrote there last (StagedFiles). Maps of irradiance
+// are also written as EXR, TIFF and CSV; everything else in the further formats alone. Gives the
+// paths of the product's files. InputError for a format that does not exist.
 std::vector<std::filesystem::path> write_run(const RunResult& result,
                                              const std::filesystem::path& folder,
-                                             const std::string& command = "run");
+                                             const std::string& command = "run",
+                                             const RunFormats& formats = {});
+
+// The formats that `list`, "exr,svg", names; InputError as for write_run().
+std::vector<std::string> formats_in(const std::string& list);
 
 // Seconds since `start`, for RunCost.
 class WallTime {

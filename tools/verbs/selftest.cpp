@@ -149,7 +149,7 @@ void check_motion(const Bench& bench, Account& account) {
       bench.propagate(motion_toml("kind = \"turbine_torque\"\ntorque_N_m = 0.001"));
   account.near("a rate that a torque speeds up [rad/s]", turbine.at("final_rate_rad_s"),
                0.5 + 0.001 * 10.0 / 0.1, integrator);
-  account.near("and the angle turned meanwhile [deg]", turbine.at("final_heading_deg"),
+  account.near("and the angle turned meanwhile [deg]", turbine.at("final_yaw_deg"),
                std::remainder((0.5 * 10.0 + 0.5 * 0.01 * 100.0) / degree_rad, 360.0), integrator);
 }
 

@@ -73,10 +73,12 @@ class PowerTable {
 };
 
 void print_torques(const WrenchTable& wrenches, const AttitudeGrid& grid, const Console& console) {
+  constexpr size_t most = 20;
   console.heading("Torque about the centre of rotation, body frame");
   std::string names = "  tilt [deg]  heading [deg]";
   for (const char* name : {"torque x", "torque y", "torque z"}) names += in_column(name);
   console.line(names);
+  size_t node_count = 0;
   double largest_N_m = 0.0;
   for (const Vec3& torque : wrenches.torque_body_N_m) {
     largest_N_m = std::max(largest_N_m, torque.cwiseAbs().maxCoeff());
@@ -95,8 +97,12 @@ void print_torques(const WrenchTable& wrenches, const AttitudeGrid& grid, const 
                                         rounded_N_m(wrenches.torque_error_N_m[node][i])},
                                "N m"));
       }
-      console.line(line);
+      (node_count++ < most ? console : console.details()).line(line);
     }
+  }
+  if (node_count > most) {
+    console.line("  " + std::to_string(node_count) +
+                 " attitudes in all: wrench_table_body.csv, or --verbose");
   }
 }
 

@@ -3,13 +3,17 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <deque>
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <sstream>
 
+#include "core/errors.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
 #include "tools/pages/pages.h"
@@ -56,6 +60,79 @@ std::string minutes_above_zero(const std::string& text) {
   return good ? "" : "found " + text + ", expected a number of minutes > 0";
 }
 
+std::string unknown_format(const std::string& list) {
+  try {
+    formats_in(list);
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+constexpr std::array<std::pair<const char*, PictureStyle>, 3> styles = {
+    {{"page", PictureStyle::page}, {"paper", PictureStyle::paper}, {"slide", PictureStyle::slide}}};
+
+std::string unknown_style(const std::string& name) {
+  for (const auto& style : styles) {
+    if (name == style.first) return "";
+  }
+  return "found " + name + ", expected page, paper or slide";
+}
+
+RunFormats formats_of(const CommandOptions& options) {
+  RunFormats formats{formats_in(options.format)};
+  for (const auto& [name, style] : styles) {
+    if (options.style == name) formats.style = style;
+  }
+  return formats;
+}
+
+// Commands whose results are files: their text is a summary. That of others is the result.
+bool is_brief(const std::string& verb) {
+  constexpr std::array brief = {"trace",    "power",  "torque-map", "budget", "propagate", "sweep",
+                                "optimise", "camera", "estimate",   "supply", "balance"};
+  return std::ranges::find(brief, verb) != brief.end();
+}
+
+// The first lines of a text at once, the last ones at its end, warnings always.
+class ShortText {
+ public:
+  explicit ShortText(std::function<void(const std::string&)> print) : print_(std::move(print)) {}
+  ShortText(const ShortText&) = delete;
+  ShortText& operator=(const ShortText&) = delete;
+  ~ShortText() {
+    if (left_out_ > 0) {
+      print_("… " + std::to_string(left_out_) + " lines more with --verbose");
+    }
+    for (const std::string& line : last_) print_(line);
+  }
+  void take(const std::string& text) {
+    std::istringstream lines(text + "\n");
+    for (std::string line; std::getline(lines, line);) take_line(line);
+  }
+
+ private:
+  void take_line(const std::string& line) {
+    constexpr int first = 22;
+    constexpr size_t last = 7;
+    const size_t begin = std::min(line.find_first_not_of(' '), line.size());
+    const bool warns =
+        line.compare(begin, 7, "WARNING") == 0 || line.compare(begin, 7, "warning") == 0;
+    if (printed_ < first || warns) {
+      ++printed_;
+      return print_(line);
+    }
+    last_.push_back(line);
+    if (last_.size() <= last) return;
+    last_.pop_front();
+    ++left_out_;
+  }
+
+  std::function<void(const std::string&)> print_;
+  int printed_ = 0, left_out_ = 0;
+  std::deque<std::string> last_;
+};
+
 // As a shell takes it for one word.
 std::string shell_word(const std::string& word) {
   static constexpr const char* plain =
@@ -86,15 +163,26 @@ void Command::add_common(CommandOptions& common) {
   };
   add("--quiet", common.quiet, "Print nothing but errors");
   add("--json", common.json, "Print the summary as JSON instead of text");
+  add("--verbose", common.verbose, "Print everything: checks, reasons and long tables");
+}
+
+void Command::add_results(CommandOptions& common) {
+  add("-o,--out", common.out, "Folder for the results (default: out/EXPERIMENT/VERB)");
+  add("--format", common.format,
+      "Further formats of the results, with commas between: exr, tiff, csv, vtkhdf (maps), svg, "
+      "pdf "
+      "(pictures)")
+      .mistake = unknown_format;
+  add("--style", common.style,
+      "Pictures for a page (default), paper (no title, large letters) or slide")
+      .mistake = unknown_style;
 }
 
 void Command::add_experiment(CommandOptions& common, Folder writes, bool required) {
   add("experiment", common.experiment, "Experiment file (TOML)").is_required = required;
   add("--set", common.overrides, "Change a key of the experiment: KEY=VALUE").is_one_each = true;
   folder = writes;
-  if (writes != Folder::none) {
-    add("-o,--out", common.out, "Folder for the results (default: out/EXPERIMENT/VERB)");
-  }
+  if (writes != Folder::none) add_results(common);
   add_common(common);
 }
 
@@ -142,10 +230,16 @@ Console terminal(const CommandOptions& options) {
   if (options.quiet || options.json) return Console();
   ConsoleSinks sinks;
   // At once, also into a pipe: a program may wait for the line that says where a run listens.
-  sinks.line = [](const std::string& text) {
+  const auto print = [](const std::string& text) {
     std::printf("%s\n", clean_lines(text).c_str());
     std::fflush(stdout);
   };
+  sinks.has_details = options.verbose;
+  sinks.line = print;
+  if (!options.verbose && is_brief(options.verb)) {
+    const auto few = std::make_shared<ShortText>(print);
+    sinks.line = [few](const std::string& text) { few->take(text); };
+  }
   if (::isatty(STDERR_FILENO) != 0) {
     const auto pace = std::make_shared<Pace>(std::chrono::milliseconds(100));
     sinks.progress = [pace](const std::string& what, double fraction) {
@@ -163,12 +257,22 @@ Console terminal(const CommandOptions& options) {
 
 void write_results(const CommandOptions& options, const Console& console, const RunResult& result) {
   const auto folder = options.out_folder();
-  const auto paths = write_run(result, folder, options.verb);
+  const auto paths = write_run(result, folder, options.verb, formats_of(options));
   if (options.json) std::fputs(result.summary().c_str(), stdout);
   console.heading("Written to " + folder.string());
-  console.line("  summary.json and " + std::to_string(paths.size()) + " more files; pictures:");
+  const auto count = [&](const char* extension) {
+    return std::ranges::count_if(paths, [&](const auto& p) { return p.extension() == extension; });
+  };
+  const auto pictures = count(".png"), tables = count(".csv");
+  const auto others = static_cast<std::ptrdiff_t>(paths.size()) - pictures - tables;
+  const auto named = [](std::ptrdiff_t number, const std::string& what) {
+    return ", " + std::to_string(number) + " " + what + (number == 1 ? "" : "s");
+  };
+  console.line("  summary.json" + (pictures > 0 ? named(pictures, "picture (PNG)") : "") +
+               (tables > 0 ? named(tables, "table (CSV)") : "") +
+               (others > 0 ? named(others, "other file") : ""));
   for (const auto& path : paths) {
-    if (path.extension() == ".png") console.line("  " + path.filename().string());
+    if (path.extension() == ".png") console.details().line("  " + path.filename().string());
   }
   for (const RunFile& file : result.files) {
     console.line("  " + file.name + (file.remark.empty() ? "" : ": " + file.remark));

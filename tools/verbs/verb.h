@@ -28,6 +28,9 @@ struct CommandOptions : RunOptions {
   std::optional<std::filesystem::path> out;  // --out
   bool quiet = false;                        // no text but errors
   bool json = false;                         // the summary as JSON on standard output
+  bool verbose = false;                      // all lines on the terminal
+  std::string format;                        // further formats of the results: "exr,svg"
+  std::string style = "page";                // of pictures
 
   // --out, or out/NAME/VERB below the current folder.
   std::filesystem::path out_folder() const;
@@ -69,9 +72,11 @@ struct Command {
   std::function<std::string()> mistake = {};
   std::function<void(const Program&)> run = {};
 
-  // --threads, --seed, --max-memory, --quiet, --json.
+  // --threads, --seed, --max-memory, --quiet, --json, --verbose.
   void add_common(CommandOptions& common);
-  // The experiment with --set, --out, and the common options.
+  // --out, --format and --style.
+  void add_results(CommandOptions& common);
+  // The experiment with --set, those of results, and the common options.
   void add_experiment(CommandOptions& common, Folder writes = Folder::own, bool required = true);
   // Also what a trace can be asked for: --target-error, --max-time, --allow-outside.
   void add_traced_experiment(CommandOptions& common, Folder writes = Folder::own);
@@ -112,11 +117,14 @@ std::function<Command()> command_with(void (*add_options)(Command&, Options&),
 // Every verb named in tools/CMakeLists.txt, in that order.
 std::vector<Verb> all_verbs();
 
-// Text on standard output; silent with --quiet, and with --json, where only the summary appears. A
-// bar where standard error is a terminal; else a line of words at most every ten seconds.
+// Text on standard output, of commands that write results at most 30
+// lines without --verbose; silent with --quiet, and with
+// --json, where only the summary appears. What is beyond is left out before the last lines, but no
+// warning. A bar where standard error is a terminal; else a line of words at most every ten
+// seconds.
 Console terminal(const CommandOptions& options);
 
-// Writes every item of the product and summary.json into the command's folder and says where; with
+// Writes the results and summary.json into the command's folder (write_run) and says where; with
 // --json prints the summary.
 void write_results(const CommandOptions& options, const Console& console, const RunResult& result);
 

@@ -4,7 +4,7 @@
 // axes: any of "body" (x, y, z), "lab" (x, y, z), "vertical", "lean" (rights), "rate" (brakes),
 //   "rate_by_axis" (brakes, x, y, z), "command", "cross_talk" (xy, xz, yx, yz, zx, zy);
 // one function of one variable, or of two, whose terms are multiplied:
-//   heading_orders: cos nψ and sin nψ for each n;
+//   yaw_orders: cos nψ and sin nψ for each n;
 //   VARIABLE_exponent, VARIABLE_powers or VARIABLE_knots_UNIT for tilt (deg), rate (rad_s), time
 //     (s), charge (Ah), command (N_m): a power of any exponent, whole powers, a smooth table;
 //   time_constant_s: exp(−t/τ); time_period_s with time_orders: cos and sin of 2π n t/period;

@@ -51,8 +51,8 @@ std::vector<Key> empirical_shape_keys() {
           "`\"lean\"` (the axis about which it leans, positive rights); `\"rate\"` (positive "
           "brakes); `\"rate_by_axis\"` (brakes about body x, y, z); `\"command\"`; "
           "`\"cross_talk\"` (of the command about the other axes: xy, xz, yx, yz, zx, zy)"),
-      Key::numbers("heading_orders", {1.0, most_order},
-                   "whole, rising: cos nψ, sin nψ of the heading for each n")
+      Key::numbers("yaw_orders", {1.0, most_order},
+                   "whole, rising: cos nψ, sin nψ of the yaw ψ (azimuth of body x) for each n")
           .optional()};
   for (const VariableKeys& variable : shape_variables) add_keys_of(variable, keys);
   return joined(

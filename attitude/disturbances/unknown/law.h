@@ -70,7 +70,7 @@ class EmpiricalTorqueLaw final : public TorqueLaw<EmpiricalTorqueLaw> {
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + T(least * least));
   }
 
-  // All but the heading, which has no value at a whole turn.
+  // All but the yaw, which has no value at a whole turn.
   template <class T>
   static T value_of(const MotionFunction& f, const EvaluationContext<T>& now) {
     T x = now.time_s;
@@ -123,7 +123,7 @@ class EmpiricalTorqueLaw final : public TorqueLaw<EmpiricalTorqueLaw> {
   static void each_harmonic(const MotionFunction& f, const T* own, const EvaluationContext<T>& now,
                             const Visit& visit) {
     T c1, s1;
-    if (f.of == MotionVariable::heading) {
+    if (f.of == MotionVariable::yaw) {
       const T x = now.lab_from_body(0, 0), y = now.lab_from_body(1, 0);
       const T size = sqrt(x * x + y * y + T(1e-30));
       c1 = x / size;

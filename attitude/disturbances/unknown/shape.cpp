@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "core/errors.h"
+#include "core/old_names.h"
 
 namespace photorque {
 
@@ -12,7 +13,7 @@ namespace {
 constexpr std::array axes_names = {"body", "lab",          "vertical", "lean",
                                    "rate", "rate_by_axis", "command",  "cross_talk"};
 constexpr std::array axes_components = {3, 3, 1, 1, 1, 3, 1, 6};
-constexpr std::array variable_names = {"heading", "tilt", "rate", "time", "charge", "command"};
+constexpr std::array variable_names = {"yaw", "tilt", "rate", "time", "charge", "command"};
 constexpr std::array variable_units = {"deg", "deg", "rad_s", "s", "Ah", "N_m"};
 // At which a power of the variable is 1 unless the user says otherwise.
 constexpr std::array usual_reference = {1.0, 0.1, 0.1, 100.0, 3600.0, 1e-4};
@@ -33,7 +34,7 @@ struct FormKey {
 };
 std::vector<FormKey> form_keys(MotionVariable v) {
   const std::string name = name_of(v);
-  if (v == MotionVariable::heading) return {{FunctionForm::harmonics, "heading_orders"}};
+  if (v == MotionVariable::yaw) return {{FunctionForm::harmonics, "yaw_orders"}};
   std::vector<FormKey> keys = {{FunctionForm::power, name + "_exponent"},
                                {FunctionForm::powers, name + "_powers"},
                                {FunctionForm::table, with_unit(v, "knots")}};
@@ -81,7 +82,7 @@ MotionFunction read_function(const Settings& settings, MotionVariable variable,
   const std::string reference = with_unit(variable, "reference");
   switch (form.form) {
     case FunctionForm::harmonics:
-      if (variable == MotionVariable::heading) {
+      if (variable == MotionVariable::yaw) {
         f.orders = read_orders(settings, form.key, 1);
         return f;
       }
@@ -150,6 +151,15 @@ void require_functions(const Settings& settings, const EmpiricalShape& shape) {
   needs(TorqueAxes::rate_by_axis, MotionVariable::rate);
   needs(TorqueAxes::command, MotionVariable::command);
   needs(TorqueAxes::cross_talk, MotionVariable::command);
+}
+
+// The key of the harmonics of the yaw, under the name that the user wrote.
+std::string yaw_key(const Settings& settings) {
+  constexpr const char* old_key = "heading_orders";
+  const std::vector<std::string> written = settings.keys();
+  if (std::ranges::find(written, old_key) == written.end()) return "yaw_orders";
+  note_old_name(settings.error(old_key, "the old name", "yaw_orders").what());
+  return old_key;
 }
 
 std::string print(double x) {
@@ -231,7 +241,8 @@ EmpiricalShape read_shape(const Settings& settings) {
   for (size_t v = 0; v < variable_names.size(); ++v) {
     const auto variable = static_cast<MotionVariable>(v);
     std::string known;
-    for (const FormKey& form : form_keys(variable)) {
+    for (FormKey form : form_keys(variable)) {
+      if (variable == MotionVariable::yaw) form.key = yaw_key(settings);
       if (!settings.has(form.key)) continue;
       if (!known.empty()) {
         throw settings.error(form.key, "this beside " + known, "one function of a variable");
@@ -242,7 +253,7 @@ EmpiricalShape read_shape(const Settings& settings) {
   }
   if (shape.functions.empty() || shape.functions.size() > 2) {
     throw settings.error("kind", std::to_string(shape.functions.size()) + " functions",
-                         "one or two, by heading_orders, tilt_exponent, rate_exponent, "
+                         "one or two, by yaw_orders, tilt_exponent, rate_exponent, "
                          "time_constant_s and the like");
   }
   require_functions(settings, shape);

@@ -57,10 +57,10 @@ enum class TorqueAxes {
                  // first the axis of the torque, the second that of the command
 };
 
-enum class MotionVariable { heading, tilt, rate, time, charge, command };
+enum class MotionVariable { yaw, tilt, rate, time, charge, command };
 
 enum class FunctionForm {
-  harmonics,  // cos n x, sin n x of the heading, or of 2π t/period, for each order n
+  harmonics,  // cos n x, sin n x of the yaw, or of 2π t/period, for each order n
               // (0: a constant)
   power,      // (x/reference)^exponent
   powers,     // (x/reference)^n for each order n

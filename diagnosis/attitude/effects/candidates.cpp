@@ -510,23 +510,22 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
   if (context.platform.slides() && !sees_turn) {
     std::erase_if(all.list, [](const Candidate& c) { return !is_force(c.effect.how.needs); });
   }
-  // A law of the heading cannot be told from a constant where the heading hardly changes, nor a
+  // A law of the yaw cannot be told from a constant where the yaw hardly changes, nor a
   // force that turns with the body.
   if (!context.platform.has_air_bearing() && !turns(runs)) {
     const bool always = depends_on_attitude(nominal.model);
     std::erase_if(all.list, [&](const Candidate& c) {
       const bool turns_along =
           !always && c.effect.how.needs == Requirement::plane && needs_attitude(c, nominal.model);
-      return c.variable == "heading" || c.variable == "tilt" || turns_along;
+      return c.variable == "yaw" || c.variable == "tilt" || turns_along;
     });
   }
   if (context.platform.turns_about_one_axis()) {
     // About a level axis the direction of body x in the plane is always the same, and so is the
     // tilt about an upright one: a law of it would be another law once more.
     const bool is_level = std::abs(context.platform.axis.z()) < 0.5;
-    std::erase_if(all.list, [&](const Candidate& c) {
-      return c.variable == (is_level ? "heading" : "tilt");
-    });
+    std::erase_if(all.list,
+                  [&](const Candidate& c) { return c.variable == (is_level ? "yaw" : "tilt"); });
     // A weight pulls back about a level axis, and a twisted line would do so nearly alike.
     // What slides carries no line that is known to twist.
     const bool has_weight =

@@ -28,7 +28,7 @@ EmpiricalLaw with_free(EmpiricalLaw law, std::vector<double> starts, double lowe
 }
 
 MotionFunction harmonic(int order) {
-  return {.of = MotionVariable::heading, .form = harmonics, .orders = {order}};
+  return {.of = MotionVariable::yaw, .form = harmonics, .orders = {order}};
 }
 
 // A formula holds up to twice the recorded range, a table only within it.

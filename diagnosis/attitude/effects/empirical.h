@@ -11,7 +11,7 @@
 namespace photorque {
 
 struct EmpiricalLaw {
-  std::string variable;     // "heading", "tilt", "rate", "time", "charge", "command"
+  std::string variable;     // "yaw", "tilt", "rate", "time", "charge", "command"
   std::string description;  // "3 periods a turn"
   EmpiricalShape shape;
   Disturbance disturbance;  // all coefficients 0; linear in them

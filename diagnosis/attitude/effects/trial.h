@@ -38,7 +38,7 @@ struct NominalModel;  // attitude/propagation/run.h
 
 // An effect of the catalogue, or an empirical law.
 struct Candidate {
-  std::string label;     // "magnetic_dipole", "unknown in heading: 3 periods a turn"
+  std::string label;     // "magnetic_dipole", "unknown in yaw: 3 periods a turn"
   std::string variable;  // of an empirical law; empty: an effect of the catalogue
   Effect effect;         // empty kind for an empirical law
   EmpiricalLaw law;      // empty for an effect of the catalogue

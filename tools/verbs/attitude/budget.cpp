@@ -1,6 +1,7 @@
 // photorque budget: every disturbance torque at one state, ranked, beside the paper's figures.
 #include "tools/verbs/attitude/budget.h"
 
+#include "attitude/model/platform.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "tools/runs/attitude_run.h"
@@ -77,7 +78,8 @@ void run(const CommandOptions& options, const Program&) {
   const Product& product = found.result.product;
   const PlatformState& state = found.budget.state;
   console.line("State: tilt " + show(tilt_rad(state) / degree_rad) + " deg, heading " +
-               show(heading_rad(state) / degree_rad) + " deg, rate " +
+               show(heading_rad(state) / degree_rad) + " deg, yaw " +
+               show(yaw_rad(state) / degree_rad) + " deg, rate " +
                show(state.rate_body_rad_s.norm()) + " rad/s, charge drawn " +
                show(state.charge_drawn_C / 3600.0) + " Ah");
   console.heading(
@@ -90,9 +92,13 @@ void run(const CommandOptions& options, const Program&) {
                {"1 h [deg]", "angle_1_h_deg"},
                {"1 day [deg]", "angle_1_day_deg"},
                {"paper [N m]", "paper_N_m"},
-               {"ours/paper", "ratio"}});
-  if (const Table* air = find_table(product, "external_air")) print_air(console, *air);
-  if (found.budget.beside_paper) print_paper(console, product);
+               {"ours/paper", "ratio"}},
+              12);
+  const Console details = console.details();
+  if (const Table* air = find_table(product, "external_air")) print_air(details, *air);
+  if (found.budget.beside_paper) print_paper(details, product);
+  if (!options.verbose)
+    console.line("  --verbose prints all of them, the air by part and the paper's figures");
   write_results(options, console, found.result);
 }
 

@@ -211,7 +211,7 @@ void print_way(const Console& console, const EstimateRun::Estimated& one) {
   console.heading("Written: " + chosen.name);
   print_innovations(console, "attitude", chosen.estimation.attitude);
   print_innovations(console, "gyro", chosen.estimation.gyro);
-  print_innovations(console, "heading", chosen.estimation.heading);
+  print_innovations(console, "yaw", chosen.estimation.yaw);
   if (!chosen.estimation.parameter_names.empty()) {
     console.line();
     print_table(console, result.product.tables[1],
