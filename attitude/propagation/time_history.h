@@ -16,7 +16,7 @@ class TimeHistory {
   // One row: lane `lane` of `now` belongs to `state`.
   void add(const PlatformState& state, const Dynamics::Instants& now, int lane);
 
-  // Tables "time_history" and "events"; plots "tilt", "heading", "rates", "charge" and "power"
+  // Tables "time_history" and "events"; plots "tilt", "yaw", "rates", "charge" and "power"
   // (where there are any), "torques" (largest sizes of all) and one for each disturbance. Curves
   // are thinned to a few thousand points that keep every extreme. The largest tilt is that of all
   // the states of the run, of which a row here may stand for many.
