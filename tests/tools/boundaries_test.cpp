@@ -44,7 +44,7 @@ TEST_F(Boundaries, NamesReachTerminalsAndTablesClean) {
             "[array]\nreceiver = \"solar_array\"\ncells = [2, 2]\n[[published]]\n"
             "quantity = \"array_power_W\"\nvalue = 1\nsource = \"" +
                 name + "\"\n");
-  const Outcome outcome = run("power " + experiment + " --out " + at("o"));
+  const Outcome outcome = run("power " + experiment + " --verbose --out " + at("o"));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, testing::HasSubstr("PWNED"));
   const auto is_raw = [](unsigned char c) {

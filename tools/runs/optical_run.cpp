@@ -341,11 +341,7 @@ bool misses_everything(const PowerBalance& balance) {
          std::ranges::all_of(balance.force_N, [](const Estimate& f) { return f.value == 0.0; });
 }
 
-void print_direct_checks(const Console& console, const OpticalRun& run,
-                         const OpticalResult& result) {
-  const std::string inside = run.inside_light(result);
-  if (!inside.empty()) console.line("  note: " + inside);
-  for (const std::string& notice : result.direct.notices) console.line("  note: " + notice);
+void print_direct_checks(const Console& console, const OpticalResult& result) {
   for (const DirectLight& direct : result.direct.gathered) {
     console.line("  direct light on " + direct.name + ": gathered and by rays differ by " +
                  show_brief(std::abs(direct.difference_sigma)) + " standard errors in all, " +
@@ -408,14 +404,18 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
     console.line(std::string("  torque ") + "xyz"[k] + "  " +
                  show(Estimate{body.mean.torque_N_m[k], body.torque_error_N_m()[k]}, "N m"));
   }
-  console.heading("Checks");
-  console.line("  power: emitted = absorbed + escaped + truncated to " +
+  const Console details = console.details();
+  details.heading("Checks");
+  details.line("  power: emitted = absorbed + escaped + truncated to " +
                show_brief(power_balance.closure));
-  console.line("  momentum: surfaces and rays differ by at most " +
+  details.line("  momentum: surfaces and rays differ by at most " +
                show_brief(momentum_disagreement(power_balance, result.sums[run.wrench_index()],
                                                 run.wrench(), run.experiment().scene.radius_m())) +
                " standard errors");
-  print_direct_checks(console.details(), run, result);
+  print_direct_checks(details, result);
+  const std::string inside = run.inside_light(result);
+  if (!inside.empty()) console.line("note: " + inside);
+  for (const std::string& notice : result.direct.notices) console.line("note: " + notice);
   for (const std::string& warning : run.warnings(result)) console.line("WARNING: " + warning);
 }
 

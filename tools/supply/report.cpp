@@ -193,13 +193,14 @@ void print_supply(const Console& console, const Product& product, const SupplyTr
       console.line("  " + option.name + ": " + remark);
     }
   }
-  console.heading("Section III.B of the paper compared with ours");
+  const Console details = console.details();
+  details.heading("Section III.B of the paper compared with ours");
   const Table& paper = table_called(product, "paper_supply");
-  print_table(console, paper, {{"quantity", "quantity"}, {"paper", "published"}, {"ours", "ours"}});
-  console.heading("Why");
+  print_table(details, paper, {{"quantity", "quantity"}, {"paper", "published"}, {"ours", "ours"}});
+  details.heading("Why");
   const auto& quantity = paper.column("quantity").texts;
   const auto& why = paper.column("why").texts;
-  for (size_t i = 0; i < quantity.size(); ++i) console.line("  " + quantity[i] + ": " + why[i]);
+  for (size_t i = 0; i < quantity.size(); ++i) details.line("  " + quantity[i] + ": " + why[i]);
 }
 
 }  // namespace photorque

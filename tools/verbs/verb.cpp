@@ -265,12 +265,12 @@ void write_results(const CommandOptions& options, const Console& console, const 
   };
   const auto pictures = count(".png"), tables = count(".csv");
   const auto others = static_cast<std::ptrdiff_t>(paths.size()) - pictures - tables;
-  const auto named = [](std::ptrdiff_t number, const std::string& what) {
-    return ", " + std::to_string(number) + " " + what + (number == 1 ? "" : "s");
+  const auto counted = [](std::ptrdiff_t number, const std::string& what, const char* kind = "") {
+    if (number == 0) return std::string();
+    return ", " + std::to_string(number) + " " + what + (number == 1 ? "" : "s") + kind;
   };
-  console.line("  summary.json" + (pictures > 0 ? named(pictures, "picture (PNG)") : "") +
-               (tables > 0 ? named(tables, "table (CSV)") : "") +
-               (others > 0 ? named(others, "other file") : ""));
+  console.line("  summary.json" + counted(pictures, "picture", " (PNG)") +
+               counted(tables, "table", " (CSV)") + counted(others, "other file"));
   for (const auto& path : paths) {
     if (path.extension() == ".png") console.details().line("  " + path.filename().string());
   }

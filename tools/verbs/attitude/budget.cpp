@@ -94,11 +94,14 @@ void run(const CommandOptions& options, const Program&) {
                {"paper [N m]", "paper_N_m"},
                {"ours/paper", "ratio"}},
               12);
-  const Console details = console.details();
-  if (const Table* air = find_table(product, "external_air")) print_air(details, *air);
-  if (found.budget.beside_paper) print_paper(details, product);
-  if (!options.verbose)
-    console.line("  --verbose prints all of them, the air by part and the paper's figures");
+  const Table* air = find_table(product, "external_air");
+  if (air != nullptr) print_air(console.details(), *air);
+  if (found.budget.beside_paper) print_paper(console.details(), product);
+  if (!options.verbose && (air != nullptr || found.budget.beside_paper)) {
+    console.line(std::string("  --verbose prints all of them") +
+                 (air != nullptr ? ", the air by part" : "") +
+                 (found.budget.beside_paper ? ", the paper's figures" : ""));
+  }
   write_results(options, console, found.result);
 }
 

@@ -110,8 +110,8 @@ void print_camera(const Console& console, const CameraRun& run) {
   console.line("  radial, tangential: the turn by a distortion that is not calibrated, k1, k2 " +
                show(lens.k1) + ", " + show(lens.k2) + "; p1, p2 " + show(lens.p1) + ", " +
                show(lens.p2));
-  console.heading("Simulated images against the prediction [arcsec]");
-  print_table(console, camera_table(product, "images"),
+  console.details().heading("Simulated images against the prediction [arcsec]");
+  print_table(console.details(), camera_table(product, "images"),
               {{"tilt [deg]", "tilt_deg"},
                {"heading [deg]", "heading_deg"},
                {"images", "images"},
@@ -123,8 +123,8 @@ void print_camera(const Console& console, const CameraRun& run) {
                {"chi2", "chi2_per_freedom"},
                {"+-", "chi2_standard_error"},
                {"chi2 of fit", "fit_chi2_per_freedom"}});
-  console.line("  " + std::to_string(std::lround(run.images_per_s)) +
-               " images a second on one core, exposure simulated, read and solved");
+  console.details().line("  " + std::to_string(std::lround(run.images_per_s)) +
+                         " images a second on one core, exposure simulated, read and solved");
 }
 
 void add_options(Command& command, CommandOptions& options) {
