@@ -4,6 +4,7 @@
 #include <chrono>
 #include <string>
 #include <thread>
+#include <utility>
 
 namespace photorque::python {
 
@@ -12,6 +13,7 @@ struct Call::State {
   py::object progress, log;
   std::thread::id caller = std::this_thread::get_id();
   std::chrono::steady_clock::time_point last = {};
+  std::string task;  // whose progress ended below 1
   std::optional<py::error_already_set> raised = {};
   std::atomic<bool> stopped = false;
 
@@ -58,9 +60,17 @@ Console Call::console() const {
     const auto now = std::chrono::steady_clock::now();
     if (now - state->last < std::chrono::milliseconds(50) && fraction < 1.0) return;
     state->last = now;
+    state->task = fraction < 1.0 ? what : std::string();
     const py::gil_scoped_acquire lock;
     state->tell([&] {
       if (!state->progress.is_none()) state->progress(what, fraction);
+    });
+  };
+  sinks.done = [state = state_.get(), is_caller] {
+    if (!is_caller() || state->task.empty()) return;
+    const py::gil_scoped_acquire lock;
+    state->tell([&] {
+      if (!state->progress.is_none()) state->progress(std::exchange(state->task, {}), 1.0);
     });
   };
   sinks.line = [state = state_.get(), is_caller](const std::string& text) {

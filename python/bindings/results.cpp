@@ -83,7 +83,74 @@ void bind_map(py::module_& module) {
           [](const Map& map) {
             return py::make_tuple(map.x_low, map.x_high, map.y_low, map.y_high);
           },
-          "Outer edges (x, x, y, y), as matplotlib's imshow takes them with origin=\"lower\".");
+          "Outer edges (x, x, y, y), as matplotlib's imshow takes them with origin=\"lower\".")
+      .def_readonly("is_signed", &Map::signed_values, "Positive and negative: centred on zero.")
+      .def_readonly("has_equal_scale", &Map::equal_scale, "x and y are lengths of one unit.")
+      .def(
+          "plot",
+          [](const py::object& self, const py::object& axes) {
+            return py::module_::import("photorque.plots").attr("draw_map")(self, axes);
+          },
+          py::arg("axes") = py::none(), "Draws with matplotlib; gives the Axes.")
+      .def(
+          "to_xarray",
+          [](const py::object& self) {
+            return py::module_::import("photorque.plots").attr("map_to_xarray")(self);
+          },
+          "As an xarray Dataset: value and standard_error over the middles of the bins.");
+}
+
+const char* style_of(const Plot::Curve& curve) {
+  if (curve.bars) return "bars";
+  if (curve.markers) return "points";
+  if (curve.dots) return "dots";
+  return curve.dashed ? "dashed" : "line";
+}
+
+// The first axes of a plot and those below alike.
+py::list panels_of(const Plot& plot) {
+  py::list panels;
+  panels.append(Plot::Panel{plot.y_label, plot.curves, plot.y_log, plot.levels, plot.robust_range});
+  for (const Plot::Panel& panel : plot.below) panels.append(panel);
+  return panels;
+}
+
+void bind_plot(py::module_& module) {
+  using Curve = Plot::Curve;
+  using Panel = Plot::Panel;
+  py::class_<Curve>(module, "Curve", "One curve of a plot.")
+      .def_readonly("label", &Curve::label)
+      .def_property_readonly("style", &style_of,
+                             "\"line\", \"dashed\", \"points\", \"dots\" or \"bars\".")
+      .def_property_readonly(
+          "x", [](const py::object& self) { return view(self.cast<const Curve&>().x, self); })
+      .def_property_readonly(
+          "y", [](const py::object& self) { return view(self.cast<const Curve&>().y, self); })
+      .def_property_readonly(
+          "y_error",
+          [](const py::object& self) -> py::object {
+            const auto& curve = self.cast<const Curve&>();
+            if (curve.y_error.empty()) return py::none();
+            return view(curve.y_error, self);
+          },
+          "One standard error of every y; None where they are exact.");
+  py::class_<Panel>(module, "Panel", "One pair of axes of a plot.")
+      .def_readonly("y_label", &Panel::y_label)
+      .def_readonly("y_log", &Panel::y_log)
+      .def_readonly("curves", &Panel::curves)
+      .def_readonly("levels", &Panel::levels, "Of dotted horizontal lines.");
+  py::class_<Plot>(module, "Plot", "Curves in axes that share x.")
+      .def_readonly("name", &Plot::name)
+      .def_readonly("title", &Plot::title)
+      .def_readonly("x_label", &Plot::x_label)
+      .def_readonly("x_log", &Plot::x_log)
+      .def_property_readonly("panels", &panels_of, "The axes, from above.")
+      .def(
+          "plot",
+          [](const py::object& self, const py::object& axes) {
+            return py::module_::import("photorque.plots").attr("draw_plot")(self, axes);
+          },
+          py::arg("axes") = py::none(), "Draws with matplotlib; gives the Axes.");
 }
 
 }  // namespace
@@ -99,6 +166,7 @@ void bind_results(py::module_& module) {
       });
   bind_table(module);
   bind_map(module);
+  bind_plot(module);
 }
 
 py::dict figures_of(const RunResult& result) {
@@ -124,6 +192,14 @@ py::dict maps_of(const RunResult& result, const py::object& owner) {
     maps[py::str(map.name)] = py::cast(map, py::return_value_policy::reference_internal, owner);
   }
   return maps;
+}
+
+py::dict plots_of(const RunResult& result, const py::object& owner) {
+  py::dict plots;
+  for (const Plot& plot : result.product.plots) {
+    plots[py::str(plot.name)] = py::cast(plot, py::return_value_policy::reference_internal, owner);
+  }
+  return plots;
 }
 
 py::dict provenance_of(const Provenance& provenance) {

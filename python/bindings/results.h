@@ -13,13 +13,14 @@ namespace photorque::python {
 
 namespace py = pybind11;
 
-// The Python classes Estimate, Table and Map.
+// The Python classes Estimate, Table, Map, Plot, Panel and Curve.
 void bind_results(py::module_& module);
 
 py::dict figures_of(const RunResult& result);
 // Views: they keep `owner` alive.
 py::dict tables_of(const RunResult& result, const py::object& owner);
 py::dict maps_of(const RunResult& result, const py::object& owner);
+py::dict plots_of(const RunResult& result, const py::object& owner);
 py::dict provenance_of(const Provenance& provenance);
 // As the results of this command of the program.
 py::list write_of(const RunResult& result, const std::filesystem::path& folder,
@@ -44,6 +45,17 @@ void add_result(py::class_<Run, More...>& type, const std::string& command) {
       .def_property_readonly(
           "maps", [result_of](const py::object& self) { return maps_of(result_of(self), self); },
           "Maps by name.")
+      .def_property_readonly(
+          "plots", [result_of](const py::object& self) { return plots_of(result_of(self), self); },
+          "Curves by name.")
+      .def(
+          "plot",
+          [](const py::object& self, const py::object& name, const py::object& axes) {
+            return py::module_::import("photorque.plots").attr("draw_result")(self, name, axes);
+          },
+          py::arg("name") = py::none(), py::arg("axes") = py::none(),
+          "Draws the map or plot of this name with matplotlib and gives its Axes; all without a "
+          "name.")
       .def_property_readonly(
           "warnings",
           [result_of](const py::object& self) {

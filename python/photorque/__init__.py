@@ -14,6 +14,7 @@ from photorque._photorque import (
     Camera,
     CellFit,
     CheckReport,
+    Curve,
     Diagnosis,
     Effect,
     Estimate,
@@ -24,6 +25,8 @@ from photorque._photorque import (
     Map,
     Motion,
     NumericalError,
+    Panel,
+    Plot,
     Power,
     Render,
     Table,
@@ -44,6 +47,7 @@ from photorque._photorque import (
     torque_map,
     trace,
 )
+from photorque.plots import progress_bar
 from photorque.sweeps import Sweep, sweep
 
 __all__ = [
@@ -54,6 +58,7 @@ __all__ = [
     "Camera",
     "CellFit",
     "CheckReport",
+    "Curve",
     "Diagnosis",
     "Effect",
     "Estimate",
@@ -64,6 +69,8 @@ __all__ = [
     "Map",
     "Motion",
     "NumericalError",
+    "Panel",
+    "Plot",
     "Power",
     "Render",
     "Sweep",
@@ -80,6 +87,7 @@ __all__ = [
     "fit_cell",
     "git_hash",
     "power",
+    "progress_bar",
     "propagate",
     "render",
     "sweep",

@@ -26,7 +26,7 @@ class Sweep:
 
     def to_xarray(self) -> Any:
         """An xarray.Dataset; standard errors are variables whose names end in _standard_error."""
-        import xarray  # type: ignore[import]
+        import xarray
 
         names = list(self.axes)
         variables = {name: (names, values) for name, values in self.figures.items()}

@@ -19,7 +19,7 @@ class Calls(unittest.TestCase):
         fractions = [fraction for _, fraction in told]
         self.assertEqual({task for task, _ in told}, {"tracing"})
         self.assertEqual(fractions, sorted(fractions))
-        self.assertLessEqual(fractions[-1], 1.0)
+        self.assertEqual(fractions[-1], 1.0)
 
     def test_log_is_what_the_program_prints(self):
         lines = []

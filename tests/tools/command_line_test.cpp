@@ -149,7 +149,7 @@ TEST_F(CommandLine, ResultsAreLeanAndTheTextIsShort) {
   }
   EXPECT_FALSE(has("cell_power.tiff"));
   // Letters are text.
-  EXPECT_THAT(file_text(folder_ / "o" / "iv_curve.svg"), HasSubstr(">Voltage [V]</text>"));
+  EXPECT_THAT(file_text(folder_ / "o" / "iv_curve.svg"), HasSubstr(">voltage [V]</text>"));
   const Outcome wrong = run(few + " --format jpeg");
   EXPECT_EQ(wrong.status, 2);
   EXPECT_THAT(wrong.err, HasSubstr("exr, tiff, png"));
