@@ -142,7 +142,7 @@ Excursion excursion_of(const std::vector<PlatformState>& states) {
 std::vector<Plot::Curve> stacked_shares(const std::vector<double>& t,
                                         const std::vector<std::string>& labels,
                                         const std::vector<std::vector<double>>& sizes) {
-  constexpr size_t most_parts = 120, most_named = 6;
+  constexpr size_t most_parts = 120, most_named = 5;
   const size_t parts = std::min(most_parts, t.size()), kinds = sizes.size();
   std::vector<std::vector<double>> shares(kinds, std::vector<double>(parts));
   std::vector<double> x(parts), of(kinds);

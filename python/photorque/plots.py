@@ -29,7 +29,7 @@ def draw_map(field: Any, axes: Any = None) -> Any:
 def _draw_curve(curve: Any, axes: Any) -> None:
     label = curve.label or None
     if curve.style == "bars":
-        axes.bar(curve.x, curve.y, width=0.8 * _spacing(curve.x), label=label)
+        axes.bar(curve.x, curve.y, width=_spacing(curve.x), label=label)
     elif curve.style in ("points", "dots"):
         marker = "o" if curve.style == "points" else ","
         axes.errorbar(curve.x, curve.y, curve.y_error, fmt=marker, capsize=2, label=label)
@@ -61,7 +61,10 @@ def draw_plot(plot: Any, axes: Any = None) -> Any:
             where.axhline(level, linestyle=":", color="grey", linewidth=1)
         where.set(ylabel=panel.y_label, xscale="log" if plot.x_log else "linear",
                   yscale="log" if panel.y_log else "linear")
-        if any(curve.label for curve in panel.curves):
+        labels = sum(bool(curve.label) for curve in panel.curves)
+        if labels > 4:
+            where.legend(fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        elif labels > 0:
             where.legend(fontsize="small")
     panels[0].set_title(plot.title)
     panels[-1].set_xlabel(plot.x_label)
