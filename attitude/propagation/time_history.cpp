@@ -139,12 +139,12 @@ Excursion excursion_of(const std::vector<PlatformState>& states) {
 
 // Bars that stand on each other: means over each 120th of the run, in percent of the sum of all,
 // the strongest at the bottom.
-std::vector<Plot::Curve> stacked_shares(const std::vector<double>& t,
-                                        const std::vector<std::string>& labels,
-                                        const std::vector<std::vector<double>>& sizes) {
+std::vector<Plot::Curve> stacked_fractions(const std::vector<double>& t,
+                                           const std::vector<std::string>& labels,
+                                           const std::vector<std::vector<double>>& sizes) {
   constexpr size_t most_parts = 120, most_named = 5;
   const size_t parts = std::min(most_parts, t.size()), kinds = sizes.size();
-  std::vector<std::vector<double>> shares(kinds, std::vector<double>(parts));
+  std::vector<std::vector<double>> fractions(kinds, std::vector<double>(parts));
   std::vector<double> x(parts), of(kinds);
   for (size_t p = 0; p < parts; ++p) {
     const size_t begin = p * t.size() / parts, end = (p + 1) * t.size() / parts;
@@ -152,12 +152,12 @@ std::vector<Plot::Curve> stacked_shares(const std::vector<double>& t,
         std::lerp(t.front(), t.back(), (static_cast<double>(p) + 0.5) / static_cast<double>(parts));
     double sum = 0.0;
     for (size_t k = 0; k < kinds; ++k) {
-      for (size_t i = begin; i < end; ++i) shares[k][p] += sizes[k][i];
-      sum += shares[k][p];
+      for (size_t i = begin; i < end; ++i) fractions[k][p] += sizes[k][i];
+      sum += fractions[k][p];
     }
     for (size_t k = 0; k < kinds; ++k) {
-      shares[k][p] *= sum > 0.0 ? 100.0 / sum : 0.0;
-      of[k] += shares[k][p];
+      fractions[k][p] *= sum > 0.0 ? 100.0 / sum : 0.0;
+      of[k] += fractions[k][p];
     }
   }
   std::vector<size_t> order(kinds);
@@ -166,7 +166,7 @@ std::vector<Plot::Curve> stacked_shares(const std::vector<double>& t,
   std::vector<Plot::Curve> curves;
   std::vector<double> top(parts);
   for (size_t place = 0; place < kinds; ++place) {
-    for (size_t p = 0; p < parts; ++p) top[p] += shares[order[place]][p];
+    for (size_t p = 0; p < parts; ++p) top[p] += fractions[order[place]][p];
     const bool is_named = place < most_named;
     if (!is_named && place + 1 < kinds) continue;
     Plot::Curve curve;
@@ -310,8 +310,8 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
     });
     std::vector<std::string> names;
     for (const size_t i : shown) names.push_back(labels_[i]);
-    add_plot("torque_shares", "Share of every torque in the sum of their sizes", "Share [%]",
-             stacked_shares(t, names, sizes));
+    add_plot("torque_fractions", "Fraction of every torque in the sum of their sizes",
+             "Fraction [%]", stacked_fractions(t, names, sizes));
     add_plot("torques", "Size of every torque, largest within each 240th of the run",
              "Torque [N m]", std::move(all));
     product.plots.back().y_log = true;

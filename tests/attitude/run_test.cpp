@@ -218,7 +218,7 @@ TEST(Run, GivesHistoryPlotsAndRecording) {
                            "torque_static_unbalance_x_N_m", "torque_bearing_drag_z_N_m"}) {
     EXPECT_TRUE(columns.contains(name)) << name;
   }
-  for (const char* name : {"tilt", "yaw", "rates", "torques", "torque_shares",
+  for (const char* name : {"tilt", "yaw", "rates", "torques", "torque_fractions",
                            "torque_static_unbalance", "torque_bearing_drag"}) {
     EXPECT_TRUE(plots.contains(name)) << name;
   }

@@ -55,8 +55,8 @@ TEST_F(AttitudeCommands, PropagateWritesWhatTheContractNames) {
   const auto all = files("o");
   for (const char* name :
        {"summary.json", "time_history.csv", "recording.csv", "attitude.aem", "run.h5", "tilt.png",
-        "yaw.png", "rates.png", "torques.png", "torque_shares.png", "torque_static_unbalance.png",
-        "torque_radiation_pressure.png"}) {
+        "yaw.png", "rates.png", "torques.png", "torque_fractions.png",
+        "torque_static_unbalance.png", "torque_radiation_pressure.png"}) {
     EXPECT_TRUE(all.contains(name)) << name;
   }
   EXPECT_FALSE(all.contains("tilt.svg"));

@@ -214,7 +214,8 @@ RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageH
     if (plot.x_label == "Time [s]") page.cursors.push_back({plot.name, 0, 1.0});
   }
   // A page draws no areas.
-  std::erase_if(page.product.plots, [](const Plot& plot) { return plot.name == "torque_shares"; });
+  std::erase_if(page.product.plots,
+                [](const Plot& plot) { return plot.name == "torque_fractions"; });
   // The plot with all curves over one axis of time comes first.
   std::ranges::stable_partition(page.product.plots,
                                 [](const Plot& plot) { return plot.name == "power_and_attitude"; });
