@@ -175,13 +175,13 @@ struct Keyword {
   std::string Segment::*member;
   bool required;
 };
-constexpr std::array<Keyword, 17> keywords = {{
+constexpr std::array<Keyword, 18> keywords = {{
     {"OBJECT_NAME", &Segment::object_name, true},
     {"OBJECT_ID", &Segment::object_id, true},
     {"CENTER_NAME", &Segment::center_name, false},
     {"REF_FRAME_A", &Segment::ref_frame_a, true},
     {"REF_FRAME_B", &Segment::ref_frame_b, true},
-    {"ATTITUDE_DIR", &Segment::attitude_dir, true},
+    {"ATTITUDE_DIR", &Segment::attitude_dir, false},
     {"TIME_SYSTEM", &Segment::time_system, true},
     {"START_TIME", &Segment::start_time, true},
     {"USEABLE_START_TIME", &Segment::useable_start_time, false},
@@ -191,13 +191,59 @@ constexpr std::array<Keyword, 17> keywords = {{
     {"QUATERNION_TYPE", &Segment::quaternion_type, false},
     {"EULER_ROT_SEQ", &Segment::euler_rot_seq, false},
     {"RATE_FRAME", &Segment::rate_frame, false},
+    {"ANGVEL_FRAME", &Segment::angvel_frame, false},
     {"INTERPOLATION_METHOD", &Segment::interpolation_method, false},
     {"INTERPOLATION_DEGREE", &Segment::interpolation_degree, false},
 }};
 
+// What the numbers of a row are.
+struct AttitudeType {
+  const char* name;
+  size_t numbers;     // after the epoch
+  bool is_euler;      // three angles [deg], else four numbers of a quaternion
+  bool ends_in_rate;  // angular velocity [deg/s] in ANGVEL_FRAME
+};
+constexpr std::array attitude_types = {AttitudeType{"QUATERNION", 4, false, false},
+                                       AttitudeType{"QUATERNION/DERIVATIVE", 8, false, false},
+                                       AttitudeType{"QUATERNION/RATE", 7, false, false},
+                                       AttitudeType{"QUATERNION/ANGVEL", 7, false, true},
+                                       AttitudeType{"EULER_ANGLE", 3, true, false},
+                                       AttitudeType{"EULER_ANGLE/DERIVATIVE", 6, true, false},
+                                       AttitudeType{"EULER_ANGLE/RATE", 6, true, false},
+                                       AttitudeType{"EULER_ANGLE/ANGVEL", 6, true, true}};
+
+const AttitudeType* type_of(const Segment& segment) {
+  const auto* const found =
+      std::ranges::find(attitude_types, segment.attitude_type, &AttitudeType::name);
+  return found != attitude_types.end() ? found : nullptr;
+}
+
+// The first line that is not empty and no comment, without a byte-order mark; empty where the file
+// cannot be read.
+std::string first_words(const std::filesystem::path& path) {
+  constexpr int first_lines = 100;
+  try {
+    TextLines lines(path);
+    std::string_view line;
+    for (int i = 0; i < first_lines && lines.next(line); ++i) {
+      if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
+      const std::string_view words = trimmed(line);
+      if (!words.empty() && !words.starts_with(comment)) return std::string(words);
+    }
+  } catch (const InputError&) {
+    // Its reader says what is wrong with it.
+  }
+  return "";
+}
+
+bool is_xml(const std::filesystem::path& path) {
+  return first_words(path).starts_with("<");
+}
+
 class AemReader {
  public:
-  explicit AemReader(const std::filesystem::path& path) : path_(path), message_(read_kvn(path)) {}
+  explicit AemReader(const std::filesystem::path& path)
+      : path_(path), message_(is_xml(path) ? read_aem_xml(path) : read_kvn(path)) {}
 
   AttitudeEphemeris read() {
     AttitudeEphemeris aem;
@@ -250,6 +296,7 @@ class AemReader {
         throw error(item, item.key, "a keyword of AEM metadata");
       }
     }
+    if (required(message_, "CCSDS_AEM_VERS").starts_with("1")) required(meta, "ATTITUDE_DIR");
     if (segment.attitude_dir != "A2B" && segment.attitude_dir != "B2A") {
       throw error(meta, segment.attitude_dir, "ATTITUDE_DIR = A2B or B2A");
     }
@@ -281,9 +328,8 @@ class AemReader {
 
   // Types that are not read as attitudes have at least lines of one length.
   static size_t expected_length(const Segment& segment, size_t first) {
-    if (segment.attitude_type == "QUATERNION") return 4;
-    if (segment.attitude_type == "EULER_ANGLE") return 3;
-    return first;
+    const AttitudeType* type = type_of(segment);
+    return type != nullptr ? type->numbers : first;
   }
 
   std::filesystem::path path_;
@@ -310,10 +356,12 @@ Quat from_euler(const std::string& sequence, const std::vector<double>& angles_d
 
 Quat to_quaternion(const Segment& segment, const AttitudeEphemeris::Row& row) {
   const std::vector<double>& v = row.values;
-  if (segment.attitude_type == "EULER_ANGLE") return from_euler(segment.euler_rot_seq, v);
-  if (segment.attitude_type != "QUATERNION") {
-    throw wrong("ATTITUDE_TYPE", segment.attitude_type, "QUATERNION or EULER_ANGLE");
+  const AttitudeType* type = type_of(segment);
+  if (type == nullptr) {
+    throw wrong("ATTITUDE_TYPE", segment.attitude_type,
+                "QUATERNION or EULER_ANGLE, or one of them with /DERIVATIVE, /RATE or /ANGVEL");
   }
+  if (type->is_euler) return from_euler(segment.euler_rot_seq, v);
   const bool first = segment.quaternion_type == "FIRST";
   const Quat q = first ? Quat(v[0], v[1], v[2], v[3]) : Quat(v[3], v[0], v[1], v[2]);
   if (!(std::abs(q.norm() - 1.0) < 0.01)) {
@@ -331,27 +379,26 @@ std::vector<Segment::Sample> Segment::attitudes() const {
     const std::optional<Epoch> epoch = parse_epoch(row.epoch);
     if (!epoch) throw wrong("epoch", row.epoch, "a time as 2000-01-01T12:00:00");
     if (!first) first = epoch;
-    const Quat q = to_quaternion(*this, row);
-    samples.push_back(
-        {epoch->seconds_since(*first), attitude_dir == "A2B" ? q : Quat(q.conjugate())});
+    Quat q = to_quaternion(*this, row);
+    if (attitude_dir == "B2A") q = q.conjugate();
+    samples.push_back({epoch->seconds_since(*first), q});
+    if (!type_of(*this)->ends_in_rate) continue;
+    const double* rate = row.values.data() + row.values.size() - 3;
+    const Vec3 rate_rad_s = degree_rad * Vec3(rate[0], rate[1], rate[2]);
+    const bool is_in_a = angvel_frame == ref_frame_a && ref_frame_a != ref_frame_b;
+    samples.back().rate_rad_s = is_in_a ? Vec3(q.conjugate() * rate_rad_s) : rate_rad_s;
   }
   return samples;
 }
 
 bool is_aem(const std::filesystem::path& path) {
-  constexpr int first_lines = 100;
+  const std::string words = first_words(path);
+  if (!words.starts_with("<")) return words.starts_with("CCSDS_AEM_VERS");
   try {
-    TextLines lines(path);
-    std::string_view line;
-    for (int i = 0; i < first_lines && lines.next(line); ++i) {
-      if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
-      const std::string_view words = trimmed(line);
-      if (!words.empty() && !words.starts_with(comment)) return words.starts_with("CCSDS_AEM_VERS");
-    }
+    return read_file(path).find("<aem") != std::string::npos;
   } catch (const InputError&) {
-    // Its reader says what is wrong with it.
+    return false;
   }
-  return false;
 }
 
 namespace {
@@ -381,8 +428,13 @@ std::vector<AemAttitude> aem_attitudes(const std::filesystem::path& path) {
         const std::optional<Epoch> epoch = parse_epoch(segment.rows[i].epoch);
         if (!begin) begin = epoch;
         const Quat& q = samples[i].a_from_b;
-        all.push_back({epoch->seconds_since(*begin), is_from_lab ? Quat(q.conjugate()) : q,
-                       segment.rows[i].line});
+        AemAttitude attitude{epoch->seconds_since(*begin), is_from_lab ? Quat(q.conjugate()) : q,
+                             samples[i].rate_rad_s, segment.rows[i].line};
+        // The body is A: it turns against B, and B's axes are the lab's.
+        if (is_from_lab && attitude.rate_body_rad_s) {
+          attitude.rate_body_rad_s = -(q * *attitude.rate_body_rad_s);
+        }
+        all.push_back(attitude);
       }
     } catch (const InputError& error) {
       throw InputError({path.string()}, error.what(), "", "");

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,6 +40,8 @@ KvnItem kvn_block(const std::string& name);
 // The message as one nameless block. InputError for blocks that do not close and lines that are
 // none of the kinds.
 KvnItem read_kvn(const std::filesystem::path& path);
+// An AEM in XML as the same blocks, with the scalar of its quaternions last.
+KvnItem read_aem_xml(const std::filesystem::path& path);
 std::string kvn_text(const KvnItem& message);
 void write_kvn(const std::filesystem::path& path, const KvnItem& message);
 
@@ -46,7 +49,9 @@ void write_kvn(const std::filesystem::path& path, const KvnItem& message);
 std::vector<double> kvn_numbers(const std::vector<std::string_view>& words, size_t first,
                                 const std::filesystem::path& path, int line);
 
-// An attitude ephemeris message, version 1. Source: CCSDS 504.0-B-1 (2008), section 4. An attitude
+// An attitude ephemeris message, version 1 or 2. Source: CCSDS 504.0-B-1 (2008) and 504.0-B-2
+// (2024), section 4. Version 2 has neither ATTITUDE_DIR nor QUATERNION_TYPE: from A to B, scalar
+// last. Of types with derivatives the attitude is read, of ANGVEL the rate too. An attitude
 // from frame A to frame B as a quaternion is the Hamilton quaternion that rotates vectors of B into
 // A: with A the lab and B the body, that is lab_from_body. Checked against the two GMAT files that
 // hold the same attitude as quaternions and as Euler angles.
@@ -67,10 +72,10 @@ struct AttitudeEphemeris {
     std::string time_system = "UTC";
     std::string start_time, stop_time;
     std::string useable_start_time, useable_stop_time;  // empty: not given
-    std::string attitude_type = "QUATERNION";           // or EULER_ANGLE, or others of the book
+    std::string attitude_type = "QUATERNION";           // or others of the books
     std::string quaternion_type;                        // FIRST or LAST: where the scalar is
-    std::string euler_rot_seq;                          // "321": axes in order of rotation
-    std::string rate_frame;
+    std::string euler_rot_seq;                          // "321" or "ZYX": axes in order of rotation
+    std::string rate_frame, angvel_frame;               // of rates: version 1, version 2
     std::string interpolation_method, interpolation_degree;
     std::vector<std::string> comments;
     std::vector<Row> rows;
@@ -78,7 +83,9 @@ struct AttitudeEphemeris {
 
     struct Sample {
       double time_s;  // since the first row
-      Quat a_from_b;  // unit; of rows of quaternions or Euler angles
+      Quat a_from_b;  // unit
+      // Of B with respect to A, in B's axes; of ANGVEL alone.
+      std::optional<Vec3> rate_rad_s = {};
     };
     // The rows as attitudes. InputError when the type is another, an epoch is no calendar time, or
     // a quaternion is not of unit norm to 1 %.
@@ -91,15 +98,16 @@ struct AttitudeEphemeris {
   bool operator==(const AttitudeEphemeris&) const = default;
 };
 
-// Whether the first line that says something is that of an AEM in KVN. False for a file that cannot
-// be read.
+// Whether the first line that says something is that of an AEM in KVN, or XML has the element of
+// one. False for a file that cannot be read.
 bool is_aem(const std::filesystem::path& path);
 
 // The attitude of the body of a message over the time since its first row.
 struct AemAttitude {
   double time_s;
   Quat lab_from_body;  // the lab is the frame that is no body's (REF_FRAME_A where both are alike)
-  int line;            // in the file
+  std::optional<Vec3> rate_body_rad_s;
+  int line;  // in the file
 };
 // The rows of all segments in their order. InputError as of read_aem() and Segment::attitudes(),
 // and for segments of several objects.

@@ -140,19 +140,28 @@ class RecordingReader {
     return {{path_.string(), static_cast<int>(lines_.number())}, key, found, expected};
   }
 
-  // An AEM: attitudes alone.
+  // An AEM: attitudes, and rates where it has any.
   void take_attitudes() {
     const std::vector<AemAttitude> attitudes = aem_attitudes(path_);
     for (const auto& [channel, written] : options_.columns) {
       recording_.report.absent_columns.insert(written);
     }
     for (const char* name : {"q_w", "q_x", "q_y", "q_z"}) recording_.channels.push_back({name, {}});
+    if (std::ranges::any_of(attitudes,
+                            [](const auto& row) { return row.rate_body_rad_s.has_value(); })) {
+      for (const char* name : {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"}) {
+        recording_.channels.push_back({name, {}});
+      }
+    }
     for (const AemAttitude& row : attitudes) {
       ++recording_.report.rows_read;
       if (!take_time(row.time_s, row.line)) continue;
       const Quat& q = row.lab_from_body;
-      const double values[] = {q.w(), q.x(), q.y(), q.z()};
-      for (size_t k = 0; k < 4; ++k) recording_.channels[k].values.push_back(values[k]);
+      const Vec3 rate = row.rate_body_rad_s.value_or(Vec3::Constant(empty_cell));
+      const double values[] = {q.w(), q.x(), q.y(), q.z(), rate.x(), rate.y(), rate.z()};
+      for (size_t k = 0; k < recording_.channels.size(); ++k) {
+        recording_.channels[k].values.push_back(values[k]);
+      }
     }
   }
 

@@ -8,7 +8,7 @@ namespace {
 
 using namespace photorque::tree;
 
-// Headers of a library and the one folder that may include them; of pugixml one that reads and one
+// Headers of a library and the one folder that may include them; of pugixml two that read and one
 // that writes.
 const std::multimap<std::string, std::string> only_place = {
     {"tbb/", "core"},
@@ -24,6 +24,7 @@ const std::multimap<std::string, std::string> only_place = {
     {"CLI/", "tools"},
     {"zlib.h", "attitude/recordings"},
     {"pugixml", "sources/photometry"},
+    {"pugixml", "attitude/recordings"},
     {"pugixml", "tools/fmi"},
     {"minizip/", "tools/fmi"},
     {"pybind11", "python"},

@@ -129,6 +129,82 @@ TEST(Aem, EulerSequenceAgreesWithThePublishedQuaternion) {
   EXPECT_LT(q.angularDistance(published), 1e-14);
 }
 
+// One attitude in two notations, from the example of CCSDS 504.0-B-2 with the spacecraft MMS: it
+// turns about its z axis by 18.29 deg/s, that is by 182.9 deg in the ten seconds between the rows.
+TEST(Aem, Version2HasQuaternionsAndEulerAnglesWithRates) {
+  const auto message = [](const std::string& type, const std::string& rows) {
+    return "CCSDS_AEM_VERS = 2.0\nCREATION_DATE = 2023-02-14T12:00:00\nORIGINATOR = GSFC\n"
+           "MESSAGE_ID = A000006\nMETA_START\nOBJECT_NAME = MMS\nOBJECT_ID = 2015-011A\n"
+           "CENTER_NAME = EARTH\nREF_FRAME_A = EME2000\nREF_FRAME_B = SC_BODY_1\n"
+           "TIME_SYSTEM = TAI\nSTART_TIME = 2023-054T00:00:09.150001\n"
+           "STOP_TIME = 2023-054T00:00:19.150001\nATTITUDE_TYPE = " +
+           type + "\nANGVEL_FRAME = SC_BODY_1\nMETA_STOP\nDATA_START\n" + rows + "DATA_STOP\n";
+  };
+  const TemporaryFile quaternions(message(
+      "QUATERNION/ANGVEL",
+      "2023-054T00:00:09.150001 0.056482 0.209807 -0.912091 0.347679 -0.021029 0.023643 18.288407\n"
+      "2023-054T00:00:19.150001 0.208972 -0.060605 0.371436 0.902603 -0.019288 0.021817 "
+      "18.291279\n"));
+  const TemporaryFile angles(message(
+      "EULER_ANGLE/ANGVEL\nEULER_ROT_SEQ = ZXZ",
+      "2023-054T00:00:09.150001 5.798977 25.098268 -144.066452 -0.021029 0.023643 18.288407\n"
+      "2023-054T00:00:19.150001 6.194963 25.134202 38.541023 -0.019288 0.021817 18.291279\n"));
+  const auto by_quaternions = aem_attitudes(quaternions.path());
+  const auto by_angles = aem_attitudes(angles.path());
+  ASSERT_EQ(by_quaternions.size(), 2u);
+  ASSERT_EQ(by_angles.size(), 2u);
+  for (size_t i = 0; i < 2; ++i) {
+    EXPECT_LT(by_quaternions[i].lab_from_body.angularDistance(by_angles[i].lab_from_body), 1e-5);
+    EXPECT_EQ(by_quaternions[i].rate_body_rad_s, by_angles[i].rate_body_rad_s);
+  }
+  EXPECT_NEAR(by_angles[1].time_s, 10.0, 1e-6);
+  ASSERT_TRUE(by_angles[0].rate_body_rad_s);
+  // Over the ten seconds by the printed rate; it nutates by half a degree.
+  const Quat turned =
+      by_angles[0].lab_from_body *
+      Quat(Eigen::AngleAxisd(10.0 * by_angles[0].rate_body_rad_s->z(), Vec3::UnitZ()));
+  EXPECT_LT(turned.angularDistance(by_angles[1].lab_from_body), 0.01);
+  const Recording recording = read_recording(quaternions.path());
+  ASSERT_NE(recording.find("gyro_z_rad_s"), nullptr);
+  EXPECT_DOUBLE_EQ(recording.find("gyro_z_rad_s")->values[0], 18.288407 * degree_rad);
+  // The rate in the axes of the other frame is the one that the attitude turns into the body's.
+  const TemporaryFile inertial(replaced(
+      message("EULER_ANGLE/ANGVEL\nEULER_ROT_SEQ = ZXZ", "2023-054T00:00:09.150001 0 90 0 1 2 3\n"),
+      "ANGVEL_FRAME = SC_BODY_1", "ANGVEL_FRAME = EME2000"));
+  const auto about_x = aem_attitudes(inertial.path());
+  EXPECT_LT((*about_x[0].rate_body_rad_s - degree_rad * Vec3(1, 3, -2)).norm(), 1e-15);
+  const TemporaryFile spin(message("SPIN", "2023-054T00:00:09.150001 1 2 3 4\n"));
+  EXPECT_THROW(aem_attitudes(spin.path()), InputError);
+}
+
+// In XML the order of a quaternion's numbers is free.
+TEST(Aem, XmlSaysTheSameAsKeywords) {
+  const TemporaryFile xml(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<aem id=\"CCSDS_AEM_VERS\" version=\"1.0\">\n"
+      "<header><CREATION_DATE>2020-01-01T00:00:00</CREATION_DATE>"
+      "<ORIGINATOR>TEST</ORIGINATOR></header>\n<body><segment><metadata>"
+      "<COMMENT>none</COMMENT><OBJECT_NAME>A</OBJECT_NAME><OBJECT_ID>B</OBJECT_ID>"
+      "<REF_FRAME_A>LAB</REF_FRAME_A><REF_FRAME_B>SC_BODY_1</REF_FRAME_B>"
+      "<ATTITUDE_DIR>A2B</ATTITUDE_DIR><TIME_SYSTEM>UTC</TIME_SYSTEM>"
+      "<START_TIME>2020-01-01T00:00:00</START_TIME><STOP_TIME>2020-01-01T00:00:01</STOP_TIME>"
+      "<ATTITUDE_TYPE>QUATERNION/DERIVATIVE</ATTITUDE_TYPE>"
+      "<QUATERNION_TYPE>FIRST</QUATERNION_TYPE></metadata>\n<data>\n"
+      "<attitudeState><quaternionDerivative><EPOCH>2020-01-01T00:00:00</EPOCH>"
+      "<quaternion><QC>0.8</QC><Q1>0</Q1><Q2>0.6</Q2><Q3>0</Q3></quaternion>"
+      "<quaternionRate><QC_DOT units=\"1/s\">0</QC_DOT><Q1_DOT>0</Q1_DOT><Q2_DOT>0</Q2_DOT>"
+      "<Q3_DOT>0</Q3_DOT></quaternionRate></quaternionDerivative></attitudeState>\n"
+      "</data></segment></body></aem>\n");
+  EXPECT_TRUE(is_aem(xml.path()));
+  const auto attitudes = aem_attitudes(xml.path());
+  ASSERT_EQ(attitudes.size(), 1u);
+  EXPECT_LT(attitudes[0].lab_from_body.angularDistance(Quat(0.8, 0, 0.6, 0)), 1e-15);
+  EXPECT_EQ(attitudes[0].line, 5);
+  const TemporaryFile torn("<?xml version=\"1.0\"?>\n<aem version=\"1.0\">\n<header>\n");
+  EXPECT_THROW(read_aem(torn.path()), InputError);
+  const TemporaryFile other("<?xml version=\"1.0\"?>\n<opm version=\"1.0\"/>\n");
+  EXPECT_FALSE(is_aem(other.path()));
+}
+
 TEST(Aem, ScalarFirstAndDirectionAreHeeded) {
   const TemporaryFile a2b(small_aem);
   const auto samples = read_aem(a2b.path()).segments.front().attitudes();
