@@ -81,7 +81,7 @@ class Judge {
     return trial;
   }
 
-  // Whether what was held out tells a trial from the nominal model.
+  // Whether the held-out data distinguish a trial from the nominal model.
   bool is_tested(size_t trial) const {
     const auto &before = trials_.front().holdout_chi2_per_sample,
                &after = trials_[trial].holdout_chi2_per_sample;
@@ -270,8 +270,8 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
     return d;
   }
   if (named == 0) {
-    // What is less likely than nothing is no rival, however many such there are, and neither is
-    // what predicts nothing.
+    // Rivals are explanations that are more likely than the nominal model and in which every name
+    // predicts. The number of unlikely explanations therefore has no influence.
     const double rivals = probability_of(d.probability, [&](size_t i) {
       const bool predicts_nothing = std::ranges::any_of(
           unneeded, [&](const std::string& name) { return judge.has_name(i, name); });
@@ -288,15 +288,15 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
     return judge.has_names_of(named, i) || judge.exchanges_one(named, i);
   });
   const bool is_likely = of_group >= limits.min_probability;
-  // What only the recordings and what was held out show together.
+  // Weak: not probable enough, and not significant in the fitted recordings alone.
   const bool is_weak = d.confidence < limits.min_probability &&
                        !judge.is_significant(named, trials[named].significance);
   d.undecided = is_weak && judge.predicts(0);
   if (d.undecided) {
     d.confidence = 1.0 - d.confidence;
   } else if (is_weak || !is_likely) {
-    // Something acts beyond doubt, and of several explanations none is much likelier than the rest.
-    // What they share may be an error that they share: nothing is named.
+    // An effect is certain, but several explanations are about equally likely. Parameters that they
+    // share may share an error: no effect is named.
     d.finding = Finding::unknown;
     d.because = "several explanations are about as likely";
     d.chosen = named;

@@ -1,6 +1,6 @@
 // The verdict on the trials of any domain. Every name passes the same gates:
 //
-//   (a) it is probable, it or what cannot be told from it; else it is a candidate and no name;
+//   (a) it, or an effect not distinguished from it, is probable; else it is only a candidate;
 //   (b) each of its groups of parameters differs from neutral;
 //   (c) segments that a fit left out are predicted better with it than without it;
 //   (d) with all names the held-out χ² agrees with its prediction; else the finding is unknown;
@@ -16,7 +16,7 @@
 namespace photorque::inference {
 
 enum class Finding {
-  nothing_missing,  // what differs is noise
+  nothing_missing,  // differences are noise
   named,            // the candidates named explain what differs
   unknown,          // structure is left after them, or only an empirical candidate takes it up
 };
@@ -28,11 +28,11 @@ struct GateLimits {
   double min_gain_sigma = 3.0;
   // χ² of what was held out over that of the nominal model, above which it does not test a name.
   double max_untested_fraction = 0.9;
-  // Log evidence that tells one place (a cell, an LED) from another: odds of 20 to 1.
+  // Log evidence that separates one place (a cell, an LED) from another: odds of 20 to 1.
   double min_log_odds_of_place = 3.0;
 };
 
-// What a domain computes of its trials for the gates; each is called for few of them.
+// Functions of a domain that check trials for the gates. Each is called for few trials.
 struct Checks {
   // Structure that the trial leaves of what was fitted (whiteness.h) [sigma].
   std::function<double(size_t trial)> excess_sigma;
@@ -49,7 +49,7 @@ struct Checks {
 // A candidate that passed the gates.
 struct Name {
   size_t candidate = 0;
-  double probability = 0.0;  // that it acts, or what is not told from it
+  double probability = 0.0;  // that it acts, or an effect not distinguished from it
   std::optional<double> gain_sigma = {};
   std::vector<size_t> equal_places = {};  // candidates
 };
@@ -72,7 +72,7 @@ struct Decision {
   std::vector<size_t> beside_law = {};
   std::vector<double> probability;  // of each trial
   std::vector<Name> names = {};     // of the chosen trial where the finding is `named`
-  // Whether what was held out tells the chosen trial from the nominal model.
+  // Whether the held-out data distinguish the chosen trial from the nominal model.
   bool held_out_tests_names = true;
 };
 

@@ -29,7 +29,7 @@ class Rounds {
         threads_(threads),
         trials_{base} {}
 
-  // All trials that were fitted, the base first; `from`: where the rounds begin, fitted to the set;
+  // All trials that were fitted, the base first; `from`: where the rounds start, fitted to the set;
   // `scans`: whether what only a scan finds is looked for as well.
   std::vector<Trial> run(const Trial& from, bool scans = true) {
     if (!from.candidates.empty()) trials_.push_back(from);
@@ -37,7 +37,7 @@ class Rounds {
     bool scan = false, scans_base = false;
     for (int round = 0; round < limits_.search.max_rounds; ++round) {
       std::vector<Trial> found = scan ? scanned(at) : predicted(at, round == 0);
-      // Slow effects may stand in for one that is fast: once the scan also begins without them.
+      // Slow effects may stand in for one that is fast: once the scan also starts without them.
       if (scan && !scans_base && may_be_stand_ins(at)) {
         scans_base = true;
         for (Trial& t : scanned(trials_.front())) found.push_back(std::move(t));
@@ -67,7 +67,7 @@ class Rounds {
         at = without_each(std::move(at));
         if (!has_empirical(at)) break;
       }
-      // What needs a scan is looked for where nothing predicted gains any more.
+      // Scans are slow: they begin when no predicted candidate lowers χ² further.
       if (!gained && (scan || !scans || !is_worth_a_scan(at))) break;
       if (scan && set_.pieces > 1) break;
       scan = !gained;
@@ -122,7 +122,7 @@ class Rounds {
     return at;
   }
 
-  // In pieces of the runs a faint line or jump cannot be told; the whole is searched later.
+  // In pieces of the runs a faint line or jump is not resolved; the whole is searched later.
   bool is_worth_a_scan(const Trial& at) const {
     return set_.pieces == 1 ||
            domain_.excess_sigma(at, set_.runs) > limits_.decision.max_excess_sigma;
@@ -175,7 +175,7 @@ class Rounds {
       if (!is_leader && !is_single && !is_known) continue;
       Members<typename D::Start> members = members_of(s, problem, terms, is_kept);
       if (members.empty()) continue;
-      // More names than the trial has must promise something.
+      // A trial with more names must have a predicted gain.
       if (s.log_evidence < of_trial && is_enlarged(candidates_of(members), at)) continue;
       const double expected = at.log_evidence + s.log_evidence - of_trial;
       if (was_tried(members, expected) || is_refused(members, expected)) continue;
@@ -263,8 +263,8 @@ class Rounds {
     });
   }
 
-  // Whether a part of it was fitted and refused (a wrong sign), and it promises nothing beyond that
-  // part: it would be refused as well, in the place of one that is not.
+  // Whether a part of it was fitted and rejected (a wrong sign), and no gain is predicted beyond
+  // that part: it would be rejected as well, in the place of one that is not.
   bool is_refused(const Members<typename D::Start>& members, double expected) const {
     const std::vector<size_t> candidates = candidates_of(members);
     return std::any_of(trials_.begin(), trials_.end(), [&](const Trial& t) {
@@ -289,7 +289,7 @@ class Rounds {
     for (Trial& t : found) t.log_evidence += at.log_evidence - rough.log_evidence;
     found = without_twins(std::move(found));
     sort_by_evidence(found);
-    // What diverged where the best did not is not worth all readings.
+    // A trial that diverged is not refitted to all readings if the best did not diverge.
     const bool best_is_near = !has_diverged(found.front(), limits_);
     size_t refits = 0;
     while (refits < std::min(limits_.search.max_refits_of_averages, found.size()) &&
@@ -304,7 +304,7 @@ class Rounds {
     return found;
   }
 
-  // What bends too much for a forecast, one candidate at a time.
+  // Candidates that are too nonlinear for a forecast, fitted one at a time.
   std::vector<Trial> each_alone(const Trial& at) const {
     const std::vector<CandidateTraits>& all = domain_.candidates();
     std::vector<size_t> bent;
@@ -326,7 +326,7 @@ class Rounds {
     return fitted(at, chosen, averages);
   }
 
-  // What acts or does not, and has no strength of which a forecast could be made.
+  // Candidates without parameters: they act or not, so that no strength can be forecast.
   std::vector<Trial> switched_on(const Trial& at) const {
     if (at.candidates.size() >= max_effects_) return {};
     const std::vector<CandidateTraits>& all = domain_.candidates();
@@ -371,7 +371,7 @@ class Rounds {
     return found;
   }
 
-  // What acts faster than averages show.
+  // Candidates that act faster than averages of readings show.
   std::vector<Trial> scanned(const Trial& at) const {
     if (at.candidates.size() >= max_effects_) return {};
     const Runs averages = slow_runs(domain_, at, set_);

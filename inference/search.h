@@ -1,4 +1,4 @@
-// The search for what is missing: rounds of forecast and fit, about the nominal model first.
+// The search for missing effects: rounds of forecast and fit, about the nominal model first.
 #pragma once
 
 #include "inference/rounds.h"
@@ -16,7 +16,7 @@ class Search {
     trials_.push_back(nominal);
   }
 
-  // `near`: where the rounds begin, fitted to the runs; nullptr: about the nominal model.
+  // `near`: where the rounds start, fitted to the runs; nullptr: about the nominal model.
   std::vector<Trial> run(const Trial* near = nullptr) {
     const Trial nominal = trials_.front();
     if (near != nullptr) return about(nominal, *near);
@@ -54,7 +54,7 @@ class Search {
   }
 
   // A prediction far from the readings says little about why, so the runs are cut into pieces, each
-  // with a begin of its own, in which it stays near them; what explains the pieces best is then
+  // with its own initial conditions, in which it stays near them; the best for the pieces is then
   // fitted to the whole (multiple shooting).
   std::vector<Trial> by_pieces(const Trial& nominal, const RunSet<D>& pieces,
                                const Trial& near) const {

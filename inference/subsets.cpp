@@ -107,7 +107,7 @@ class Forecast {
                        [&](size_t g) { return problem_.groups[g].is_empirical; });
   }
 
-  // No reading tells one of its parameters.
+  // No reading determines one of its parameters.
   bool is_silent(size_t group) const {
     const StrengthGroup& g = problem_.groups[group];
     return !(unit_.segment(g.first, g.count()).minCoeff() > 0.0);

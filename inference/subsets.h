@@ -1,4 +1,4 @@
-// Which candidates together explain what is left, predicted without a fit.
+// Which candidates together explain the residual, predicted without a fit.
 //
 // About a trial the problem is a quadratic form: one pass over the recordings gives the information
 // matrix H and the gradient g = −½ ∂χ²/∂θ of the strengths of all candidates, those that the trial
@@ -36,8 +36,8 @@ struct StrengthGroup {
 struct LinearProblem {
   Eigen::MatrixXd information;  // H
   Eigen::VectorXd gradient;     // g
-  // The diagonal of H before the nuisances were projected out of it. What is left of it at the size
-  // of rounding is no information: with it anything could be explained. Empty: as H says.
+  // The diagonal of H before the nuisances were projected out of it. A remainder of the size of
+  // rounding is no information: with it anything could be explained. Empty: as H says.
   Eigen::VectorXd before = {};
   std::vector<StrengthGroup> groups;
 };

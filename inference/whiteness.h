@@ -1,4 +1,4 @@
-// Tests of what is left of a fit: whether it is noise, and whether differences lie above zero.
+// Tests of the residuals of a fit: whether it is noise, and whether differences lie above zero.
 #pragma once
 
 #include <cstdint>

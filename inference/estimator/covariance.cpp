@@ -92,7 +92,7 @@ Eigen::MatrixXd posterior_of(const Eigen::MatrixXd& information) {
 }
 
 double log_determinant(const Eigen::MatrixXd& A) {
-  // Of what nothing tells of there is no scale.
+  // Without information there is no scale.
   const Eigen::VectorXd scale = (A.diagonal().array() > 0.0).select(A.diagonal().cwiseSqrt(), 1.0);
   const Eigen::MatrixXd scaled =
       scale.cwiseInverse().asDiagonal() * A * scale.cwiseInverse().asDiagonal();

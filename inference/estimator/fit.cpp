@@ -27,7 +27,8 @@ Eigen::VectorXd damped_step(const SumsOfRuns& sums, const Eigen::VectorXd& dampe
   return scale.cwiseProduct(scaled.solve(right));
 }
 
-// What the damping of each parameter is measured by.
+// Scale of the damping of each parameter: 1, or the largest diagonal of H so far over the present
+// one.
 class DampingScale {
  public:
   explicit DampingScale(bool keeps_largest) : keeps_largest_(keeps_largest) {}
@@ -120,7 +121,7 @@ class Fitter {
 
   Fit run() {
     Fit result;
-    // What cannot be evaluated in a window cannot be in a longer one.
+    // A model that cannot be evaluated in a window cannot be evaluated in a longer one.
     bool is_hopeless = false;
     for (size_t w = 0; w < options_.windows.size() && !is_hopeless; ++w) {
       result.termination = fit_window(options_.windows[w]);
@@ -171,7 +172,7 @@ class Fitter {
     double damping = options_.initial_damping;
     DampingScale scale(options_.keep_largest_scale);
     const bool is_whole = window == 1.0;
-    // Patience in the first windows is for what must be fitted, however poor its start.
+    // More steps in the first windows are for models that must be fitted, however poor their start.
     const bool is_brief = !is_whole && options_.worth_chi2 < infinity;
     const int most = is_brief ? std::min(options_.max_iterations, iterations_of_first_windows)
                               : options_.max_iterations;
@@ -340,7 +341,7 @@ const char* words_of(Termination termination) {
   return "";
 }
 
-// What holds a parameter where it is.
+// The reason for the value of a parameter other than the data; empty: the data determine it.
 const char* determined_by(const Parameter& p, double standard_error, bool is_determined) {
   if (!is_determined) return "undetermined";
   if (p.value <= p.lowest || p.value >= p.highest) return "on its bound";

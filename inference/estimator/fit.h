@@ -1,6 +1,6 @@
 // Nonlinear least squares with priors, bounds and nuisances: the one estimator of this program.
 //
-// What is minimised over the parameters θ of a forward model (forward_model.h) is
+// The fit minimises over the parameters θ of a forward model (forward_model.h)
 //
 //   χ²(θ) = Σ_runs Σ_i r_i(θ)² + Σ_k ((θ_k − μ_k)/σ_k)²   with   lowest_k ≤ θ_k ≤ highest_k,
 //
@@ -65,7 +65,7 @@ struct Options {
 };
 
 enum class Termination {
-  converged,       // no step promises what is worth having
+  converged,       // no step predicts a gain above the limit
   no_step_lowers,  // at the limit of precision, or of the derivatives
   max_iterations,
   out_of_reach,   // of worth_chi2
@@ -96,11 +96,12 @@ struct Fit {
   Covariance covariance() const { return covariance_of(hessian.dense()); }
   // Of the shared parameters alone, whatever the runs' own may be.
   Covariance shared() const;
-  // The same where priors hold every parameter: always finite, whatever the data determine.
+  // Covariance of the shared parameters where every parameter has a prior: always finite, whatever
+  // the data determine.
   Eigen::MatrixXd shared_posterior() const;
 
-  // What a person wants to know of it: a line on how it ended, then every parameter with its error,
-  // and whether data, prior, a bound or nothing at all determines it.
+  // Text: one line on how the fit ended, then every parameter with its error, and whether data,
+  // prior or a bound determines it.
   std::string report() const;
 };
 

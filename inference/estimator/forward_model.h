@@ -15,7 +15,7 @@
 
 namespace photorque::inference {
 
-// What is wanted of a run.
+// Request for the evaluation of one run.
 struct Request {
   bool derivatives = true;  // false: χ² and the number of samples suffice
   double window = 1.0;      // only the first part of the run, as a fraction in (0, 1]

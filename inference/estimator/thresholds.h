@@ -3,7 +3,7 @@
 //
 // Unless a number says otherwise, it was set by hand and stands as long as the cases of
 // docs/proof.md (twelve of another maker, 203 of our own, with nothing missing among them) come out
-// as that page says: whoever changes one renews the page. Where a number follows from statistics,
+// as that page says: a change needs a new page. Where a number follows from statistics,
 // the law is given. χ² and log evidence (natural logarithms) have no unit; sigmas are standard
 // errors.
 #pragma once
@@ -15,7 +15,7 @@
 namespace photorque {
 
 struct Thresholds {
-  // Noise of the readings, and what is left of a fit beside it.
+  // Noise of the readings, and the residual of a fit beside it.
   struct Noise {
     // Neighbours that make a mean: structure longer than this shows in the means, white noise does
     // not.
@@ -28,7 +28,7 @@ struct Thresholds {
     // Twice the logarithm of the likelihood that a correlated noise must gain over white noise of
     // the best level, to be used: by chance one parameter gains 25 once in 2 million.
     double min_colour_gain = 25.0;
-    // The same for a white part beside the correlated one.
+    // Twice the gain in log likelihood of a white part beside the correlated one, to be used.
     double min_mixture_gain = 16.0;
     // Frequencies of a spectrum whose median measures the gyro's noise, at the least.
     size_t min_frequencies = 16;
@@ -55,7 +55,7 @@ struct Thresholds {
   } noise;
 
   // Of a fit: χ² per sample beyond which its derivatives say little, because the prediction is
-  // elsewhere. Score tests are trusted below it, and starts are made anew above it. Their forecast
+  // elsewhere. Score tests are trusted below it, and starts are recomputed above it. Their forecast
   // of a gain is within 5 % where it is near 1 (tests/diagnosis, Score).
   double diverged_chi2_per_sample = 20.0;
 
@@ -94,7 +94,7 @@ struct Thresholds {
     double min_joint_gain = 14.0;
     // To rank subsets, what each parameter costs: χ² of 95 % for one is 3.8.
     double cost_per_parameter = 4.0;
-    // Power of a line in the spectrum of what is left, noise having 1 in each of nine channels: a
+    // Power of a line in the spectrum of the residuals, noise having 1 in each of nine channels: a
     // sum of nine exponentials exceeds it once in 600,000 frequencies.
     double min_line_power = 30.0;
     // Of the best frequency's gain, for another to be worth a start.
@@ -110,7 +110,7 @@ struct Thresholds {
     // makes two explanations distinguishable: odds of 20 to 1.
     double min_log_evidence_gain = 3.0;
     // Pieces into which diverged recordings are cut, in turn; and complete readings that a piece
-    // needs to have a start of its own.
+    // needs for its own initial conditions.
     std::array<size_t, 4> pieces = {6, 20, 60, 180};
     size_t min_readings_of_piece = 10;
     // Fits to averages or pieces that are repeated on all readings.
@@ -128,7 +128,7 @@ struct Thresholds {
     double forecast_within = 12.0;
   } search;
 
-  // The best of many, which are fitted with more patience.
+  // The best of many, which are fitted with more iterations.
   struct Leaders {
     size_t max_leaders = 6;
     // χ² of a near explanation is below this fraction of the best one's and so much more.
@@ -167,11 +167,12 @@ struct Thresholds {
     double own_state_sigma = 0.01;
   } evidence;
 
-  // What physics forbids.
+  // Limits beyond which physics forbids a trial.
   struct Objection {
     // Beyond a bound of physics: more than its standard error explains.
     double bound_sigma = 2.0;
-    // Change of a principal moment of inertia, as a fraction: nobody weighs a platform that badly.
+    // Largest change of a principal moment of inertia, as a fraction: platforms are weighed more
+    // accurately.
     double max_inertia_change = 0.4;
     // Periods of a tone within the longest recording: one that is slower stands in for any torque
     // that changes slowly.
@@ -204,7 +205,7 @@ struct Thresholds {
     // Distance of a nominal value from what was stated of it [sigma], to be doubted and to be
     // contradicted.
     double doubtful_belief_sigma = 3.0, contradicted_belief_sigma = 5.0;
-    // Probability of the names, or of what is not told from them, to be said.
+    // Probability of the names, or of effects not distinguished from them, to be reported.
     double min_probability = 0.7;
     // Residual structure [sigma], before the best physics is called insufficient; and the
     // confidence, at least, that something unknown acts then.
@@ -213,20 +214,20 @@ struct Thresholds {
 
   // Names beside something that stays unexplained, which counts as noise.
   struct Discrepancy {
-    // Number of stretches into which all recordings are cut, about; standard errors by which each
+    // Number of segments into which all recordings are cut, about; standard errors by which each
     // name must predict them better than its absence; and those by which two explanations differ
     // (95 %).
     size_t stretches = 16;
     double min_sigma = 3.0, min_rival_sigma = 1.645;
     // χ² of what was held out over that without the name, beyond which it is no name.
     double max_held_growth = 1.1;
-    // Explanations that are held against each other on the stretches: the likeliest, and those that
+    // Explanations that are compared on the segments: the most likely, and those that
     // predict best what was held out.
     size_t max_likeliest = 4, max_predicting = 3;
     // χ² per sample of a law without a name over that of known physics, below which the law is the
     // better description, however known physics stands out.
     double max_fraction_of_law = 0.25;
-    // Rounds in which what is left is counted as noise, and what stands out of it is looked for.
+    // Rounds in which the residual counts as noise, and effects that exceed it are searched for.
     int max_rounds = 4;
   } discrepancy;
 

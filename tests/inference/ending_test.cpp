@@ -27,7 +27,7 @@ TEST(Fit, EndsWhereItFallsTooSlowlyToBeWorthIt) {
   EXPECT_EQ(lost.termination, Termination::out_of_reach);
   EXPECT_LT(lost.iterations, patient.iterations);
   EXPECT_GT(lost.iterations, 6);
-  options.worth_chi2 = 1.1 * patient.chi2;  // what more steps reach
+  options.worth_chi2 = 1.1 * patient.chi2;  // χ² that more steps reach
   const Fit worth = fit(model, model.start(), options);
   EXPECT_EQ(worth.iterations, patient.iterations);
   EXPECT_EQ(worth.chi2, patient.chi2);
