@@ -1,4 +1,4 @@
-// What an experiment says about its solar array.
+// The solar array of an experiment.
 #pragma once
 
 #include <optional>
@@ -43,7 +43,7 @@ struct ArrayDesign {
   std::optional<CellFront> front;  // over the surface's own optics
 
   int cells() const { return columns * rows; }
-  // What differs of a cell; null where nothing does.
+  // The override of a cell; null where it has none.
   const CellOverride* override_of(size_t cell_index) const;
 };
 

@@ -47,7 +47,7 @@ class LampOutput {
   std::vector<Stage> stages_;
 };
 
-// What the power system is made of. The temperature of the cells follows array.heat.
+// Parts of the power system. The temperature of the cells follows array.heat.
 struct SupplyDesign {
   ArrayDesign array;
   std::vector<double> cell_area_m2;  // per cell of the wiring
@@ -73,16 +73,16 @@ class EnergySum {
   double sum_ = 0.0, lost_ = 0.0;
 };
 
-// Energies since the start [J], each added up by itself.
+// Energies since the start [J], each added up separately.
 struct SupplyEnergies {
   EnergySum on_cells;   // light
   EnergySum reflected;  // of it, by CellHeat::absorptance; 0 where the cells' temperature is stated
   EnergySum given_off;  // heat, by convection and radiation
   EnergySum array;      // electric, from the array
-  EnergySum best;       // what the array could have given at its best point
+  EnergySum best;       // the array's available energy at its best point
   EnergySum converter;  // lost there
   EnergySum load;       // served
-  EnergySum unserved;   // asked for by the load in vain
+  EnergySum unserved;   // of the load, without supply
   EnergySum into_battery, out_of_battery;  // at its terminals
   EnergySum battery_loss;
 };

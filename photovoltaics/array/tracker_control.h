@@ -25,7 +25,7 @@ class TrackerControl {
 
   double voltage_V() const { return voltage_V_; }
 
-  // What was measured at voltage_V(); decides the next one.
+  // Takes the measurement at voltage_V() and decides the next voltage.
   void observe(const ArrayPoint& now) {
     since_sweep_s_ += tracker_.period_s;
     if (sweep_point_ > 0) {
@@ -72,7 +72,7 @@ class TrackerControl {
       return;
     }
     if (change_W < 0.0) direction_ = -direction_;
-    // No current: beyond the open circuit, or in the dark. The light is found again from below.
+    // No current: beyond the open circuit, or in the dark. The search continues from below.
     if (now.current_A <= 0.0) direction_ = -1.0;
     move(direction_);
   }

@@ -25,7 +25,7 @@ constexpr NumbersKey transmittance("transmittance", Range::fraction(),
 constexpr FlagKey cosine_twice(
     "cosine_twice", false,
     "instead of all these, T = cos θ: the light on the cells, which holds the cosine already, "
-    "counts with it once more; for the paper's figures ([paper.md](paper.md)), not for cells");
+    "counts with it again; for the paper's figures ([paper.md](paper.md)), not for cells");
 }  // namespace cover_key
 
 // Amplitudes reflected on the way from a medium of index n and cosine c into another.

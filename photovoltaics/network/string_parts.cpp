@@ -110,7 +110,7 @@ ElementPoint StringCurve::bypassed_at(uint32_t index, double current_A, const St
   const double highest_V = d.scale_V * std::log1p(std::max(current_A, 0.0) / d.saturation_A);
   const double u = falling_root(lowest_V, highest_V, bypass_guess_V(part, last, current_A),
                                 std::min(tolerance, 1e-2), shortfall_V);
-  // What was evaluated last lies a small step away.
+  // The last evaluation is one small step away from the root: a Taylor step corrects it.
   const double step_A = through_A - d.saturation_A * std::expm1(u * d.per_scale_1_V);
   through_A -= step_A;
   g = (through_A + d.saturation_A) * d.per_scale_1_V;
@@ -205,7 +205,7 @@ std::optional<ElementPoint> StringCurve::tied_together_at(uint32_t index, double
       branch_A[i] += apart_V / points[i].slope_ohm;
       spread_V = std::max(spread_V, std::abs(apart_V));
     }
-    // What is left is of second order in the spread over n V_t.
+    // The remaining error is of second order in the spread over n V_t.
     if (spread_V <= same_V) return tied_point(voltage_V, current);
   }
   return std::nullopt;

@@ -172,7 +172,7 @@ TEST(PhotovoltaicFit, ABoundThatIsReachedIsNamed) {
   const SweepFit fit = fit_sweeps(std::array{sweep}, {});
   ASSERT_FALSE(fit.bounds.empty());
   EXPECT_EQ(fit.bounds.back().key, "shunt_ohm");
-  EXPECT_EQ(fit.bounds.back().meaning, "the fit wants no leak at all");
+  EXPECT_EQ(fit.bounds.back().meaning, "the fit has no leak");
   EXPECT_GT(fit.bounds.back().value, 1e7);
   EXPECT_TRUE(fit.diode.shunt_above_ohm);
 }
