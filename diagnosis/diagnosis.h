@@ -1,4 +1,4 @@
-// What `diagnose` found, as plain data. The engine fills it; the writers of diagnosis.json,
+// Result of `diagnose` as plain data. The engine fills it; the writers of diagnosis.json,
 // improved.toml and report.html read it.
 #pragma once
 
@@ -16,7 +16,7 @@
 namespace photorque {
 
 enum class Verdict {
-  consistent,       // what differs is noise, or within the uncertainty that the user stated
+  consistent,       // differences are noise, or within the uncertainty that the user stated
   missing_physics,  // the effects named explain all that differs
   unexplained,      // structure is left after the best known physics
 };
@@ -38,18 +38,19 @@ struct FoundEffect {
   std::vector<FittedParameter> parameters;
   std::vector<std::string> indistinguishable_from;  // kinds that explain these data as well
   std::string explanation;                          // one sentence of physics
-  // Where numbers are known together and none of them by itself: "compliance_s2: x − 0.99 z =
-  // (4.4 ± 0.1)×10⁻¹⁰".
+  // Combinations of numbers that are determined where no single number is: "compliance_s2: x − 0.99
+  // z = (4.4 ± 0.1)×10⁻¹⁰".
   std::vector<std::string> known_together = {};
-  // What is no number: the node of a wall, the axes of a box.
+  // Parameters that are texts: the node of a wall, the axes of a box.
   std::vector<std::pair<std::string, std::string>> texts = {};
   // Under which table an experiment has it; empty: Diagnosis::effect_table.
   std::string table = {};
-  // Of what moves beside the body: how it begins in the first recording, by the keys of its kind.
+  // Initial states of a part that moves beside the body, in the first recording, by the keys of its
+  // kind.
   std::vector<FittedParameter> begins = {};
 };
 
-// What recordings of one kind say, where motion and light were recorded together.
+// Result of recordings of one kind, where motion and light were recorded together.
 struct DomainAnswer {
   std::string of;  // "motion", "light"
   Verdict verdict = Verdict::consistent;
@@ -100,8 +101,8 @@ struct Where {
 
 // One explanation among those that were fitted in full.
 struct Alternative {
-  std::vector<std::string> kinds;      // empty: nothing is missing
-  std::string label = {};              // for people when kinds do not say it: "unknown in heading"
+  std::vector<std::string> kinds;  // empty: nothing is missing
+  std::string label = {};          // printed where the kind does not say it: "unknown in heading"
   double log_evidence_relative = 0.0;  // natural logarithm, over that of "nothing is missing"
   std::optional<double> holdout_chi2_per_sample = {};
   std::string remark = {};  // why it was not chosen: "would feed energy"
@@ -124,7 +125,7 @@ struct Holdout {
 double explained_fraction(double chi2_per_sample_before, double chi2_per_sample_after,
                           int64_t samples);
 
-// An experiment that would tell apart what these data cannot.
+// An experiment that distinguishes effects which these data do not.
 struct Manoeuvre {
   std::vector<std::string> separates;  // kinds
   std::string text;                    // "spin up to 1 rad/s and let it run down for 600 s"
@@ -136,7 +137,7 @@ struct Manoeuvre {
 // drawn.
 struct ChannelSeries {
   std::string name;   // "attitude_x_arcsec"
-  std::string label;  // for people: "Attitude about lab x"
+  std::string label;  // as printed: "Attitude about lab x"
   std::string unit;   // of measured, before and after
   std::vector<double> time_s;
   std::vector<double> measured, before, after;
@@ -200,25 +201,25 @@ struct Replay {
   std::optional<std::array<double, 4>> initial_place_m_m_s = {};
 };
 
-// What the readings show of the instruments themselves: noise that is not as the experiment states,
-// clocks. Never platform physics.
+// Finding about an instrument: noise that differs from the experiment's, clocks. Never platform
+// physics.
 struct InstrumentFinding {
   std::string channel;  // "attitude_x_arcsec", "gyro_z_rad_s", "time"
   std::string what;     // "noise_level", "noise_correlation_time_s", …; `value` is in its unit
   double value = 0.0;
   double sigma = 0.0;  // standard error of the value; 0: has none
-  std::string text;    // one sentence for people
+  std::string text;    // one sentence
 };
 
 // Recordings that are of one body, where others are of another: its inertia tensor in units of its
-// mean moment, which is all that motion without a known torque tells.
+// mean moment, which is all that motion without a known torque determines.
 struct BodyOfRecordings {
   std::vector<std::string> recordings;         // names as given
   std::vector<double> inertia_relative;        // Ixx, Iyy, Izz, Ixy, Ixz, Iyz
   std::vector<double> inertia_relative_sigma;  // of each
 };
 
-// What the files held.
+// Rows, rejected and repaired readings, and gaps of the files.
 struct DataQuality {
   int64_t rows = 0;
   int64_t used = 0;                         // rows of which a number entered the fit
@@ -251,7 +252,7 @@ struct Diagnosis {
   std::optional<Holdout> holdout;
   std::vector<Alternative> alternatives;  // best first
   std::vector<Manoeuvre> manoeuvres;
-  // What was nominal with an uncertainty, after the fit; keys as "disturbance[0].offset_m".
+  // Parameters with a prior, after the fit; keys as "disturbance[0].offset_m".
   std::vector<FittedParameter> priors_refined;
   std::vector<InstrumentFinding> instruments;
   std::vector<BodyOfRecordings> bodies;  // two or more: the recordings are not of one body

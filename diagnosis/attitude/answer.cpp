@@ -53,7 +53,7 @@ std::optional<double> simpler_by(const Trial& first, const Trial& second, const 
 
 namespace {
 
-// Of names that are not told from the chosen ones the simplest stand (simpler_by()).
+// Of names not distinguished from the chosen ones, the simplest are kept (simpler_by()).
 void prefer_simpler(const Thresholds& limits, Answer& a) {
   if (a.decision.finding != inference::Finding::named) return;
   const double alike = a.chosen().log_evidence - limits.search.min_log_evidence_gain;
@@ -118,9 +118,9 @@ double held_chi2_per_sample(const Trial& trial, const RecordedData& data,
   return std::isfinite(found) ? found : inference::infinity;
 }
 
-// A law that bends to what was fitted and leads away from what was held out describes nothing: the
-// likeliest explanation that predicts better than the nominal model stands in its place, or, where
-// none does, the nominal model.
+// A law that fits the recordings but predicts the held-out data badly is rejected. In its place
+// stands the most likely explanation that predicts better than the nominal model or, if none does,
+// the nominal model.
 void keep_what_predicts(const RecordedData& data, const Thresholds& limits, Answer& a) {
   if (data.held.empty()) return;
   const double nominal = held_chi2_per_sample(a.trials.front(), data, limits);
@@ -172,7 +172,7 @@ void describe(const RecordedData& data, const DiagnoseOptions& options, Answer& 
 
 void leave_unexplained(inference::Decision& decision) {
   decision.finding = inference::Finding::unknown;
-  decision.because = "what is left is far more than the noise of the readings";
+  decision.because = "the residual is far above the noise of the readings";
 }
 
 // On an air bearing, and wherever attitude or place is seen, the whole search is worth its time.
@@ -230,7 +230,7 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
     describe(data, options, fine);
     return fine;
   }
-  tell(options, "describing what acts, with the rest counted as noise");
+  tell(options, "describing the effects, with the residual counted as noise");
   Answer described = searched(nominal, fit_nominal(nominal, rough.train, limits), rough, options,
                               Among::unscanned, nullptr);
   described.rest_is_noise = true;

@@ -82,7 +82,7 @@ void say_how_well(const Fit& before, const Answer& answer, const RecordedData& d
   try {
     d.channels_after = misfits(residuals_of(after, data.train));
   } catch (const NumericalError&) {
-    // What cannot be propagated along these recordings has no residuals to show.
+    // A model that cannot be propagated along these recordings has no residuals.
   }
   const Fit held_before = propagate_model(before, data.held, limits),
             held_after = propagate_model(after, data.held, limits);
@@ -112,12 +112,12 @@ std::vector<std::string> warnings_of(const RecordedData& data,
   return warnings;
 }
 
-// Adds how much better the stretches are predicted with each name that stands beside the rest.
+// Adds how much better the segments are predicted with each name, with model discrepancy.
 void say_gains_over_stretches(const Answer& answer, Diagnosis& d) {
   if (!answer.beside) return;
   for (size_t i = 0; i < d.effects.size(); ++i) {
     d.warnings.push_back(
-        written("%s: %zu stretches, each predicted from the others, are predicted "
+        written("%s: %zu segments, each predicted from the others, are predicted "
                 "better with it than without it by %.1f standard errors",
                 d.effects[i].kind.c_str(), answer.beside->stretches, answer.beside->sigma[i]));
   }
@@ -160,7 +160,7 @@ bool turns_little(const std::vector<Observation>& runs, const Vec3& axis) {
   });
 }
 
-// Where nobody sees the attitude and nothing depends on it, it is not propagated.
+// Where no instrument sees the attitude and nothing depends on it, it is not propagated.
 NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
   NominalModel nominal = stated;
   const bool is_seen = std::any_of(

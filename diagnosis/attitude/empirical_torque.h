@@ -29,8 +29,6 @@ EmpiricalFormula formula_of(const EmpiricalShape& shape,
                             const std::vector<FittedParameter>& parameters,
                             const Eigen::MatrixXd& covariance);
 
-// What a fitted empirical law says, as numbers against its variable.
-
 // The empirical parts of a trial along its first run: means over bins of the variable, with the
 // standard errors that follow from the covariance of the law's coefficients.
 std::vector<EmpiricalTorque> empirical_torques(const Trial& chosen, const Candidates& all,

@@ -19,8 +19,8 @@ Where locate(const std::vector<Prediction>& residuals, const std::vector<Observa
 // little are left out.
 std::vector<Where::Dependence> dependences(const std::vector<Trial>& trials, const Candidates& all);
 
-// The same where a law is unknown: the variable of the law that was chosen comes first, and there
-// is one at least.
+// Dependences where the law is unknown: the variable of the chosen law comes first, and there is at
+// least one.
 std::vector<Where::Dependence> of_unknown_law(std::vector<Where::Dependence> depends_on,
                                               const Trial& chosen, const Candidates& all);
 

@@ -20,22 +20,22 @@ namespace photorque {
 
 namespace {
 
-// Blocks of a stretch, at the least: a start, and what it cannot take up.
+// Fewest blocks of a segment: those that its initial conditions take up, and some more.
 constexpr size_t least_of_stretch = 12;
 
-// What was said of a file's rows as it was cut.
+// Warns of rows that were left out as a file was cut.
 void say_cuts(const std::string& name, const Segments& segments,
               std::vector<std::string>& warnings) {
   const auto say = [&](int64_t count, const char* what) {
     if (count > 0) warnings.push_back(name + ": " + std::to_string(count) + what);
   };
-  say(segments.events,
-      " rows with an event are left out, and the motion begins anew after each of them");
+  say(segments.events, " rows with an event are left out; a new segment starts after each of them");
   say(segments.kinks,
-      " rows where the rate changes at once, without an event noted, are left out, and the motion "
-      "begins anew after each of them");
-  say(segments.long_gaps, " long gaps: the motion begins anew after each of them");
-  say(segments.too_short, " stretches with too few readings for a start of their own are left out");
+      " rows where the rate jumps without a recorded event are left out; a new segment starts "
+      "after each of them");
+  say(segments.long_gaps, " long gaps: a new segment starts after each of them");
+  say(segments.too_short,
+      " segments with too few readings for their initial conditions are left out");
   for (const std::string& why : segments.lawless) {
     warnings.push_back(name + ": " + why + ", which is left out");
   }
@@ -71,7 +71,7 @@ void say_unused(const NamedRecording& r, const NominalModel& nominal,
   if (!names.empty()) warnings.push_back(r.name + ": columns that are not used: " + names);
 }
 
-// Without rates nothing tells in which sequence angles are turned.
+// Without rates the sequence of the angles is unknown.
 void say_assumed_sequence(const NamedRecording& r, const Platform& platform,
                           std::vector<std::string>& warnings) {
   const MotionColumns columns(r.recording, platform, r.name);
@@ -81,10 +81,10 @@ void say_assumed_sequence(const NamedRecording& r, const Platform& platform,
                      "; no rates are there to test it, and [recording] angle_sequence states it");
 }
 
-// What slides under forces that are commanded in answer to its place hardly moves: over a whole run
-// no force at all, the commanded one least, describes it best (closed-loop identification, L.
-// Ljung, System Identification, 2nd ed. 1999, section 13.4). Over stretches with starts of their
-// own, short against the run, the forces show.
+// A body that slides under forces commanded in answer to its place hardly moves: over a whole run,
+// a model without any force, above all without the commanded one, fits best (closed-loop
+// identification, L. Ljung, System Identification, 2nd ed. 1999, section 13.4). Over segments with
+// their own initial conditions, short against the run, the forces are visible.
 void begin_anew_under_commands(const std::string& name, const Platform& platform, size_t stretches,
                                std::vector<Observation>& all, std::vector<std::string>& warnings) {
   std::vector<Observation> result;
@@ -156,7 +156,7 @@ void thin_repetitions(Observation& seen) {
   }
 }
 
-// The stretches of each recording.
+// The segments of each recording.
 std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecording>& recordings,
                                                   const NominalModel& nominal,
                                                   const DiagnoseOptions& options,
@@ -174,9 +174,9 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
     say_assumed_sequence(r, platform, warnings);
     if (MotionColumns(r.recording, platform, r.name).has_scalar(Scalar::tilt)) {
       warnings.push_back(r.name +
-                         ": a tilt does not say whereto the body leans: an answer has a mirror "
-                         "image that reads the same, leaning the other way, and priors alone "
-                         "decide between them; signs of what is found may be those of the image");
+                         ": a tilt has no direction: an answer has a mirror "
+                         "image with equal readings, which leans the other way. Priors alone "
+                         "decide between them; found signs may be those of the image");
     }
     std::string convention = segments.angles ? segments.angles->text : "";
     for (Observation& seen : segments.all) {
@@ -235,8 +235,8 @@ void hold_out(std::vector<Observation> stretches, double fraction, RecordedData&
   }
 }
 
-// What the experiment states of its instruments. Where it states nothing and no second instrument
-// tells what is motion, the readings themselves have to.
+// Noise levels from the experiment. Where it states none and no second instrument shows the motion,
+// they come from the readings.
 NoiseLevels noise_of(const Sensors& sensors, const std::vector<Observation>& runs,
                      std::vector<std::string>& warnings) {
   NoiseLevels noise = noise_levels(sensors);
@@ -341,7 +341,7 @@ InstrumentFinding tail_finding(int k, const HeavyTail& tail) {
               k < 3 ? "arcsec" : "rad/s")};
 }
 
-// Gives the runs the noise that was found, and tells of it. Returns whether any changed.
+// Gives the runs the noise that was found, and reports it. Returns whether any changed.
 bool use_noise(const NoiseFindings& findings, RecordedData& data) {
   bool changed = false;
   const NoiseLevels stated = data.train.front().noise;
@@ -390,8 +390,8 @@ bool tame_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
   return changed;
 }
 
-// What the readings say of their own noise about a fit that is near them, put to use. Returns
-// whether anything changed.
+// Finds the noise of the readings about a fit that is near them, and uses it. Returns whether
+// anything changed.
 bool find_and_use_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
   NoiseFindings findings = find_noise(data.train, residuals_of(near, data.train), limits.noise);
   data.noise_is_open = findings.is_open;
@@ -411,7 +411,7 @@ Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& 
   const std::vector<Prediction> residuals = residuals_of(fitted, data.train);
   data.outliers = drop_outliers(residuals, limits.noise, data.train);
   bool changed = data.outliers > 0;
-  // Without an attitude nothing tells noise from motion.
+  // Without an attitude, noise and motion are not separable.
   if (!nominal.sensors.noise_is_stated && data.train.front().sees_attitude()) {
     changed = find_and_use_noise(fitted, limits, data) || changed;
   }

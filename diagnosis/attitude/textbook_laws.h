@@ -1,4 +1,4 @@
-// What turns about one axis, with every law of a textbook acting on it at once.
+// Fit of a body that turns about one axis, with all textbook torques at once.
 #pragma once
 
 #include <optional>

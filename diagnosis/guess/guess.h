@@ -1,5 +1,5 @@
 // A first experiment for recordings of a machine of which nothing else is at hand: what the columns
-// allow to be said, what the readings themselves tell (noise, ratios of moments of inertia), and a
+// allow to be said, results of the readings (noise, ratios of moments of inertia), and a
 // mark at everything that is assumed.
 #pragma once
 
@@ -18,7 +18,7 @@ namespace photorque {
 std::string guess_experiment(const std::vector<std::filesystem::path>& recordings,
                              const std::filesystem::path& folder);
 
-// Adds to the experiment what the recordings tell, by what is recorded.
+// Adds to the experiment the values that the recordings determine, by their channels.
 void guess_motion(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings);
 void guess_module(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings,
                   const std::filesystem::path& folder);
@@ -27,7 +27,7 @@ struct GuessedColumn {
   std::string in_file;  // as the header has it
   std::string channel;  // "gyro_x_deg_s", its unit that of the file; empty: unknown
   bool is_sure = true;  // the file says so itself: the channel's own name, or its unit beside it
-  std::string because = {};  // what is assumed of one that is not sure
+  std::string because = {};  // assumption behind one that is not sure
 };
 
 // The header of a CSV file: the last line before the first row of numbers that has as many cells.

@@ -1,10 +1,10 @@
-// What an experiment says of light and power before anything is fitted: the effects that it states,
-// and the numbers that it knows to within an error.
+// The nominal model of light and power before any fit: the effects that an experiment states, and
+// its numbers with an error.
 //
-// Each of these is a nuisance p of every trial, in units of its error, with a Gaussian prior of
-// width 1. The recordings move with it as a difference says, between a tenth of its error more and
-// less: the experiment is read again with either. Where it bears only one of them (a quantum
-// efficiency of 1), the other side is the number itself.
+// Each of these numbers is a nuisance p of every trial, in units of its error, with a Gaussian
+// prior of width 1. Its derivative is a difference: the experiment is read again with a tenth of
+// the error more and less. Where only one of the two is allowed (a quantum efficiency of 1), the
+// other side is the number itself.
 #pragma once
 
 #include <Eigen/Core>

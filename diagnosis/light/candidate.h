@@ -1,5 +1,5 @@
-// What may be missing from an experiment of light and power: every kind of effect for every lamp,
-// cell, string or diode that it can concern, and smooth laws without physics that compete.
+// Candidate effects of light and power: every kind of effect for every lamp, cell, string or diode
+// that it can concern, and competing smooth laws without physics.
 #pragma once
 
 #include <memory>

@@ -73,8 +73,7 @@ std::pair<std::vector<size_t>, std::vector<size_t>> split(const LightRun& run, d
   return {fitted, held};
 }
 
-// What is held out and what is fitted must each be more than a few numbers: of one reading nothing
-// can be said, and everything explains it.
+// Fitted and held-out data must each be more than a few numbers: any model explains one reading.
 void require_enough(const LightData& data, const std::string& first) {
   constexpr size_t fewest_fitted = 8, fewest_held = 2;
   size_t fitted = 0, held = 0;
@@ -261,7 +260,7 @@ Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
                          std::vector<LightRecording> holdouts, const LightDiagnoseOptions& asked) {
   if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
   LightDiagnoseOptions options = asked;
-  // There is a candidate for every lamp and cell, and light is nearly linear in what acts: few
+  // There is a candidate for every lamp and cell, and light is nearly linear in the effects: few
   // steps do. (The circuit is not: of forecasts a small one may be the right one.)
   options.limits.held_out.max_leaders = 6;
   options.limits.leaders.max_leaders = 4;

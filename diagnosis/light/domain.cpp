@@ -73,7 +73,7 @@ LightDomain::LightDomain(const LightCandidates& all) : all_(all) {
   for (const LightCandidate& c : all.list) traits_.push_back(traits_of_light(c));
 }
 
-// What is not fitted but read off the recordings.
+// Sets numbers that are not fitted but read from the recordings.
 LightStart LightDomain::profiled(const Trial& parent, size_t candidate, Start start,
                                  const Runs& runs) const {
   if (all_[candidate].kind.scan != LightEffectKind::Scan::trapped) return start;

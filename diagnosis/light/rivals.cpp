@@ -57,8 +57,8 @@ Eigen::VectorXd unlike(const LightTrial& about, const LightCandidates& all,
   return left;
 }
 
-// The same of an effect that acts or does not, `own` with it fitted: how far χ² would stay above
-// that where each of `others` acted in its place.
+// Distance of an effect without parameters, with `own` its fit: how far χ² would stay above that
+// fit where each of `others` acted in its place.
 Eigen::VectorXd unlike_switched(const LightTrial& own, const LightTrial& without,
                                 const LightCandidates& all, const std::vector<size_t>& others,
                                 const std::vector<FittedRun>& runs) {

@@ -7,7 +7,7 @@
 //   which would be noise of the light;
 //   light is explained with any tilt; where it knows the tilt,
 //   the motion is explained with that as a prior; and where the motion knows it better,
-//   light is explained once more, with what the motion alone says of it as a prior.
+//   light is explained again, with the result of the motion alone as a prior.
 // Light acts on the motion by the lamps' current in the recording (disturbance lamp_pressure).
 #pragma once
 

@@ -161,7 +161,7 @@ double log_evidence_of(const LightTrial& trial, const LightCandidates& all) {
     result += c.is_empirical() ? limits.log_prior_empirical : limits.log_prior_effect;
     for (size_t k = 0; k < c.numbers.size(); ++k) {
       const LightCandidate::Number& n = c.numbers[k];
-      // What a scan chose among all rows costs as much as a number that is fitted.
+      // A number that a scan chose among all rows costs as much as a number that is fitted.
       if (!n.is_fitted) {
         result -= 0.5 * std::log(static_cast<double>(trial.fit.samples));
         continue;

@@ -33,7 +33,7 @@ LightTrial fit_light(const LightCandidates& all, const std::vector<size_t>& cand
                      const std::vector<std::vector<double>>& x, const std::vector<double>& priors,
                      const std::vector<FittedRun>& runs, int max_iterations);
 
-// The same numbers on other recordings: nothing is fitted.
+// Predicts other recordings with the numbers of the trial: nothing is fitted.
 LightTrial predict_light(const LightTrial& trial, const LightCandidates& all,
                          const std::vector<FittedRun>& runs);
 

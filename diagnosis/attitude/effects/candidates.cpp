@@ -66,7 +66,7 @@ Vec3 rate_at(const Observation& seen, size_t i, size_t reach) {
 ReadMotion read_motion(const AttitudeModel& model, const Observation& seen) {
   constexpr size_t most_states = 40;
   const size_t stride = std::max<size_t>(1, seen.blocks() / most_states);
-  // Attitudes so far apart tell a rate.
+  // Attitudes so far apart determine a rate.
   const size_t reach = std::max<size_t>(1, seen.blocks() / 8);
   ReadMotion motion;
   Vec3 least = Vec3::Constant(1e308), most = -least, slowest = least, fastest = most;
@@ -198,7 +198,7 @@ Candidate candidate_of(const Effect& effect, const DisturbanceContext& context) 
   c.effect = effect;
   c.start = disturbance_of(effect, context);
   for (const Parameter& parameter : c.start.parameters) {
-    // A fixed detail of the law (where a rubbing contact begins to creep) is not fitted.
+    // A fixed detail of the law (the rate below which a contact creeps) is not fitted.
     const auto key = std::find_if(effect.keys.begin(), effect.keys.end(),
                                   [&](const EffectKey& k) { return k.key == parameter.key; });
     c.scale.push_back(key == effect.keys.end() ? 0.0 : key->scale);
@@ -330,7 +330,8 @@ bool only_slows_down(const std::vector<Observation>& runs, const Vec3& axis) {
     const std::vector<double> rate_rad_s = rates_about(seen, axis);
     if (rate_rad_s.empty()) return false;
     const auto [least, most] = std::minmax_element(rate_rad_s.begin(), rate_rad_s.end());
-    // What noise makes of a wheel at rest, and of a short stretch.
+    // Fraction of the largest rate that noise alone may give to a wheel at rest, or in a short
+    // segment.
     constexpr double little = 0.02;
     return std::min(-*least, *most) < little * std::max(-*least, *most) &&
            std::abs(rate_rad_s.back()) < (1.0 + little) * std::abs(rate_rad_s.front());
@@ -510,7 +511,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
   if (context.platform.slides() && !sees_turn) {
     std::erase_if(all.list, [](const Candidate& c) { return !is_force(c.effect.how.needs); });
   }
-  // A law of the yaw cannot be told from a constant where the yaw hardly changes, nor a
+  // Where the yaw hardly changes, a law of the yaw is not distinguished from a constant, nor a
   // force that turns with the body.
   if (!context.platform.has_air_bearing() && !turns(runs)) {
     const bool always = depends_on_attitude(nominal.model);
@@ -521,13 +522,13 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     });
   }
   if (context.platform.turns_about_one_axis()) {
-    // About a level axis the direction of body x in the plane is always the same, and so is the
-    // tilt about an upright one: a law of it would be another law once more.
+    // About a level axis the direction of body x in the plane is constant, and so is the tilt about
+    // an upright axis: a law of it would duplicate another law.
     const bool is_level = std::abs(context.platform.axis.z()) < 0.5;
     std::erase_if(all.list,
                   [&](const Candidate& c) { return c.variable == (is_level ? "yaw" : "tilt"); });
     // A weight pulls back about a level axis, and a twisted line would do so nearly alike.
-    // What slides carries no line that is known to twist.
+    // A sliding body carries no line that is known to twist.
     const bool has_weight =
         context.platform.slides() || std::ranges::any_of(all.list, [&](const Candidate& c) {
           return c.effect.how.needs == Requirement::gravity && pulls_back(c, nominal.model);
@@ -537,21 +538,22 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
              pulls_back(c, nominal.model);
     });
   }
-  // What rubs brakes with a steady torque as well, and its sign is known.
+  // While the rate keeps its sign, friction is also a steady torque, and its sign is known.
   if (context.platform.turns_about_one_axis() && only_slows_down(runs, context.platform.axis) &&
       std::erase_if(all.list, [](const Candidate& c) { return c.effect.how.steady; }) > 0) {
     all.remark =
-        "it turns one way only: a torque that rubs cannot be told from any other that is steady";
+        "it turns one way only: friction cannot be distinguished from any other steady torque";
   }
   if (context.platform.slides() && only_slides_out(runs) &&
       std::erase_if(all.list, [](const Candidate& c) {
         return c.effect.how.steady && c.effect.how.needs == Requirement::plane;
       }) > 0) {
     all.remark =
-        "it slides straight on and only becomes slower: friction cannot be told from a slope or a "
+        "it slides straight on and only becomes slower: friction is not distinguished from a slope "
+        "or a "
         "pull against the motion";
   }
-  // Nobody knows the attitude.
+  // The attitude is unknown.
   if (nominal.model.holds_attitude) {
     std::erase_if(all.list, [&](const Candidate& c) { return needs_attitude(c, nominal.model); });
   }

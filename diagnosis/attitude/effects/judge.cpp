@@ -17,7 +17,7 @@ bool changes_inertia(const Disturbance& d) {
 
 namespace {
 
-// What is stated as uncertain by more may change by more: three of its standard deviations, over
+// Largest change of inertia that the stated uncertainties allow: three standard deviations, over
 // the moment.
 double stated_inertia_change(const Trial& trial) {
   constexpr double sigmas = 3.0;
@@ -35,7 +35,7 @@ double stated_inertia_change(const Trial& trial) {
 
 // The largest change of a principal moment by a fitted error of the inertia, as a fraction of the
 // nominal one. The torque equation is homogeneous: hardly any inertia at all explains nearly
-// everything, but nobody weighs a platform that badly.
+// everything, but platforms are weighed more accurately.
 double inertia_change(const Trial& trial) {
   const Mat3& nominal_kg_m2 = trial.fit.best.model.platform.inertia_kg_m2;
   const Vec3 nominal = nominal_kg_m2.selfadjointView<Eigen::Lower>().eigenvalues();

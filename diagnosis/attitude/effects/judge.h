@@ -1,4 +1,4 @@
-// What a fitted model is worth, and what speaks against it.
+// Evidence of a fitted model, and physical objections to it.
 #pragma once
 
 #include "diagnosis/attitude/effects/trial.h"

@@ -77,7 +77,7 @@ const std::string& strength_of(const Candidate& c) {
   return found->key;
 }
 
-// What begins at each of a grid of instants.
+// Starts of an effect that sets in at an instant: those of a grid with the largest gains.
 std::vector<Start> instant_starts(const Candidate& c, const Trial& parent,
                                   const std::vector<Observation>& runs,
                                   const Thresholds::Scoring& limits) {
@@ -128,8 +128,8 @@ std::vector<Start> empirical_starts(const Candidate& c, const Trial& parent,
   return {{d, scores[best].gain}};
 }
 
-// Up to this, sinusoids excite the platform's own motion; there the slopes of the whole trajectory
-// tell more than the residual's power.
+// Below this frequency, sinusoids excite the platform's own motion: the slopes of the whole
+// trajectory then contain more information than the residual's power.
 double slowest_line_Hz(const std::vector<Observation>& runs) {
   return std::min(0.2, 100.0 / span_s(runs));
 }

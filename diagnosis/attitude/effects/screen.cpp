@@ -17,8 +17,8 @@ std::vector<int> parameters_of(const ScoreGroup& group, const Disturbance& d) {
   return all;
 }
 
-// What the data say about the parameters of some groups, everything fitted (and the starts of the
-// groups' own states) projected out.
+// Information of the data about the parameters of some groups. All fitted parameters, and the
+// initial values of the groups' states, are projected out.
 struct GroupsAtFit {
   inference::Projected all;
   std::vector<Eigen::Index> begin;  // of each group's parameters, and the end

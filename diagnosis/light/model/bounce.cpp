@@ -62,7 +62,7 @@ double near_share(const std::array<Vec3, 3>& triangle, const Vec3& point, const 
   return std::abs(sum) / (2.0 * pi);
 }
 
-// The same of a patch: as if all of it were at its middle, where that is far.
+// Fraction of the light of a patch; a distant patch counts as if all of it were at its centre.
 double share_of(const WallPatch& patch, const Vec3& point, const Vec3& normal) {
   constexpr double far2 = 64.0;  // distance over size, squared: good to some tenths of a per cent
   const Vec3 to = point - patch.centre_m;

@@ -35,7 +35,7 @@ struct LightSites {
   bool enters_cells = false;        // counted behind the cells' front
 };
 
-// What a lamp's light depends on, but for its power.
+// Parameters of a lamp's light except its power.
 struct LampGeometry {
   size_t lamp = 0;
   Vec2 aim = Vec2::Zero();
@@ -127,7 +127,7 @@ struct WallPatch {
   double area_m2;
 };
 
-// What a wall and the places of a recording are to each other, whatever shines.
+// Exchange of light between a wall and the places of a recording, whatever lamp shines.
 struct WallExchange {
   std::vector<WallPatch> patches;
   // Of every group of places, by patch: the light on it over that which leaves the patch.

@@ -1,5 +1,5 @@
 // Recordings of light and power: scans of irradiance, sweeps of current over voltage, runs of an
-// array under a tracker. The header of a file tells which of the three it is.
+// array under a tracker. The header of a file determines which of the three it is.
 //
 // CSV (also .csv.gz), columns in any order, comments from # on. Rows that cannot be read are left
 // out and counted; wild readings are found later, against a model (diagnosis/light/diagnose.h).
@@ -57,7 +57,7 @@ std::vector<LightRecording> sweeps_of(const LightRecording& recording);
 // The median of the finite values; NaN where there is none.
 double median_of(std::vector<double> values);
 
-// What rows have that do not say it themselves.
+// Defaults for rows without these values.
 struct UsualCircumstances {
   Quat lab_from_body = Quat::Identity();
   double temperature_K = 298.15;

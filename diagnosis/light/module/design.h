@@ -1,4 +1,5 @@
-// What an experiment says about a module in sunlight: its cells, and what is known of it as it was.
+// The module in sunlight of an experiment: its cells, and the nominal values of the undamaged
+// module.
 //
 //   [module]
 //   cells_in_series = 96
@@ -48,12 +49,12 @@ struct ModuleDesign {
   double temperature_K = 298.15, temperature_sigma_K = 2.0;
   std::optional<double> current_noise_A;
   double voltage_noise_V = 0.0;  // 0: a ten-thousandth of the open-circuit voltage
-  // What acts on the recordings, by the name of the curve; "": on all of them.
+  // Effects on the recordings, by the name of the curve; "": on all of them.
   std::map<std::string, ModuleActing> acting;
   LightColumns columns;  // of all files: [recording] columns
 };
 
-// All that acts on a curve, whose name may begin with folders.
+// All effects on a curve, whose name may begin with folders.
 ModuleActing acting_on(const ModuleDesign& design, const std::string& curve);
 
 // Reads [module] of an experiment whose files stand in `folder`. InputError for bad keys.

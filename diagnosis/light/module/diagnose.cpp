@@ -101,7 +101,7 @@ struct ModuleAnswer {
   inference::Decision decision;
 };
 
-// What a fit leaves of its runs beyond noise [sigma].
+// Excess of the residuals of a fit over noise [sigma].
 double excess_of(const ModuleFitter& fitter, const ModuleHypothesis& h, const ModuleTrial& trial,
                  const std::vector<ModuleRun>& runs, const Thresholds& limits) {
   std::vector<inference::ChannelResiduals> channels;
@@ -315,7 +315,7 @@ void judge_references(const ModuleDesign& design, const ModuleNominal& nominal,
   if (own) {
     d.warnings.push_back(
         "a recording is its own reference: what one diode cannot describe counts as noise, so that "
-        "only another curve or a datasheet can show what is missing");
+        "only another curve or a datasheet can show missing effects");
   }
   if (!own || !uneven || d.verdict != Verdict::consistent) return;
   d.verdict = Verdict::unexplained;

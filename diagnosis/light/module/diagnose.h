@@ -18,7 +18,7 @@ struct ModuleDiagnoseOptions {
   Thresholds limits;
 };
 
-// Without holdouts every fourth stretch of each curve is held out. InputError for recordings that
+// Without holdouts every fourth segment of each curve is held out. InputError for recordings that
 // are no curves. The same result for any number of threads.
 Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRecording>& recordings,
                           const std::vector<LightRecording>& holdouts,

@@ -97,7 +97,7 @@ inference::Parameters reference_parameters(const ModuleDesign& design,
   return parameters;
 }
 
-// `noise`: of a point over the current of the first curve; `near`: where the fit begins, or
+// `noise`: of a point over the current of the first curve; `near`: where the fit starts, or
 // nullptr.
 ReferenceFit fit_references(const ModuleDesign& design, double noise, const ReferenceFit* near) {
   constexpr size_t most_points = 200;
@@ -223,7 +223,7 @@ ModuleNominal nominal_of_references(const ModuleDesign& design) {
   ModuleNominal nominal;
   constexpr double first_noise = 1e-3;
   const ReferenceFit first = fit_references(design, first_noise, nullptr);
-  // Once more with the scatter that counts once in a length of correlation as its noise.
+  // The second fit takes the scatter, counted once per correlation length, as its noise.
   double length = 0.0;
   for (const VectorXd& r : first.residuals_A) {
     length += correlation_points(r) / static_cast<double>(first.residuals_A.size());
@@ -276,7 +276,7 @@ ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& de
   }
   all.noise_A =
       design.current_noise_A.value_or(std::max(noise_of(all.current_A), 1e-5 * largest_A));
-  // What leaves the line between its neighbours by far more than curves bend.
+  // Outliers: points that are farther from the line between their neighbours than a curve can bend.
   ModuleSweep good = all;
   good.voltage_V.clear();
   good.current_A.clear();

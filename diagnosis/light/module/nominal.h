@@ -29,8 +29,8 @@ struct ModuleNominal {
   static constexpr Eigen::Index numbers = 10;
   using Numbers = Eigen::Matrix<double, numbers, 1>;
   Eigen::Matrix<double, numbers, numbers> root = Eigen::Matrix<double, numbers, numbers>::Zero();
-  // What one diode leaves of the reference beyond its noise, over the short-circuit current, and
-  // the voltage over which that changes.
+  // Residual of the one-diode model of the reference beyond its noise, over the short-circuit
+  // current, and the voltage over which that residual changes.
   double misfit = 0.0, correlation_V = 0.0;
   double voltage_noise_V = 0.0;
 };
