@@ -99,7 +99,7 @@ struct ConfusableKind {
 // not sum to less than this: their parameters, SI.
 struct LeastSum {
   double lowest = 0.0;
-  std::string objection;  // what the report says of a model that does
+  std::string objection;  // printed for a model that does
 };
 
 // The effect is a force on a platform that slides.

@@ -71,7 +71,7 @@ struct EvaluationContext {
   // The state.
   T time_s;
   QuatOf<T> attitude;       // lab from body, unit
-  Mat3Of<T> lab_from_body;  // the same as a matrix
+  Mat3Of<T> lab_from_body;  // as a matrix
   Vec3Of<T> rate_body_rad_s;
   T charge_drawn_C;
 

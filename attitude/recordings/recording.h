@@ -34,7 +34,7 @@ struct RecordingReport {
   int64_t preamble_lines = 0;
   int64_t malformed_rows = 0;     // wrong number of cells (a torn last line): left out
   int64_t rows_without_time = 0;  // left out
-  int64_t repeated_times = 0;     // the same time again: left out
+  int64_t repeated_times = 0;     // a repeated time: left out
   int64_t backward_times = 0;     // earlier than a row before: left out
   int64_t first_backward_line = 0;
   int64_t first_repeated_line = 0;

@@ -73,7 +73,7 @@ std::optional<std::array<int64_t, 2>> stated_size(std::string_view bytes) {
   for (size_t at = 2; at + frame_bytes <= bytes.size();) {
     const auto marker = static_cast<unsigned char>(bytes[at + 1]);
     if (bytes[at] != '\xff' || marker == 0x00 || marker == 0xff) {
-      ++at;  // what stands between segments is passed over
+      ++at;  // bytes between segments are skipped
       continue;
     }
     const bool is_frame =

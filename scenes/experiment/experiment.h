@@ -133,7 +133,7 @@ struct Experiment {
   std::vector<NamedReceiver> receivers;
   RigidTransform lab_from_body;  // from [attitude]
   Camera camera;
-  std::vector<std::string> notices;  // what the scene's reader had to assume, one line each
+  std::vector<std::string> notices;  // assumptions of the scene's reader, one line each
   // Doubts about results, one line each: see doubts_about().
   std::vector<std::string> warnings = {};
   std::vector<std::pair<std::string, std::string>> inputs;  // experiment, overrides, scene files

@@ -32,7 +32,7 @@ struct PhotometricFile {
   std::optional<double> stated_flux_lm;  // nothing: absolute photometry
   double input_power_W = 0.0;            // electrical; 0: not stated
   Opening opening;
-  std::vector<std::string> notices;  // what was passed over or repaired, one line each
+  std::vector<std::string> notices;  // parts that were ignored or repaired, one line each
 };
 
 // LM-63 of 1986, 1991, 1995, 2002 and 2019. Types A, B and C; symmetric tables are unfolded to all

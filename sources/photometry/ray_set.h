@@ -20,7 +20,7 @@ struct RaySet {
   enum class FluxUnit { watt, lumen };
 
   std::string format;  // "TM-25-13", "Zemax", "LightTools"
-  std::string name;    // what the file calls the lamp, may be empty
+  std::string name;    // name of the lamp in the file, may be empty
   FluxUnit flux_unit = FluxUnit::watt;
   std::optional<double> stated_radiant_flux_W;
   std::optional<double> stated_luminous_flux_lm;

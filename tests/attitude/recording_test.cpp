@@ -102,7 +102,7 @@ TEST(Recording, RealFilesAreMendedAndEverythingIsCounted) {
       "t_s;\"gyro_x_rad_s\"; battery_current_A \r\n"
       "0.0;1;5\r\n"
       "0.1;;5\r\n"       // an empty cell
-      "0.1;2;5\r\n"      // the same time again
+      "0.1;2;5\r\n"      // a repeated time
       "0.2;abc;nan\r\n"  // no number; empty by its word
       "\r\n# another comment\r\n"
       "0.15;3;5\r\n"       // earlier than before

@@ -40,7 +40,7 @@ struct SunLight {
 // The wrench at one direction, about the point of the table.
 struct DirectionWrench {
   WrenchComponents direct{};
-  TwofoldWrench bounced;     // what light does that has met a surface before, twice
+  TwofoldWrench bounced;     // of light after its first bounce, twice
   WrenchComponents error{};  // standard error of the parts that both halves share
   uint64_t rays = 0;
   std::vector<std::string> warnings;

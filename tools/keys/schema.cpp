@@ -288,7 +288,7 @@ class ObjectSchema {
     Json then = {{"propertyNames", {{"pattern", "^(" + allowed(key, choice) + ")$"}}}};
     Json properties = Json::object(), patterns = Json::object();
     const ObjectSchema inner(choice.keys,
-                             definitions_);  // what deeper choices decide is left to them
+                             definitions_);  // deeper choices decide their own keys
     for (const Key* own : flat(choice.keys)) {
       if (is_one(*own) || !inner.is_one(*own)) continue;
       const KeyUnit unit = unit_of_key(own->name);

@@ -16,7 +16,7 @@ struct ConsoleSinks {
   std::function<void(const std::string& what, double fraction)> progress;
   std::function<void(const std::string&)> note;  // how far a long task is, in words
   std::function<void()> done;                    // the task of `progress` is over
-  bool has_details = true;                       // what details() says is wanted
+  bool has_details = true;                       // details() are printed
 };
 
 class Console {

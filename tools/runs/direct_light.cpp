@@ -76,7 +76,7 @@ void replace_direct(const Gathered& gathered, BinSums& sums) {
               sums.sums.begin() + static_cast<std::ptrdiff_t>(static_cast<size_t>(r) * sums.bins));
   }
   sums.bound = gathered.direct.bound;
-  sums.bound.resize(sums.bins, 0.0);  // what bounces comes by rays
+  sums.bound.resize(sums.bins, 0.0);  // bounces come from rays
 }
 
 std::array<Estimate, 3> total_N_m(const TorqueMapReceiver& map, const BinSums& sums) {

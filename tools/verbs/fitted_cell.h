@@ -22,7 +22,7 @@ struct FitTask {
   // Curves with light and temperature, where they are not repeats.
   std::vector<CurveAt> conditions;
   std::vector<std::string> names;  // of the sweeps
-  std::vector<std::string> notes;  // what was left out of them
+  std::vector<std::string> notes;  // parts that were left out
   std::optional<ShuntLaw> shunt_law;
   std::vector<RatedPoint> datasheet;
   std::optional<ListedModule> module;
