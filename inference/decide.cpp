@@ -29,7 +29,7 @@ class Judge {
     return true;
   }
 
-  // By what was held out as well, where that was weighed.
+  // With the held-out data as well, where they were weighed.
   bool is_significant(size_t trial) const {
     const Explanation& t = trials_[trial];
     return is_significant(trial,
@@ -98,8 +98,8 @@ class Judge {
     return equal;
   }
 
-  // Whether the trial predicts what was held out. Where that was asked of the nominal model, one
-  // that was never asked has not shown it.
+  // Whether the trial predicts the held-out data. If the nominal model was tested as well, one that
+  // was never asked has not shown it.
   bool predicts(size_t trial) const {
     const std::optional<Predictive>& p = trials_[trial].predictive;
     if (!p) return !trials_.front().predictive;
@@ -126,7 +126,7 @@ class Judge {
     return result;
   }
 
-  // Whether it predicts what was held out far better than the nominal model, where that was asked.
+  // Whether it predicts the held-out data far better than the nominal model, where that was tested.
   bool predicts_far_better(size_t trial) const {
     const auto &before = trials_.front().holdout_chi2_per_sample,
                &after = trials_[trial].holdout_chi2_per_sample;
@@ -184,7 +184,7 @@ class Judge {
   }
 
   // Whether `whole` beats `part` by the full threshold, does not predict worse, and does not lead
-  // away from what was held out.
+  // away from the held-out data.
   bool is_missed(size_t part, size_t whole) const {
     const Explanation &a = trials_[part], &b = trials_[whole];
     if (b.log_evidence < a.log_evidence + limits_.min_log_odds) return false;
@@ -261,7 +261,7 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
                           checks.excess_sigma(empirical) < limits.max_excess_sigma;
     d.leaves_more = !law_does;
     if (law_does) d.beside_law = judge.indispensable(empirical);
-    // The law is an approximation, and several effects take up together what it leaves.
+    // The law is an approximation, and several effects together absorb its residual.
     if (d.beside_law.size() > 1) d.beside_law.clear();
     d.confidence = probability_of(d.probability, [&](size_t i) { return judge.is_empirical(i); });
     if (structure_left || !predicts) {

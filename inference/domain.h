@@ -4,7 +4,7 @@
 // missing from that model. A trial is the nominal model with some of the candidates, fitted to the
 // runs. The flow is
 //
-//   residual -> score every candidate -> fit -> compare evidence -> weigh with what was held out
+//   residual -> score every candidate -> fit -> compare evidence -> weigh with held-out data
 //            -> decide
 //
 // (search.h, weigh.h, decide.h). How a trial is fitted, what its evidence is and what forbids it,
@@ -33,7 +33,7 @@ struct CandidateTraits {
   // A smooth function without a law: it competes with the others, so that something unknown is not
   // mistaken for one of them, but it names nothing.
   bool is_empirical = false;
-  // Whether a score test can predict what its fit gains.
+  // Whether a score test can predict the gain of its fit.
   bool is_linear = true;
   // Whether it changes faster than averages show.
   bool is_fast = false;
@@ -56,9 +56,9 @@ struct Explanation {
   // Of each candidate: √(θᵀ C⁻¹ θ) of the parameters that are its size; not a number for one that
   // has none.
   std::vector<double> significance = {};
-  std::vector<double> joint_significance = {};  // with what was held out, where that was weighed
+  std::vector<double> joint_significance = {};  // with the held-out data, where they were weighed
   std::string objection = {};                   // why it is forbidden; empty: nothing
-  // Of its prediction of what was held out, where it was asked for.
+  // Of its prediction of the held-out data, where it was requested.
   std::optional<double> holdout_chi2_per_sample = {};
   std::optional<Predictive> predictive = {};
   // How far its χ² lies above what the errors of the fitted parameters predict (held_out.h).
@@ -166,7 +166,7 @@ std::vector<size_t> by_evidence(const std::vector<T>& trials) {
   return order;
 }
 
-// Whether two sets of candidates are the same, in whatever order.
+// Whether two sets of candidates are equal, in any order.
 inline bool same_candidates(const std::vector<size_t>& a, const std::vector<size_t>& b) {
   return a.size() == b.size() && std::is_permutation(a.begin(), a.end(), b.begin());
 }
@@ -183,7 +183,7 @@ inline bool acts_already(const std::vector<size_t>& among, size_t candidate,
                      [&](size_t other) { return all[other].name == all[candidate].name; });
 }
 
-// Whether the derivatives of a trial say little, because its prediction is elsewhere.
+// Whether the derivatives of a trial are useless, because its prediction has diverged.
 template <class Trial>
 bool has_diverged(const Trial& trial, const Thresholds& limits) {
   return trial.fit.chi2_per_sample() > limits.diverged_chi2_per_sample;

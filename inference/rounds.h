@@ -13,7 +13,7 @@ using Terms = std::vector<Term<typename D::Start>>;
 
 // Each round linearises the problem about one trial, predicts what every set of candidates would
 // gain (subsets.h), and fits the few best; the next round is about the best of all. Where nothing
-// gains any more, what only a scan can find is added to the best, and the rounds go on or end.
+// gains any more, effects that only a scan can find are added to the best, and the rounds continue.
 template <Domain D>
 class Rounds {
  public:
@@ -30,7 +30,7 @@ class Rounds {
         trials_{base} {}
 
   // All trials that were fitted, the base first; `from`: where the rounds start, fitted to the set;
-  // `scans`: whether what only a scan finds is looked for as well.
+  // `scans`: whether effects that only a scan finds are searched as well.
   std::vector<Trial> run(const Trial& from, bool scans = true) {
     if (!from.candidates.empty()) trials_.push_back(from);
     Trial at = from;
@@ -51,7 +51,7 @@ class Rounds {
         for (Trial& t : switched_on(at)) found.push_back(std::move(t));
       }
       std::vector<Trial> parents = {at};
-      // Pieces only say which sets to fit to the whole: there is no need to converge on them.
+      // Pieces only select the sets to fit to the whole: there is no need to converge on them.
       if (set_.pieces == 1) settle_leaders(domain_, set_.runs, threads_, found, parents);
       for (Trial& parent : parents) keep(std::move(parent));
       for (Trial& trial : found) keep(std::move(trial));
@@ -62,12 +62,12 @@ class Rounds {
       const bool gained =
           best.log_evidence > before.log_evidence + limits_.search.min_log_evidence_gain;
       at = gained ? best : before;
-      // Pieces are to say which sets are worth a fit to the whole.
+      // Pieces select the sets that are fitted to the whole.
       if (set_.pieces > 1 && explains(at)) {
         at = without_each(std::move(at));
         if (!has_empirical(at)) break;
       }
-      // Scans are slow: they begin when no predicted candidate lowers χ² further.
+      // Scans are slow: they start when no predicted candidate lowers χ² further.
       if (!gained && (scan || !scans || !is_worth_a_scan(at))) break;
       if (scan && set_.pieces > 1) break;
       scan = !gained;
@@ -78,7 +78,7 @@ class Rounds {
  private:
   bool may_be_stand_ins(const Trial& at) const {
     if (at.candidates.empty()) return false;
-    // About a base that is elsewhere a scan says nothing, if something leads back to the readings.
+    // About a diverged base a scan is useless, if some candidate leads back to the readings.
     if (has_diverged(trials_.front(), limits_) && !has_diverged(at, limits_)) return false;
     return at.candidates.size() > 1 ||
            domain_.excess_sigma(at, set_.runs) > limits_.search.explained_sigma;
@@ -169,7 +169,7 @@ class Rounds {
       const bool is_single =
           first && s.groups.size() == 1 && s.gain > least_gain(s, problem, subsets);
       const bool is_leader = s.log_evidence > least && sets < limits_.search.max_fits_of_round;
-      // A law without a name bends to anything; what is known may need all of its parts at once.
+      // A law without a name fits anything; known effects may need all of their parts at once.
       const bool is_known = has_empirical(at) && !has_empirical(s, problem) &&
                             known_sets < limits_.search.max_known_fits_of_round;
       if (!is_leader && !is_single && !is_known) continue;

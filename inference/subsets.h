@@ -8,8 +8,8 @@
 //   δ_dropped = −θ_dropped,   δ_S = H_SS⁻¹ (g_S − H_SD δ_D),   gain = 2 gᵀδ − δᵀHδ.
 //
 // So pairs, triples and quadruples are searched in full where only their members' gains alone would
-// hide them, and a member that merely stands in for another is exchanged as easily as one is added.
-// The forecast holds as far as the readings are linear in the strengths; a fit follows.
+// hide them, and a member that only replaces another is exchanged as easily as one is added. The
+// forecast holds as far as the readings are linear in the strengths; a fit follows.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,7 +26,7 @@ struct StrengthGroup {
   std::string name;  // two of one name never enter together
   bool is_empirical = false;
   Eigen::Index first = 0;               // of its parameters in the problem
-  std::vector<double> value;            // where each stands at the trial; 0 for what it lacks
+  std::vector<double> value;            // of each in the trial; 0 if it lacks it
   std::vector<double> scale;            // expected of each, > 0
   std::vector<double> lowest, highest;  // bounds of physics
 

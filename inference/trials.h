@@ -12,7 +12,7 @@ namespace photorque::inference {
 
 // The best of many trials, fitted with more iterations than all of them could be.
 
-// Until a fit converges: one that is given up early makes whatever goes on from it seem to gain.
+// Until a fit converges: after a fit that is stopped early, every extension seems to gain.
 inline Effort patient(const Thresholds& limits) {
   return {.max_iterations = limits.fitting.patient_iterations, .creep = limits.fitting.creep};
 }
@@ -70,7 +70,7 @@ void settle_leaders(const D& domain, const std::vector<typename D::Run>& runs, i
   });
 }
 
-// The runs, or what each was cut into.
+// The runs, or their pieces.
 template <Domain D>
 struct RunSet {
   std::vector<typename D::Run> runs;

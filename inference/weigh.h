@@ -115,14 +115,14 @@ class Weighing {
     return domain_.refit(t, all_runs_, begins, effort);
   }
 
-  // Keeps how well the trial predicts what was held out.
+  // Keeps how well the trial predicts the held-out data.
   Trial predict_held(Trial& t) const {
     Trial held = domain_.predict(t, held_);
     if (std::isfinite(held.fit.chi2)) t.holdout_chi2_per_sample = held.fit.chi2_per_sample();
     return held;
   }
 
-  // A second chance from where the best ended, but for what came to nothing before: it would again.
+  // A second fit from the end of the best, except of trials that did not converge before.
   void learn() {
     const Trial best =
         std::min_element(leaders_.begin(), leaders_.end(), [](const Leader& a, const Leader& b) {
@@ -180,7 +180,7 @@ class Weighing {
       result.sigma = limits_.noise.excess_unknown;
       return result;
     }
-    // The noise is known to a few per cent; what it is shows in the train runs.
+    // The noise is known to a few per cent; the train runs show it.
     const double noise = noise_of(train);
     result.sigma = (result.chi2_per_sample - noise) / std::sqrt(2.0 / held + 2.0 / fitted);
     const std::vector<typename D::Begin> begins = domain_.begins_of(joint);
@@ -194,7 +194,7 @@ class Weighing {
     return std::clamp(train.fit.chi2_per_sample(), 1.0, limits_.held_out.max_noise);
   }
 
-  // Where the best does not predict what was held out, all runs together are searched from there.
+  // If the best does not predict the held-out data, all runs together are searched from there.
   void search_on() {
     const Leader from = best();
     if (predictive_of(trials_[from.at], from.joint).sigma < limits_.decision.max_predictive_sigma)

@@ -77,7 +77,7 @@ class ArrowMatrix {
 
   Eigen::VectorXd diagonal() const;
   Eigen::MatrixXd dense() const;
-  // By what all runs share.
+  // By the shared parameters.
   const Eigen::MatrixXd& shared() const { return shared_; }
   Eigen::VectorXd operator*(const Eigen::VectorXd& x) const;
   // diag(s) M diag(s).
@@ -89,8 +89,8 @@ class ArrowMatrix {
   Eigen::VectorXd solve(const Eigen::VectorXd& x) const;
   // Its natural logarithm; pivots below 1e-12 of the diagonal count as that.
   double log_determinant() const;
-  // C − Σ B A⁻¹ Bᵀ: what is known of the shared parameters whatever the runs' own may be. Its
-  // inverse is the shared block of the inverse.
+  // C − Σ B A⁻¹ Bᵀ: the information about the shared parameters with free parameters of the runs.
+  // Its inverse is the shared block of the inverse.
   Eigen::MatrixXd shared_information() const;
   // The information and the gradient of the shared parameters, with the runs' own eliminated.
   NormalSums shared_sums(const Eigen::VectorXd& gradient, double chi2, int64_t samples) const;

@@ -1,8 +1,8 @@
-// The evidence for a model: the probability of the data under it, whatever its parameters.
+// The evidence for a model: the probability of the data under it, averaged over its parameters.
 //
 // Laplace's approximation (D. MacKay, Information Theory, Inference, and Learning Algorithms, 2003,
 // eq. 28.5) integrates the posterior as the Gaussian that it is near its maximum. It is exact for
-// linear models, and says by how much a better fit must be better to be worth its parameters.
+// linear models, and gives the gain of χ² that additional parameters must bring.
 #pragma once
 
 #include <limits>
@@ -53,7 +53,7 @@ struct Predictive {
   // Natural logarithm of the probability of the held-out runs given the others, up to a constant
   // that all trials share.
   double log_score = 0.0;
-  // Of the held-out runs against the fitted parameters as they stand, as expected_chi2 says.
+  // Of the held-out runs against the fitted parameters without their errors, see expected_chi2.
   double expected_chi2_per_sample = std::numeric_limits<double>::quiet_NaN();
 };
 

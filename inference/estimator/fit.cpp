@@ -70,7 +70,7 @@ Eigen::VectorXd step_within_bounds(const SumsOfRuns& sums, const Parameters& par
   return step;
 }
 
-// Whether χ², as fast as it falls, comes below what is worth the fit, and whether it falls at all.
+// Whether χ², at its present rate, falls below the useful limit, and whether it falls at all.
 class Outlook {
  public:
   Outlook(double worth_chi2, double creep, int max_iterations)
@@ -108,9 +108,9 @@ class Outlook {
 // A window that is not the whole only brings the start of the next one near.
 constexpr int iterations_of_first_windows = 20;
 constexpr double gain_in_first_windows = 1.0;
-// By how much χ² of one that was given time no more may be above what is worth the fit.
+// By how much χ² of a stopped fit may be above the useful limit.
 constexpr double still_falling = 4.0;
-// χ² over what is worth the fit, where the whole runs begin: predictions off by a thousand standard
+// χ² over the useful limit, where the whole runs start: predictions off by a thousand standard
 // errors, from which no slope leads back.
 constexpr double off_course = 1e6;
 
@@ -149,7 +149,7 @@ class Fitter {
   }
 
  private:
-  // Leaves in `ended_at_` what the model says of the whole runs where it ends, if that is known.
+  // Leaves in `ended_at_` the model's evaluation of the whole runs at the end, if that is known.
   Termination fit_window(double window) {
     ended_at_.reset();
     const bool grew = window == 1.0 && options_.windows.size() > 1;

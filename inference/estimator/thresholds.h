@@ -1,5 +1,5 @@
-// By what search and decision judge: every number that decides what is fitted, what goes on, what
-// is named and what is called noise, once each.
+// Thresholds of search and decision: every number that decides about fits, their end, names and
+// noise, once each.
 //
 // Unless a number says otherwise, it was set by hand and stands as long as the cases of
 // docs/proof.md (twelve of another maker, 203 of our own, with nothing missing among them) come out
@@ -32,10 +32,11 @@ struct Thresholds {
     double min_mixture_gain = 16.0;
     // Frequencies of a spectrum whose median measures the gyro's noise, at the least.
     size_t min_frequencies = 16;
-    // Standard deviations of noise from what its neighbours say, for a reading to be dropped. White
-    // noise reaches it in one of five million readings (drawn).
+    // Standard deviations from the value expected by its neighbours, for a reading to be dropped.
+    // White noise reaches it in one of five million readings (drawn).
     double outlier_sigma = 9.0;
-    // By how much the median reading of white noise differs from what its neighbours say (drawn).
+    // By how much the median reading of white noise differs from its neighbours' prediction
+    // (drawn).
     double usual_surprise = 0.93;
     // Readings of a channel, to have neighbours on both sides.
     size_t min_neighbourhood = 5;
@@ -54,7 +55,7 @@ struct Thresholds {
     double excess_unknown = 1e9;
   } noise;
 
-  // Of a fit: χ² per sample beyond which its derivatives say little, because the prediction is
+  // Of a fit: χ² per sample beyond which its derivatives are useless, because the prediction is
   // elsewhere. Score tests are trusted below it, and starts are recomputed above it. Their forecast
   // of a gain is within 5 % where it is near 1 (tests/diagnosis, Score).
   double diverged_chi2_per_sample = 20.0;
@@ -62,7 +63,7 @@ struct Thresholds {
   // How patiently is fitted.
   struct Fitting {
     // Fractions of each recording that are fitted in turn, so that a start that is off grows into
-    // the whole instead of diverging: of the nominal model and of what was held out; of an
+    // the whole instead of diverging: of the nominal model and of the held-out data; of an
     // explanation whose parent diverged; of one recording more beside some that are fitted.
     std::vector<double> first_windows = {0.05, 0.2, 1.0};
     std::vector<double> diverged_windows = {0.06, 0.25, 1.0};
@@ -70,12 +71,12 @@ struct Thresholds {
     // Iterations of a fit: of a first try; of a second chance, enough to see whether it falls into
     // another local minimum; of a leader, which is to converge.
     int trial_iterations = 12, brief_iterations = 10, patient_iterations = 60;
-    // Fall of χ² in a step, as a fraction, that is too slow for what fits badly: the differences
+    // Fall of χ² in a step, as a fraction, that is too slow for a bad fit: the differences
     // between such leaders are thousands, and this is some tens.
     double creep = 5e-4;
     // χ² at a predicted start over that of the trial from which it was predicted.
     double max_start_growth = 10.0;
-    // Blocks into which recordings are averaged for what changes slowly: several times faster than
+    // Blocks into which recordings are averaged for slow changes: several times faster than
     // all, and fine enough for every slow law of the catalogue.
     size_t slow_blocks = 1000;
   } fitting;
@@ -92,7 +93,7 @@ struct Thresholds {
     double min_scan_gain = 14.0;
     // Of a candidate scored on all recordings, those held out among them, beyond one a parameter.
     double min_joint_gain = 14.0;
-    // To rank subsets, what each parameter costs: χ² of 95 % for one is 3.8.
+    // To rank subsets, the cost of each parameter: χ² of 95 % for one is 3.8.
     double cost_per_parameter = 4.0;
     // Power of a line in the spectrum of the residuals, noise having 1 in each of nine channels: a
     // sum of nine exponentials exceeds it once in 600,000 frequencies.
@@ -123,7 +124,7 @@ struct Thresholds {
     // the best forecast within which a set is worth that.
     int max_rounds = 6;
     size_t max_fits_of_round = 6;
-    // Of sets without an empirical law, whatever is predicted of them, where the best has one.
+    // Of sets without an empirical law, with any predicted gain, where the best has one.
     size_t max_known_fits_of_round = 3;
     double forecast_within = 12.0;
   } search;
@@ -137,7 +138,7 @@ struct Thresholds {
     double worth_a_fit = 10.0;
   } leaders;
 
-  // Weighing with what was held out.
+  // Weighing with the held-out data.
   struct HeldOut {
     size_t max_leaders = 12;
     // Log evidence below the best, within which an explanation is a leader: odds of 3e6 to 1, which
@@ -155,14 +156,14 @@ struct Thresholds {
     // Logarithm of the prior odds: of one effect of the catalogue among some thirty, and of one
     // empirical law (1 : 150).
     double log_prior_effect = -3.4, log_prior_empirical = -5.0;
-    // Widths of the fit's own prior over those expected: keeps what the data do not determine from
+    // Widths of the fit's own prior over those expected: keeps undetermined parameters from
     // running away, no more.
     double fit_prior_widths = 300.0;
     // The width of the prior of an effect's strengths, over the expected one, is uniform in its
     // logarithm: so many steps of half a decade from 10^−6.
     int strength_widths = 19;
     double first_log10_width = -6.0, step_log10_width = 0.5;
-    // Standard deviation of the start of a candidate's own state in its unit (an appendage begins
+    // Standard deviation of the start of a candidate's own state in its unit (an appendage starts
     // near rest against the body).
     double own_state_sigma = 0.01;
   } evidence;
@@ -181,7 +182,7 @@ struct Thresholds {
 
   // The verdict.
   struct Decision {
-    // Log evidence by which something must beat the nominal model before it is said: odds of 90 to
+    // Log evidence over the nominal model that an explanation needs to be reported: odds of 90 to
     // 1, on top of the prior odds against each name. An empirical law must beat the best physics by
     // as much.
     double min_log_odds = 4.5;
@@ -192,17 +193,17 @@ struct Thresholds {
     // Log evidence that a name may cost in predicting them: an effect that shows in the train runs
     // alone predicts nothing.
     double max_predictive_loss = 2.0;
-    // χ² of what was held out, as the fitted parameters alone predict it, over that without a name
-    // (or over noise), beyond which it is no name.
+    // χ² of the held-out data, as the fitted parameters alone predict them, over that without a
+    // name (or over noise), beyond which it is no name.
     double max_held_out_growth = 1.5;
     // Log evidence by which a law without a name needs the help of a known effect before that is
     // named: where the law is not quite right, an effect may take up what it leaves, and what it
     // can leave without being seen as structure is some tens.
     double min_log_odds_beside_law = 100.0;
-    // χ² of what was held out over that of the nominal model, for a law without a name to describe
+    // χ² of the held-out data over that of the nominal model, for a law without a name to describe
     // it.
     double max_held_out_fraction = 0.5;
-    // Distance of a nominal value from what was stated of it [sigma], to be doubted and to be
+    // Distance of a nominal value from its stated value [sigma], to be doubted and to be
     // contradicted.
     double doubtful_belief_sigma = 3.0, contradicted_belief_sigma = 5.0;
     // Probability of the names, or of effects not distinguished from them, to be reported.
@@ -219,10 +220,10 @@ struct Thresholds {
     // (95 %).
     size_t stretches = 16;
     double min_sigma = 3.0, min_rival_sigma = 1.645;
-    // χ² of what was held out over that without the name, beyond which it is no name.
+    // χ² of the held-out data over that without the name, beyond which it is no name.
     double max_held_growth = 1.1;
     // Explanations that are compared on the segments: the most likely, and those that
-    // predict best what was held out.
+    // predict the held-out data best.
     size_t max_likeliest = 4, max_predicting = 3;
     // χ² per sample of a law without a name over that of known physics, below which the law is the
     // better description, however known physics stands out.
