@@ -379,7 +379,7 @@ CellCurrents cell_currents(const ArrayDesign& design, const ArrayLight& light,
     if (light.entry.bins > 0) others.entry_W = mean_without(r, light.entry, mean.entry_W);
     without.push_back(array.light(others));
   }
-  // Tukey's error, with what all replicates have in common.
+  // Tukey's error, with the part that all replicates share.
   const double count = replicates;
   const auto error = [&](const std::function<double(const CellLight&)>& of, double value) {
     double average = 0.0, squares = 0.0;

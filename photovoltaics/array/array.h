@@ -67,7 +67,7 @@ Product array_product(const ArrayResult& result);
 std::vector<double> warmed(const ArrayDesign& design, std::vector<double> photocurrent_A,
                            double from_K, double to_K);
 
-// Photocurrents to curve: what evaluate_array() does in between. Cells of equal area share a table.
+// Photocurrents to curve, a step of evaluate_array(). Cells of equal area share a table.
 CellTables cell_tables(const ArrayDesign& design, std::span<const double> cell_area_m2,
                        double largest_photocurrent_A);
 

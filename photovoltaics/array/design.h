@@ -21,10 +21,10 @@ inline constexpr Range series_ohm_range{0.0, 1e6, false, false};
 struct CellOverride {
   int index = 0;
   CellModel model;
-  double photocurrent_factor = 1.0;  // of what its light would give
+  double photocurrent_factor = 1.0;  // of the photocurrent of its light
 };
 
-// The array on one receiver: where its cells lie, how they are wired, and what they are.
+// The array on one receiver: places, wiring and models of its cells.
 struct ArrayDesign {
   int columns = 0;                   // cells along u of the receiver's grid
   int rows = 0;                      // and along v; cell = row · columns + column

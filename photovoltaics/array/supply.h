@@ -3,7 +3,7 @@
 //
 //   light on the cells = reflected + electric + heat given off + stored in the cells
 //   electric           = lost in the converter + load + into the battery − out of the battery
-//   into · η − out / η' = change of what the battery holds
+//   into · η − out / η' = change of the battery's energy
 #pragma once
 
 #include <map>
@@ -52,7 +52,7 @@ struct SupplyDesign {
   ArrayDesign array;
   std::vector<double> cell_area_m2;  // per cell of the wiring
   double max_photocurrent_A = 0.0;   // of any cell that will be asked for, at array.temperature_K
-  std::optional<Battery> battery = {};  // none: whatever the array can give is taken
+  std::optional<Battery> battery = {};  // none: all power of the array is taken
   double converter_efficiency = 1.0;    // between the array and battery and load, in (0, 1]
   double load_W = 0.0;                  // at the battery's terminals
   std::optional<Tracker> tracker = {};  // none: the best point at every step
@@ -87,7 +87,7 @@ struct SupplyEnergies {
   EnergySum battery_loss;
 };
 
-// The relative closure of each balance: what does not add up over what went through.
+// The relative closure of each balance: its error over the throughput.
 struct SupplyClosure {
   double cells = 0.0;  // 0 where the cells' temperature is stated
   double bus = 0.0;
@@ -121,7 +121,7 @@ class PowerSupply {
     double best_W = 0.0;     // at the best point of the array
     double voltage_V = 0.0;  // of the array, as the tracker has it
     double load_W = 0.0;     // served
-    double battery_W = 0.0;  // d/dt of what the battery holds
+    double battery_W = 0.0;  // d/dt of the battery's energy
     double light_W = 0.0;    // on the cells
   };
   const State& state() const { return state_; }

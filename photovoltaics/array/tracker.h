@@ -17,8 +17,8 @@ struct LightHistory {
   std::vector<double> at(double time_s) const;
 };
 
-// A tracker sees voltage and current of the array at one instant after the other and says which
-// voltage comes next. It knows nothing of the light.
+// A tracker measures voltage and current of the array at successive instants and sets the next
+// voltage.
 struct Tracker {
   enum class Kind {
     // Keep stepping while the power rises, else turn round.

@@ -78,7 +78,7 @@ class TrackerControl {
   }
 
   // The largest of three powers in a row is that at the maximum, wherever the steps around it fall.
-  // It is compared with what it was just after the last sweep.
+  // It is compared with its value just after the last sweep.
   bool light_changed(double power_W) {
     recent_W_[settled_ % 3] = power_W;
     const double max_W = *std::ranges::max_element(recent_W_);

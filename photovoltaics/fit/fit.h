@@ -1,4 +1,4 @@
-// The parameters of a cell, module or shaded string from what was measured on it.
+// The parameters of a cell, module or shaded string from measurements.
 //
 // All fits are of one diode with the whole device as one cell: n V_t stands for n N_s kT/q of N_s
 // cells in series, resistances and voltages are the device's. Standard errors are those of least
@@ -44,7 +44,7 @@ struct SingleDiode {
   CellParameters parameters(double temperature_K) const;
 };
 
-// A bound on which a fit ended: which figure, where the bound lies, and what it means.
+// A bound on which a fit ended: its figure, value and meaning.
 struct BoundReached {
   std::string key;
   double value = 0.0;

@@ -8,7 +8,7 @@
 
 namespace photorque {
 
-// A module, the circuit of one of its cells, and what it is rated at.
+// A module, the circuit of one of its cells, and its ratings.
 struct ListedModule {
   std::string name;
   int cells_in_series = 1;

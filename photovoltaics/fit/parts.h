@@ -72,7 +72,7 @@ void limit_resistances(const inference::Fit& best, const inference::ResidualFunc
                        Eigen::Index series, Eigen::Index shunt, double variance,
                        SingleDiode& diode);
 
-// A parameter's figure at a bound, and what it means that a fit ended there.
+// A parameter's figure at a bound, and the meaning of a fit that ended there.
 struct NamedBound {
   Eigen::Index parameter;
   std::string key;       // of the figure, which is e^(sign · parameter)
@@ -80,7 +80,7 @@ struct NamedBound {
   std::string at_least;  // meaning of the parameter's lower bound
   std::string at_most;   // its upper one
 };
-// `first`: where the parameters begin in a point, after those of single runs.
+// `first`: index of the first parameter in a point, after those of single runs.
 std::vector<BoundReached> bounds_reached(const inference::Fit& best,
                                          std::span<const NamedBound> named, Eigen::Index first = 0);
 

@@ -157,7 +157,7 @@ class ArrayCurve {
   Piece piece(double low_x, double high_x) const;
   ArrayPoint point(double x, double y) const;
 
-  CellTables tables_;  // keeps alive what the strings point to
+  CellTables tables_;  // the strings point into it
   std::vector<StringCurve> strings_;
   std::vector<FourStrings> fours_;  // of several strings, those that are alike
   std::vector<size_t> singles_;     // the others

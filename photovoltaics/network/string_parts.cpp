@@ -155,7 +155,7 @@ ElementPoint StringCurve::tied_at(uint32_t index, double current_A, const String
     return tied_nested_at(index, current_A, nullptr, state);
   }
   if (const uint32_t p = regime != nullptr ? holding_part(index, *regime) : nothing; p != nothing) {
-    // The part takes what the others leave.
+    // The part takes the remainder.
     const double voltage_V = part_at(p, parts_[p].light_A, regime, 1e-9, state).voltage_V;
     const double others_A = tied_A(index, voltage_V, regime, p, nullptr, state);
     return part_at(p, current_A - others_A, regime, 1e-9, state);
