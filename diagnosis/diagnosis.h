@@ -31,7 +31,7 @@ struct FittedParameter {
   double neutral = 0.0;            // the value with which nothing acts
 };
 
-// An effect of the catalogue that acts in addition to what the experiment states.
+// An effect of the catalogue that acts in addition to those of the experiment.
 struct FoundEffect {
   std::string kind;          // name of a disturbance kind
   double probability = 0.0;  // that it acts, given the recordings, 0 to 1
@@ -145,7 +145,7 @@ struct ChannelSeries {
   std::vector<double> residual_before, residual_after;  // measured − model
   double noise = 0.0;  // one standard deviation of one reading, residual_unit
 };
-// How the body stood over time, lab from body, where a recording says it. All vectors have the
+// Attitude of the body over time, lab from body, where a recording has it. All vectors have the
 // length of `time_s`; those of the models are empty where light was diagnosed: there the motion is
 // exact.
 struct AttitudeSeries {
@@ -177,7 +177,7 @@ struct RecordingSeries {
   bool is_held_out = false;  // all of it
 };
 
-// The array on its receiver, map coordinates [m], and what something found acts on.
+// The array on its receiver, map coordinates [m], and the parts that a found effect concerns.
 struct DrawnArray {
   struct Cell {
     double u_low, u_high, v_low, v_high;

@@ -1,4 +1,4 @@
-// The verdict of a diagnosis from what the inference found.
+// The verdict of a diagnosis from the findings of the inference.
 #pragma once
 
 #include "diagnosis/diagnosis.h"

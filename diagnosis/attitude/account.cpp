@@ -285,7 +285,7 @@ std::vector<Alternative> alternatives(const inference::Decision& decision,
   for (const auto& [label, t] : best) {
     Alternative a;
     a.kinds = kinds_of(*t, all);
-    // Kinds say all of what is physics alone.
+    // The kinds describe physics completely.
     if (a.kinds.size() != t->candidates.size()) a.label = label;
     a.holdout_chi2_per_sample = t->holdout_chi2_per_sample;
     a.log_evidence_relative = t->log_evidence - trials.front().log_evidence;

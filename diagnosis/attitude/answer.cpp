@@ -143,7 +143,7 @@ void keep_what_predicts(const RecordedData& data, const Thresholds& limits, Answ
                                    "held out";
 }
 
-// The answer with the noise that the readings show about what explains them.
+// The answer with the noise that the readings show about their explanation.
 Answer at_noise_of_readings(const NominalModel& nominal, RecordedData& data,
                             const DiagnoseOptions& options, Fit& nominal_fit, const Trial* near) {
   tell(options, "fitting every effect of the catalogue");
@@ -162,7 +162,7 @@ bool law_is_far_better(const Answer& a, const Thresholds& limits) {
   return is_law && law < limits.discrepancy.max_fraction_of_law * known;
 }
 
-// The law in time of what stays unexplained, in detail.
+// Refines the law in time of the unexplained residual.
 void describe(const RecordedData& data, const DiagnoseOptions& options, Answer& a) {
   if (a.decision.finding != inference::Finding::unknown) return;
   Trial& chosen = a.trials[a.decision.chosen];

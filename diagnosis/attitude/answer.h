@@ -12,7 +12,7 @@
 
 namespace photorque {
 
-// All that was fitted, and what is made of it.
+// All fits, and the decision about them.
 struct Answer {
   Candidates all;
   std::vector<Trial> trials;

@@ -83,7 +83,7 @@ class Contest {
   // By how many standard errors each name of the winner predicts better than its absence.
   const std::vector<double>& sigma() const { return sigma_; }
 
-  // The winner without one of its names, and without what is then not missed.
+  // The winner without one of its names, and without names that are then not needed.
   Contender without(const Contender& best, size_t which) {
     return pruned(contender(trial_without(best.trial, which)));
   }
@@ -135,7 +135,7 @@ class Contest {
   }
 
   // A motion about three axes bends to anything: there a name beside others has to account for half
-  // of what they leave of what was held out.
+  // of their residuals of the held-out data.
   bool tells_enough(const Contender& without, const Contender& with) const {
     const Platform& platform = answer_.trials.front().fit.best.model.platform;
     return platform.turns_about_one_axis() || platform.slides() ||
@@ -251,7 +251,7 @@ Trial fitted_beside_the_rest(const Trial& named, const Candidates& all, const No
   return std::isfinite(again.fit.chi2) ? again : result;
 }
 
-// Puts what won in the place of the chosen trial.
+// Puts the winner in the place of the chosen trial.
 void choose(const Contender& won, const Contest& contest, Answer& a) {
   const auto twin = std::ranges::find_if(a.trials, [&](const Trial& t) {
     return inference::same_candidates(t.candidates, won.trial.candidates);

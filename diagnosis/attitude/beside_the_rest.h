@@ -1,4 +1,4 @@
-// Names beside what stays unexplained, which counts as noise.
+// Names with an unexplained residual, which counts as noise.
 #pragma once
 
 #include <optional>

@@ -69,7 +69,7 @@ void say_what_was_found(const Answer& answer, const Fit& nominal_fit, const Reco
   d.because = decision.because;
 }
 
-// Numbers and curves of the nominal and the chosen model, beside what was fitted and held out.
+// Numbers and curves of the nominal and the chosen model, with fitted and held-out data.
 void say_how_well(const Fit& before, const Answer& answer, const RecordedData& data,
                   const Thresholds& limits, Diagnosis& d) {
   const Trial& chosen = answer.chosen();
@@ -175,8 +175,8 @@ NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
   return nominal;
 }
 
-// Whether the inertia as it was fitted can be written: measured moments may break what every body
-// obeys by their errors.
+// Whether the fitted inertia can be written: measured moments may violate a condition that every
+// body obeys by their errors.
 bool is_an_inertia(const Trial& chosen, size_t disturbance) {
   const AttitudeModel& model = chosen.fit.best.model;
   const Disturbance& d = model.disturbances[disturbance];

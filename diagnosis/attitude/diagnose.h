@@ -1,7 +1,7 @@
-// `diagnose`: recordings against the nominal model, and what physics is missing in between.
+// `diagnose`: compares recordings with the nominal model and finds missing physics.
 //
 // A straight line: observe → fit the nominal model → whiten → search (every effect alone, then
-// together) → decide → predict what was never fitted → say it.
+// together) → decide → predict the held-out data → report.
 #pragma once
 
 #include <functional>

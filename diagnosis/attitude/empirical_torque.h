@@ -11,7 +11,7 @@
 
 namespace photorque {
 
-// A fitted function without a law as a short formula, and what physics it looks like.
+// A fitted function without a law as a short formula, and similar physics.
 
 // "(4.41 ± 0.02)×10⁻⁶", the value to the two digits that the error has; without an error that is
 // above 0 and finite, the value alone.

@@ -358,8 +358,9 @@ bool use_noise(const NoiseFindings& findings, RecordedData& data) {
   return changed;
 }
 
-// Takes the edge off what no normal distribution has: bursts are dropped, heavy tails tamed, in
-// what is fitted and in what is held out. `near` is near the readings. Returns whether any changed.
+// Limits the weight of readings that are not normally distributed: bursts are dropped and heavy
+// tails get pseudo-values, in fitted and held-out data. `near` is near the readings. Returns
+// whether any changed.
 bool tame_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
   const int64_t in_bursts = drop_bursts(residuals_of(near, data.train), limits.noise, data.train);
   const std::vector<Prediction> residuals = residuals_of(near, data.train);
@@ -406,7 +407,7 @@ bool find_and_use_noise(const Fit& near, const Thresholds& limits, RecordedData&
 Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data) {
   take_out_bias_drift(data);
   Fit fitted = fit_nominal(nominal, data.train, limits);
-  // One that cannot be propagated along the recording says nothing of its readings.
+  // A model that cannot be propagated along the recording gives no residuals of its readings.
   if (!std::isfinite(fitted.chi2)) return fitted;
   const std::vector<Prediction> residuals = residuals_of(fitted, data.train);
   data.outliers = drop_outliers(residuals, limits.noise, data.train);

@@ -1,4 +1,4 @@
-// The recordings of a diagnosis, made ready: what is fitted, what is held out, what was wrong.
+// The prepared recordings of a diagnosis: fitted data, held-out data, rejected readings.
 #pragma once
 
 #include <cstdio>

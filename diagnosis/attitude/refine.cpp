@@ -146,7 +146,7 @@ class Refinement {
   const Trial& best() const { return best_; }
 
  private:
-  // Until the fit converges, as long as it may come near what the law explained before.
+  // Until the fit converges, as long as it may reach the χ² of the previous law.
   FitSettings patient() const {
     FitSettings settings;
     settings.max_iterations = 40;

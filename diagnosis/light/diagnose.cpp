@@ -57,8 +57,8 @@ FittedRun observed(const LightLab& lab, const LightBelief& nominal, LightRecordi
   return run;
 }
 
-// Rows to fit and rows to hold out, without a holdout: the last part of what was recorded over time
-// or sweep by sweep, every so many rows of a scan, whose end is but a corner of it.
+// Rows to fit and rows to hold out, without a holdout: the last part of a recording over time or
+// sweep by sweep, every so many rows of a scan, whose end is but a corner of it.
 std::pair<std::vector<size_t>, std::vector<size_t>> split(const LightRun& run, double fraction) {
   std::vector<size_t> fitted, held;
   const size_t rows = run.rows();

@@ -206,7 +206,7 @@ LightTrial LightDomain::assemble(const Trial& from, const inference::Members<Sta
           std::clamp(member.strengths[k++], c.numbers[n].lowest, c.numbers[n].highest);
     }
   }
-  // The forecast is a start, and so is what stands there now: a forecast far off may diverge.
+  // The forecast and the present values are both starts: a fit from a forecast far off may diverge.
   Trial trial = fit_light(all_, candidates, predicted, from.priors, runs, effort.max_iterations);
   const bool is_worse = !(trial.fit.chi2 < from.fit.chi2);
   if (is_worse && predicted != plain) {

@@ -136,7 +136,7 @@ std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
     const LightTrial rival = fit_light(all, candidates, x, chosen.priors, runs, 25);
     if (rival.log_evidence > own.log_evidence - within) rivals.insert(c.kind.name);
   }
-  // And what was fitted in its place and came out as well.
+  // And the candidates that explain the recordings as well in its place.
   for (const LightTrial& t : answer.trials) {
     if (t.candidates.size() != chosen.candidates.size()) continue;
     if (!(t.log_evidence > chosen.log_evidence - within) || !t.objection.empty()) continue;

@@ -1,4 +1,4 @@
-// Where to start what enters nonlinearly, found in what a trial leaves of the recordings.
+// Starts of nonlinear parameters, from the residuals of a trial.
 #pragma once
 
 #include "diagnosis/light/trial.h"

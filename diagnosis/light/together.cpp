@@ -215,7 +215,7 @@ Holdout both_held(const Holdout& a, const Holdout& b) {
       mean_of(a.chi2_per_sample_after, a.samples, b.chi2_per_sample_after, b.samples);
   both.samples = a.samples + b.samples;
   both.explained_fraction = std::min(a.explained_fraction, b.explained_fraction);
-  // The worse of the two is what a reader has to know.
+  // The worse of the two is reported.
   if (b.predictive && (!a.predictive || b.predictive->sigma > a.predictive->sigma)) {
     both.predictive = b.predictive;
   }
@@ -251,7 +251,7 @@ Diagnosis diagnose_together(MotionRecorded motion, LightRecorded light) {
   const Diagnosis of_motion_first = moved();
   take_attitudes(of_motion_first, light.recordings);
   take_attitudes(of_motion_first, light.holdouts);
-  // Who states a tilt knows it.
+  // A stated tilt is known.
   if (has_tilt(motion.nominal.model)) {
     return joined(
         of_motion_first,

@@ -41,7 +41,7 @@ struct LightRecorded {
 Diagnosis diagnose_together(MotionRecorded motion, LightRecorded light);
 
 // Gives the rows of each run the attitudes that the motion was found to have where it has the same
-// name and is explained; others keep what was recorded.
+// name and is explained; others keep their recorded values.
 void take_attitudes(const Diagnosis& motion, std::vector<LightRecording>& runs);
 
 // Both in one, the motion first. `tilt`: what both say of it, if anything.

@@ -22,7 +22,7 @@ struct LightStart {
 // Whether a lamp's derating, fitted as `column`, leaves nothing of it.
 bool leaves_nothing(double derating, const inference::Fit& fit, Eigen::Index column);
 
-// The state that a trial says.
+// The state of a trial.
 LightState state_of(const LightTrial& trial, const LightCandidates& all);
 
 // The experiment alone.

@@ -15,10 +15,10 @@ namespace {
 struct ReadMotion {
   std::vector<PlatformState> states;
   double acceleration_rad_s2 = 0.0;
-  double acceleration_m_s2 = 0.0;  // of what slides
+  double acceleration_m_s2 = 0.0;  // of a sliding body
 };
 
-// Places and velocities of what slides, as they were read at block `i`.
+// Places and velocities of a sliding body, as they were read at block `i`.
 std::array<double, 4> place_at(const Observation& seen, size_t i, size_t reach) {
   std::array<double, 4> place{};
   const size_t from = i - std::min(i, reach), to = std::min(seen.blocks() - 1, i + reach);
@@ -338,7 +338,7 @@ bool only_slows_down(const std::vector<Observation>& runs, const Vec3& axis) {
   });
 }
 
-// Velocities of what slides across an eighth of the run, along lab x and y, from places alone.
+// Velocities of a sliding body over an eighth of the run, along lab x and y, from places alone.
 std::vector<Vec2> velocities_m_s(const Observation& seen) {
   std::vector<Vec2> place_m, velocity;
   std::vector<double> time_s;
@@ -359,7 +359,7 @@ std::vector<Vec2> velocities_m_s(const Observation& seen) {
   return velocity;
 }
 
-// Whether what slides goes straight on in every run, and ever more slowly; it may stop.
+// Whether the sliding body goes straight on in every run, and ever more slowly; it may stop.
 bool only_slides_out(const std::vector<Observation>& runs) {
   return std::ranges::all_of(runs, [](const Observation& seen) {
     const std::vector<Vec2> velocity = velocities_m_s(seen);
@@ -442,7 +442,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
                           const Thresholds& limits) {
   const DisturbanceContext context = nominal.context();
   const CoveredMotion covered = covered_by(runs);
-  // A spacecraft's experiment says no latitude.
+  // A spacecraft's experiment has no latitude.
   const bool floats_in_laboratory =
       !context.platform.has_bearing() && context.environment.latitude_rad != 0.0 &&
       std::any_of(runs.begin(), runs.end(),
@@ -504,7 +504,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     all.list.push_back(candidate_of(law));
   }
   scale_to_machine(nominal, runs, all.list);
-  // Of what slides the turn may not be seen.
+  // The rotation of a sliding body may not be observed.
   const bool sees_turn = std::any_of(runs.begin(), runs.end(), [](const Observation& seen) {
     return seen.sees_some_attitude() || seen.has_gyro;
   });

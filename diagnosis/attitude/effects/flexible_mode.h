@@ -27,7 +27,7 @@ Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inert
 // Starts for an appendage that swings: its frequency and axis.
 
 // The best flexible modes to add to `fit`, at most three. `start` is the disturbance with
-// its expected strength, `slow_runs` averages of the runs, as good for what is slow.
+// its expected strength, `slow_runs` averages of the runs, sufficient for slow motion.
 std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit,
                                         const std::vector<Observation>& runs,
                                         const std::vector<Observation>& slow_runs,

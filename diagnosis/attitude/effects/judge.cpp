@@ -156,7 +156,7 @@ double log_evidence(const Trial& trial, const Candidates& all) {
   if (!std::isfinite(fit.chi2)) return -1e300;
   inference::ArrowMatrix hessian = fit.hessian;
   double result = -0.5 * fit.chi2;
-  // The parameters that are not searched, in units of what is expected of them.
+  // The parameters that are not searched, in units of their expected sizes.
   inference::Strengths strengths;
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
     const Candidate& c = all[trial.candidates[i]];

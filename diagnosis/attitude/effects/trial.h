@@ -55,15 +55,15 @@ struct Candidate {
   bool has_linear_strength() const {
     return std::any_of(searched.begin(), searched.end(), [](bool b) { return !b; });
   }
-  // Whether a score test can predict what its fit gains.
+  // Whether a score test can predict the gain of its fit.
   bool is_linear() const {
     return !start.parameters.empty() &&
            std::none_of(searched.begin(), searched.end(), [](bool b) { return b; });
   }
 };
 
-// By which power of the rate, or of the speed of what slides, a candidate brakes: 0 where it rubs.
-// Nothing where it does anything else. `model`: of the platform.
+// The power of the rate, or of the speed of a sliding body, by which a candidate brakes (0:
+// friction). Nothing where it does anything else. `model`: of the platform.
 std::optional<double> braking_power(const Candidate& candidate, AttitudeModel model);
 
 // Whether a candidate pulls what turns about one axis back to an angle, as a weight or a twisted
@@ -77,7 +77,7 @@ struct Start {
   double gain = std::numeric_limits<double>::infinity();
 };
 
-// Everything that may be missing, and by what it is judged.
+// All candidates, and the limits of their evaluation.
 struct Candidates {
   std::vector<Candidate> list;
   Thresholds limits;

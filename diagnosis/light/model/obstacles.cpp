@@ -126,7 +126,7 @@ class View {
   }
   // Of the way to the aperture's plane.
   double part(const Vec3& at) const { return normal_.dot(at - point_) / height_; }
-  // Of what is neither behind the point nor beyond the aperture.
+  // Of parts that are neither behind the point nor beyond the aperture.
   Vec2 project(const Vec3& at) const {
     const Vec3 there = (at - point_) / part(at) - away_;
     return Vec2(there.dot(side_), there.dot(up_)) / side_.squaredNorm();

@@ -28,8 +28,8 @@ struct LightRecording {
   Kind kind = Kind::scan;
   std::string name;  // path as given
 
-  // One entry per row that was kept; what the kind does not have is empty.
-  // The irradiance of a sweep is what a sensor beside the array saw; NaN where a row has none.
+  // One entry per row that was kept; quantities that the kind lacks are empty. The irradiance of a
+  // sweep is what a sensor beside the array saw; NaN where a row has none.
   std::vector<double> u_m, v_m, irradiance_W_m2;
   std::vector<double> voltage_V, current_A;
   std::vector<double> time_s;
@@ -40,7 +40,7 @@ struct LightRecording {
   // be proportional. Empty where it hardly changes.
   std::vector<double> lamp_light;
 
-  // False: each row has what the experiment says.
+  // False: each row has the value of the experiment.
   bool has_attitudes = true, has_temperatures = true;
   int64_t rows_read = 0;                    // data rows in the file
   std::map<std::string, int64_t> rejected;  // by reason: "torn row", "unreadable", …

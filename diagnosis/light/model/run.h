@@ -1,4 +1,4 @@
-// A recording as the forward model sees it: what it would read if a state were true.
+// A recording of the forward model: its expected readings for a state.
 //
 // From the state follow, one after the other, each lamp's light on every place, the
 // signals (readings of a scan; photocurrents of every cell at every instant), and the residuals,
@@ -66,7 +66,7 @@ class LightRun {
   void scale_noise(double factor);
 
   // Parts of `near` stay where they are the same. Light by way of walls takes long, and changes
-  // little where lamps move a little: kept, it stays whatever the lamps do.
+  // little where lamps move a little: kept, it stays unchanged when the lamps change.
   enum class Walls { followed, kept };
   LightFields fields(const LightState& state, const LightFields* near,
                      Walls walls = Walls::followed) const;

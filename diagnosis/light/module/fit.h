@@ -62,7 +62,7 @@ class ModuleFitter {
   // Measured less predicted over their errors.
   Eigen::VectorXd residuals(const ModuleHypothesis& h, const Eigen::VectorXd& x,
                             const ModuleRun& run) const;
-  // Of a run of a trial: its two nuisances, then what is shared.
+  // Of a run of a trial: its two nuisances, then the shared parameters.
   static Eigen::VectorXd numbers_of(const ModuleTrial& trial, size_t run);
 
  private:

@@ -65,7 +65,8 @@ struct ReferenceFit {
   std::vector<VectorXd> residuals_A;
 };
 
-constexpr Index own = 2;  // of each curve: logarithm of its light, temperature off what is stated
+constexpr Index own =
+    2;  // of each curve: logarithm of its light, deviation from the stated temperature
 
 inference::Parameters reference_parameters(const ModuleDesign& design,
                                            const std::vector<ModuleSweep>& sweeps) {
@@ -204,7 +205,7 @@ ModuleNominal nominal_of_datasheet(const ModuleDesign& design) {
   const SingleDiode& d = fit.diode;
   const Estimate* of[] = {&d.photocurrent_A, &d.saturation_A, &d.scale_V, &d.series_ohm,
                           &d.shunt_ohm};
-  // Modules of one kind differ among each other by some per cent, whatever the sheet says.
+  // Modules of one kind differ from the datasheet and from each other by some per cent.
   constexpr double alike = 0.02, most = 1.0;
   for (Index k = 0; k < 5; ++k) {
     const Estimate& e = *of[k];
