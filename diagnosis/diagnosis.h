@@ -120,8 +120,8 @@ struct Holdout {
   std::optional<inference::Predictive> predictive = {};
   double explained_fraction = 0.0;
 };
-// Of what the nominal model leaves of readings beyond noise, the part that another model explains,
-// 0 to 1; 1 where it leaves less than five standard errors of noise, 0 where the other diverges.
+// The fraction of the nominal model's residual beyond noise that another model explains, 0 to 1; 1
+// where that residual is less than five standard errors of noise, 0 where the other diverges.
 double explained_fraction(double chi2_per_sample_before, double chi2_per_sample_after,
                           int64_t samples);
 
@@ -151,8 +151,8 @@ struct ChannelSeries {
 struct AttitudeSeries {
   std::vector<double> time_s;
   std::vector<Quat> measured;
-  // Rotation vectors about lab axes that take what the nominal model and what the chosen one would
-  // have the camera report to what it reported, and one standard error of theirs.
+  // Rotation vectors about lab axes from the camera readings of the nominal and of the chosen model
+  // to the real readings, and one standard error of them.
   std::vector<Vec3> off_before_rad, off_after_rad, error_rad;
 };
 
@@ -242,8 +242,8 @@ struct Diagnosis {
   // light.
   std::string effect_table = "disturbance";
   std::vector<EmpiricalTorque> empirical;
-  // Effects that the model reported contains beside these without being named: it predicts what it
-  // does only with them.
+  // Effects that the reported model contains beside these without naming them: its predictions need
+  // them.
   std::vector<FoundEffect> unnamed = {};
   double chi2_per_sample_before = 0.0;
   double chi2_per_sample_after = 0.0;

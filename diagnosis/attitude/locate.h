@@ -1,5 +1,5 @@
-// Where recording and nominal model part: channels, intervals, band, and the variables it depends
-// on.
+// The place of the differences between recording and nominal model: channels, intervals, band, and
+// the variables on which they depend.
 #pragma once
 
 #include "diagnosis/attitude/effects/trial.h"

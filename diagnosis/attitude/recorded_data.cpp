@@ -41,8 +41,8 @@ void say_cuts(const std::string& name, const Segments& segments,
   }
 }
 
-// An accelerometer and a magnetometer count where the experiment has them: where the one sits, and
-// that nothing aboard disturbs the other, is nothing that a recording says.
+// An accelerometer and a magnetometer count only if the experiment has them: a recording contains
+// neither the place of the one nor the disturbances of the other.
 bool is_declared(const Sensors& sensors, int scalar) {
   const Measures measures = channel_traits(vector_channels + scalar).measures;
   if (measures == Measures::force) return sensors.accelerometer.has_value();
@@ -219,8 +219,8 @@ size_t cut_at(const Observation& seen, double fraction) {
   return reading.empty() ? of(seen.blocks()) : reading[of(reading.size())];
 }
 
-// The end of a recording in one piece; of one in many every fourth, so that what is held out saw
-// the same times and conditions.
+// Holds out the end of a recording in one piece; of one in many pieces every fourth, so that
+// held-out data have the times and conditions of the fitted data.
 void hold_out(std::vector<Observation> stretches, double fraction, RecordedData& data) {
   const auto every = static_cast<size_t>(std::lround(1.0 / fraction));
   for (size_t i = 0; i < stretches.size(); ++i) {

@@ -42,14 +42,14 @@ DataQuality quality_of(const std::vector<NamedRecording>& recordings,
 // has infinite χ², and the noise stays as stated.
 Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data);
 
-// Where the nominal model left the noise open, it is found about a model that comes near the
-// readings. Returns whether it changed.
+// Finds the noise that the nominal model left open, about a model that comes near the readings.
+// Returns whether it changed.
 bool settle_again(const Fit& explained, const Thresholds& limits, RecordedData& data);
 
 // A gyro whose bias drifts within a recording.
 
-// Takes the drift out of the gyro's readings, their mean left as it is, and says so among the
-// instruments. Nothing happens where a constant bias does for each recording.
+// Removes the drift from the gyro's readings, keeps their mean, and reports it among the
+// instruments. Does nothing where a constant bias for each recording suffices.
 void take_out_bias_drift(RecordedData& data);
 
 }  // namespace photorque

@@ -1,6 +1,5 @@
-// A first experiment for recordings of a machine of which nothing else is at hand: what the columns
-// allow to be said, results of the readings (noise, ratios of moments of inertia), and a
-// mark at everything that is assumed.
+// A first experiment for recordings of an unknown machine: from the columns, from the readings
+// (noise, ratios of moments of inertia), and from assumptions, each of which is marked.
 #pragma once
 
 #include <filesystem>
@@ -11,10 +10,10 @@
 
 namespace photorque {
 
-// The text of an experiment file for `diagnose` that is to stand in `folder`. Lines that hold an
-// assumption say CONFIRM. All recordings are taken to be of one machine, with columns as those of
-// the first. InputError for what is neither a recording of motion nor curves of current over
-// voltage, with the cure where one is known.
+// The text of an experiment file for `diagnose` in `folder`. Lines with an assumption say CONFIRM.
+// All recordings must be of one machine, with columns as those of the first. InputError for files
+// that are neither recordings of motion nor curves of current over voltage, with the remedy where
+// one is known.
 std::string guess_experiment(const std::vector<std::filesystem::path>& recordings,
                              const std::filesystem::path& folder);
 

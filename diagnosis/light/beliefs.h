@@ -35,7 +35,7 @@ struct LightPrior {
 // ∂(predicted/noise) of a recording by each.
 Eigen::MatrixXd slopes_by_priors(const LightRun& run, const std::vector<LightPrior>& priors);
 
-// The nominal model: nothing beside the experiment acts but `state`; `uncertain` is known to
+// The nominal model: only `state` acts in addition to the experiment; `uncertain` is known to
 // within errors.
 struct LightBelief {
   LightState state;
@@ -43,16 +43,16 @@ struct LightBelief {
 };
 
 // `reread` is the experiment of the lab again with one more key assigned. The lab must outlive the
-// result. InputError for an error of what cannot be any other number.
+// result. InputError for an error of a number that can have no other value.
 LightBelief light_belief(const LightLab& lab, const std::vector<UncertainKey>& uncertain,
                          const std::function<Experiment(const std::string&)>& reread);
 
-// The key of the prior on how the body stands in the light, among the refined ones; no experiment
+// The key of the prior on the tilt of the body in the light, among the refined ones; no experiment
 // has it.
 constexpr const char* tilt_belief = "attitude_bias.bias_deg";
 
-// A prior: the body stands turned against its recorded attitude by a rotation vector about lab x
-// and y, to within errors. The lab must outlive it.
+// A prior: the body is rotated against its recorded attitude by a rotation vector about lab x and
+// y, to within errors. The lab must outlive it.
 void believe_tilt(const LightLab& lab, const Vec2& bias_rad, const Vec2& sigma_rad,
                   LightBelief& belief);
 

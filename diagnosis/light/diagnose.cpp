@@ -217,8 +217,8 @@ Holdout light_holdout(const LightAnswer& answer, const std::vector<FittedRun>& h
   return result;
 }
 
-// The variable of the law that was chosen comes first, with the part of what is beyond noise that
-// it takes up.
+// Puts the variable of the chosen law first, with the fraction of the residual beyond noise that
+// the law explains.
 void lead_with_chosen_law(const LightAnswer& answer, const LightTrial& about,
                           std::vector<Where::Dependence>& depends_on) {
   for (const size_t c : answer.chosen().candidates) {

@@ -1,9 +1,9 @@
 // `diagnose` for light and power: compares scans, sweeps and runs with the nominal model of lamps
 // and array, and finds missing effects.
 //
-// Observe (wild readings dropped) → fit the nominal model → search → weigh with what was held out →
-// decide → say it. The engine is inference/; what is special to light is the forward model (model/)
-// and the kinds of effects (effects/).
+// Observe (outliers dropped) → fit the nominal model → search → weigh with the held-out data →
+// decide → report. The engine is inference/; the forward model (model/) and the kinds of effects
+// (effects/) are special to light.
 #pragma once
 
 #include <functional>

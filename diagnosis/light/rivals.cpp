@@ -11,8 +11,8 @@
 namespace photorque {
 namespace {
 
-// How much of what the first of `terms` changes the recordings by, at the numbers x, the strengths
-// of each other term cannot make: χ², the first entry the whole of it.
+// χ² of the effect of the first of `terms` on the recordings, at the numbers x, that the strengths
+// of each other term cannot reproduce. The first entry is the whole effect.
 Eigen::VectorXd unlike(const LightTrial& about, const LightCandidates& all,
                        const std::vector<inference::Term<LightStart>>& terms,
                        const std::vector<FittedRun>& runs, const std::vector<double>& x) {

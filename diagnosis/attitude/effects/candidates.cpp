@@ -93,8 +93,8 @@ ReadMotion read_motion(const AttitudeModel& model, const Observation& seen) {
   return motion;
 }
 
-// Mean square of the torque of one disturbance over the motion [N² m²]: about one axis, where that
-// is all that moves; of a force on what slides [N²].
+// Mean square of the torque of one disturbance over the motion [N² m²]: about the axis of a
+// platform with one axis; of a force on a sliding body [N²].
 double mean_square_action(const Disturbance& disturbance, const AttitudeModel& nominal,
                           const std::vector<Observation>& runs,
                           const std::vector<ReadMotion>& motions) {
@@ -142,10 +142,10 @@ void leave_out_what_does_nothing(const std::vector<double>& actions, Candidate& 
 }
 
 // The catalogue's sizes are those of platforms on air bearings. On a bicycle wheel or a spacecraft
-// they are wrong by many decades either way: there the size of every strength is set so that its
-// torque, over the recorded motion, is what changes the recorded rates: the mean moment of inertia
-// times the range of the rates over the duration. Does nothing for a platform on an air bearing,
-// nor to what exerts no torque.
+// they are wrong by many decades. There the size of every strength is set by the recorded rates:
+// its torque over the recorded motion is the mean moment of inertia times the range of the rates
+// over the duration. Does nothing for a platform on an air bearing, nor to effects without a
+// torque.
 void scale_to_machine(const NominalModel& nominal, const std::vector<Observation>& runs,
                       std::vector<Candidate>& candidates) {
   const Platform& platform = nominal.model.platform;
@@ -153,7 +153,7 @@ void scale_to_machine(const NominalModel& nominal, const std::vector<Observation
   AttitudeModel bare = nominal.model;
   bare.disturbances.clear();
   if (platform.slides()) bare.disturbances.push_back(translation());
-  // A few runs show what there is to see.
+  // A few runs suffice.
   constexpr size_t most_runs = 8;
   std::vector<Observation> some;
   std::vector<ReadMotion> motions;

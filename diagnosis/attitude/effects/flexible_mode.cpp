@@ -153,8 +153,7 @@ struct Mode {
   Disturbance start;
 };
 
-// The one appendage that does most of what the six would together: about an eigenvector of
-// Σ J a aᵀ.
+// The appendage with the largest part of the effect of all six: about an eigenvector of Σ J a aᵀ.
 Mode best_appendage(const ScoreGroup& group, const Score& score, const Mat3& inertia_kg_m2) {
   Mode best;
   if (score.estimate.size() != 6) return best;

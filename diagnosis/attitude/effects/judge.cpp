@@ -51,8 +51,8 @@ double inertia_change(const Trial& trial) {
   return largest;
 }
 
-// A kind that the nominal model has as well may be corrected downwards, but not below what physics
-// allows of the sum.
+// A kind that the nominal model also has may be corrected downwards, but the sum must stay within
+// its physical bound.
 std::string sum_objection(const AttitudeModel& model) {
   for (const DisturbanceKind& kind : disturbance_kinds()) {
     const std::optional<LeastSum>& least = kind.screening.least_sum;
@@ -103,9 +103,9 @@ std::string objection_to(const Trial& trial, const Candidates& all) {
   return sum_objection(trial.fit.best.model);
 }
 
-// The key without which the effect is none, or another one, as a spring without stiffness is a
-// slope: the first that has strengths, or else the moment of inertia of what swings. Empty: the
-// effect has no size.
+// The key without which the effect is zero, or another effect (a spring without stiffness is a
+// slope): the first that has strengths, or else the moment of inertia of the swinging part. Empty:
+// the effect has no size.
 std::string key_of_size(const Candidate& c) {
   for (size_t p = 0; p < c.scale.size(); ++p) {
     if (c.is_strength(p)) return c.start.parameters[p].key;

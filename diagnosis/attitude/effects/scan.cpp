@@ -56,8 +56,8 @@ void add_power(const std::vector<double>& white, const Observation& seen,
   }
 }
 
-// All channels of one run. The gyro counts in body axes and, turned, in lab axes: what shakes from
-// outside has its one frequency there, while a platform that turns sees it split.
+// Adds all channels of one run. The gyro counts in body axes and, rotated, in lab axes: a vibration
+// from outside has one frequency in lab axes, while a rotating platform splits it.
 void add_power(const Prediction& prediction, const Observation& seen, ResidualSpectrum& spectrum) {
   std::array<std::vector<double>, 9> channels;
   for (size_t i = 0; i < prediction.residual.size(); ++i) {

@@ -17,9 +17,9 @@ namespace photorque {
 std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observation>& runs,
                                         const Thresholds::Scoring& limits, size_t most = 4);
 
-// Where to start the fit of a candidate added to `parent`: one start, or the best ones of
-// a scan. `slow_runs` are averages of the runs, as good for what is slow; `lines_Hz` are the
-// parent's line_frequencies_Hz().
+// Starts of the fit of a candidate added to `parent`: one, or the best ones of a scan. `slow_runs`
+// are averages of the runs, sufficient for slow effects; `lines_Hz` are the parent's
+// line_frequencies_Hz().
 std::vector<Start> starts_of(const Candidate& candidate, const Trial& parent,
                              const std::vector<Observation>& runs,
                              const std::vector<Observation>& slow_runs,

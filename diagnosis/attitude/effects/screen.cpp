@@ -100,7 +100,7 @@ inference::StrengthGroup group_of(const inference::Term<Start>& term, size_t at,
   return group;
 }
 
-// With no strength: the derivative by it is wanted there, whatever a scan has found.
+// Sets the strength to zero, where the derivative by it is needed, whatever a scan found.
 Disturbance without_strength(const Candidate& c, Disturbance d) {
   for (size_t p = 0; p < c.scale.size(); ++p) {
     if (c.is_strength(p)) d.parameters[p].value = 0.0;

@@ -14,8 +14,8 @@
 
 namespace photorque {
 
-// The effects that may be missing: every kind of disturbance that a recording can reveal, with what
-// is known about its parameters before looking. What is known stands in the kinds' own files.
+// The effects that may be missing: every kind of disturbance that a recording can reveal, with the
+// priors of its parameters. The priors stand in the kinds' own files.
 
 // One parametrisation of a kind.
 struct Effect {

@@ -39,8 +39,8 @@ std::vector<WallPatch> patches_of(const LightLab& lab, const LightWall& wall) {
   return patches;
 }
 
-// The fraction of what leaves a triangle diffusely that meets a unit area at a point, over its
-// area: Lambert's sum over the edges of the part above the point's horizon (M. Cohen, J. Wallace,
+// The fraction of the diffuse light of a triangle that meets a unit area at a point, over its area:
+// Lambert's sum over the edges of the part above the point's horizon (M. Cohen, J. Wallace,
 // Radiosity and Realistic Image Synthesis, 1993, eq. 4.13).
 double near_share(const std::array<Vec3, 3>& triangle, const Vec3& point, const Vec3& normal) {
   std::array<Vec3, 4> corner;

@@ -1,8 +1,8 @@
-// Light of each lamp alone on the places that a recording looks at.
+// Light of each lamp alone on the places of a recording.
 //
-// A lamp's light on a point is that of its aperture (raytrace/direct/disc_light.h), less what boxes
-// and parts of the scene hide of the aperture. Light by way of a wall is the diffuse or specular
-// part of what the wall gets, once; everything else is black.
+// A lamp's light on a point is that of its aperture (raytrace/direct/disc_light.h), less the parts
+// of the aperture that boxes and the scene hide. A wall reflects light once, diffusely or
+// specularly; everything else is black.
 #pragma once
 
 #include <Eigen/Core>
@@ -81,7 +81,7 @@ class Illumination {
 
   void move_to(size_t attitude);
 
-  // At a point of the body on a surface of this normal, with what stands in between but for one
+  // The light at a point of the body on a surface of this normal, with all obstacles except one
   // wall.
   double on(const Vec3& point, const Vec3& normal, size_t skipped) const;
   const Vec3& lamp_body_m() const { return at_->body_from_lamp.translation_m; }

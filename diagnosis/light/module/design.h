@@ -13,10 +13,10 @@
 //   temperature_sigma_K = 2          how well that is known, of references as well
 //   current_noise_A, voltage_noise_V errors of a reading; found from the curves where not stated
 //
-// Files may say of each curve (`sweep`) its cell_temperature_K and irradiance_W_m2, which then
-// stand in the place of these keys. The irradiance may differ from curve to curve. [[effect]] with
-// the kinds and keys of a diagnosis states what is known to act on the recordings, and not on the
-// references; with the key `curve` on the curve of that name alone ("day.csv, sweep 6").
+// Files may contain cell_temperature_K and irradiance_W_m2 for each curve (`sweep`), which then
+// replace these keys. The irradiance may differ from curve to curve. [[effect]] with the kinds and
+// keys of a diagnosis states known effects on the recordings, and not on the references; with the
+// key `curve` on the curve of that name alone ("day.csv, sweep 6").
 #pragma once
 
 #include <map>

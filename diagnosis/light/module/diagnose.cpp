@@ -289,8 +289,8 @@ double squares_of(const ModuleFitter& fitter, const ModuleAnswer& answer, size_t
 // 0.8 % and more.
 constexpr double even_misfit = 7e-3;
 
-// A curve that is given as the module as it was and as a recording at once: what one diode cannot
-// describe counts as noise, so nothing would be found.
+// Whether a curve is both a reference and a recording. Its deviation from one diode would then
+// count as noise, so that no effect would be found.
 bool is_its_own_reference(const ModuleDesign& design,
                           const std::vector<LightRecording>& recordings) {
   return std::ranges::any_of(recordings, [&](const LightRecording& r) {

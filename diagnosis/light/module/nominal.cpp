@@ -339,8 +339,8 @@ ModuleNominal nominal_module(const ModuleDesign& design) {
 double point_sigma_A(const ModuleNominal& nominal, const ModuleSweep& sweep) {
   const double step_V = (sweep.voltage_V.back() - sweep.voltage_V.front()) /
                         static_cast<double>(sweep.voltage_V.size() - 1);
-  // Per unit of distance, of the short-circuit current: what the powers of Translation leave of the
-  // two modules from which their sizes come.
+  // Per unit of distance, of the short-circuit current: the residual of the powers of Translation
+  // for the two modules from which their sizes come.
   constexpr double translation_misfit = 1.5e-3;
   // One or two references show their misfit over few lengths of correlation, to a third.
   constexpr double of_curves = 1.33;

@@ -46,9 +46,9 @@ double distance_of(const ModuleNominal& nominal, const ModuleSweep& sweep);
 // InputError for references that no diode fits.
 ModuleNominal nominal_module(const ModuleDesign& design);
 
-// The standard deviation of each point of a sweep: the noise of its readings and what one diode
-// cannot describe, which changes slowly and so counts once in a length of correlation. It grows
-// with the distance from the reference, because the translation to another condition has an error.
+// The standard deviation of each point of a sweep: the noise of its readings and the misfit of one
+// diode, which changes slowly and therefore counts once per correlation length. It grows with the
+// distance from the reference, because the translation to another condition has an error.
 double point_sigma_A(const ModuleNominal& nominal, const ModuleSweep& sweep);
 
 }  // namespace photorque
