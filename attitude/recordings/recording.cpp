@@ -11,7 +11,7 @@
 #include "attitude/recordings/named_columns.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/files.h"
-#include "core/numerics/steady_stretches.h"
+#include "core/numerics/steady_intervals.h"
 #include "core/old_names.h"
 #include "core/text/parse.h"
 

@@ -45,7 +45,7 @@ struct BalanceResult {
   static constexpr double noticed_sigma = 6.0;
   bool leaves_more_than_noise() const { return excess_sigma > noticed_sigma; }
   std::string warning() const;  // as printed; empty where nothing more than noise is left
-  size_t stretches = 1;         // into which gaps cut the recording
+  size_t segments = 1;          // into which gaps cut the recording
   Fit fit;
   // Residuals of the camera's attitudes, lab axes, at these times.
   std::vector<double> residual_time_s;

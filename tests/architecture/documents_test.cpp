@@ -141,9 +141,9 @@ TEST(Documents, CommandsExistAndEachHasARow) {
     }
   }
   const std::vector<std::string> rows = matches(text_of(root / "docs/verbs.md"), row, 1);
-  const std::set<std::string> told(rows.begin(), rows.end());
+  const std::set<std::string> listed(rows.begin(), rows.end());
   for (const std::string& verb : verbs)
-    EXPECT_TRUE(told.contains(verb)) << "docs/verbs.md: " << verb;
+    EXPECT_TRUE(listed.contains(verb)) << "docs/verbs.md: " << verb;
 }
 
 TEST(Documents, EveryKindIsInItsTable) {

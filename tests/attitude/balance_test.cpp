@@ -135,7 +135,7 @@ TEST(Balance, AGapCutsTheRecording) {
     for (Channel& c : run.recording.channels) c.values[i] = NAN;
   }
   const BalanceResult result = balance(run);
-  EXPECT_EQ(result.stretches, 2u);
+  EXPECT_EQ(result.segments, 2u);
   for (int k = 0; k < 3; ++k) {
     EXPECT_LT(std::abs(result.offset_body_m[k] - true_offset_m[k]), 4 * result.sigma_m[k]);
     EXPECT_LT(result.sigma_m[k], 1e-8);

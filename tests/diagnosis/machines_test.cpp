@@ -83,11 +83,11 @@ TEST(Machines, NamesBesideTheRestPassEveryGate) {
   EXPECT_EQ(d.verdict, Verdict::unexplained);
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("dry_friction", "air_pressure_drag"));
   EXPECT_THAT(d.warnings, Contains(HasSubstr("predicted better with it than without it")));
-  DiagnoseOptions stretches, held_out, errors;
-  stretches.limits.discrepancy.min_sigma = 1e9;
+  DiagnoseOptions segments, held_out, errors;
+  segments.limits.discrepancy.min_sigma = 1e9;
   held_out.limits.discrepancy.max_held_growth = -1e9;
   errors.limits.decision.min_significance = 1e9;
-  for (const DiagnoseOptions& mutant : {stretches, held_out, errors}) {
+  for (const DiagnoseOptions& mutant : {segments, held_out, errors}) {
     EXPECT_THAT(kinds_of(named(mutant)), testing::IsEmpty());
   }
 }

@@ -66,8 +66,8 @@ TEST_F(CheckCommand, LeavesNoCommandOut) {
       const std::string name = (*it)[1];
       if (others.contains(name)) continue;
       // Beside a sweep no search is said, as both read the same tables.
-      const std::regex told("(^|\n)(" + name + "  |not ([a-z-]+, )*" + name + "[,:])");
-      EXPECT_TRUE(std::regex_search(said, told)) << file << ": " << name;
+      const std::regex reported("(^|\n)(" + name + "  |not ([a-z-]+, )*" + name + "[,:])");
+      EXPECT_TRUE(std::regex_search(said, reported)) << file << ": " << name;
       ++asked;
     }
     EXPECT_GE(asked, 15u);

@@ -12,7 +12,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/random.h"
-#include "core/numerics/steady_stretches.h"
+#include "core/numerics/steady_intervals.h"
 #include "core/settings/settings.h"
 #include "core/text/parse.h"
 #include "core/transform.h"
@@ -23,7 +23,7 @@ namespace {
 
 constexpr double absent = std::numeric_limits<double>::quiet_NaN();
 
-// Where a column stands in a row, and what its unit is in SI.
+// Index of a column in a row, and its unit in SI.
 struct LightColumn {
   size_t place = 0;
   double to_SI = 1.0;
@@ -176,7 +176,7 @@ class RowReader {
         if (!std::isfinite(time_s)) return "row without time";
         if (!into_.time_s.empty() && time_s == into_.time_s.back()) return "repeated time";
         into_.time_s.push_back(time_s);
-        // Where a cell says nothing, what was before holds.
+        // An empty cell keeps the previous value.
         const double lamps = value(columns_.lamps);
         const double before = into_.lamp_light.empty() ? 1.0 : into_.lamp_light.back();
         into_.lamp_light.push_back(std::isfinite(lamps) ? std::max(0.0, lamps) : before);
