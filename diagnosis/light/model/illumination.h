@@ -2,7 +2,7 @@
 //
 // A lamp's light on a point is that of its aperture (raytrace/direct/disc_light.h), less the parts
 // of the aperture that boxes and the scene hide. A wall reflects light once, diffusely or
-// specularly; everything else is black.
+// like a mirror; everything else is black.
 #pragma once
 
 #include <Eigen/Core>
