@@ -231,7 +231,7 @@ std::string turn_wheels(const std::array<bool, 3>& reversed, std::span<Observati
   return names;
 }
 
-// A reading of the gyro, and what the rates then say of the body.
+// An interpretation of the gyro, and the inertia that the rates then give.
 struct FreeReading {
   GyroReading gyro;
   FreeInertia inertia;
@@ -316,7 +316,7 @@ std::string repair_free_rates(std::span<Observation> segments, const Mat3& inert
   }
   if (changes.size() < fewest) return "";
   const double as_is = disagreement(changes, inertia_kg_m2, Mat3::Identity());
-  // The body's own inertia explains half of what the rates do: torques may do the rest.
+  // The body's inertia explains half of the change of the rates: torques may explain the rest.
   if (as_is < 0.5) {
     const auto found = free_inertia({segments.begin(), segments.end()}, FreeDrag::none);
     if (!found || found->left > agrees) return "";

@@ -19,7 +19,7 @@ std::string repair_conventions(std::span<Observation> segments);
 // How roll, pitch and yaw of a recording are to be read.
 struct AngleConvention {
   std::string sequence;   // of angle_sequences
-  double factor = 1.0;    // to radians, of what the header calls radians
+  double factor = 1.0;    // to radians, of the header's radians
   std::string text = {};  // a sentence; empty where they are as usual
 };
 

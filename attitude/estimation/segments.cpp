@@ -15,7 +15,7 @@ namespace photorque {
 
 namespace {
 
-// Start and rate of an axis are two numbers, its torque one more: fewer readings say nothing of it.
+// Start, rate and torque of an axis are three numbers: fewer readings do not determine them.
 constexpr size_t min_readings = 6;
 
 // Gaps over which nothing can be propagated with profit: longer than a quarter of all the time that
@@ -26,7 +26,7 @@ double long_gap_s(const Recording& recording) {
   std::vector<double> gaps_s;
   for (const RecordingReport::Gap& gap : report.gaps) gaps_s.push_back(gap.to_s - gap.from_s);
   std::sort(gaps_s.begin(), gaps_s.end());
-  // The longest first: whether it is long is asked of what was read without it.
+  // The longest first: its length is compared with the readings without it.
   double longest_s = std::numeric_limits<double>::infinity();
   while (!gaps_s.empty()) {
     const double gap_s = gaps_s.back();

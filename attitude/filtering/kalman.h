@@ -36,7 +36,7 @@ struct Estimation {
   std::vector<AttitudeEstimate> filtered, smoothed;  // by row; the latter empty if not asked for
   InnovationSum attitude, gyro, yaw;
   double log_likelihood = 0.0;  // of the readings after the first attitude
-  // Parameters at the end, with their standard deviations, and what they were before.
+  // Parameters at the end, with their standard deviations, and their initial values.
   std::vector<std::string> parameter_names;
   VecX parameters, sigma, prior_mean, prior_sigma;
 };

@@ -19,7 +19,7 @@ using VecX = Eigen::VectorXd;
 
 // How the platform turns from one reading to the next.
 enum class Motion {
-  gyro_drives,   // as the gyro says; between its readings the rate walks
+  gyro_drives,   // as the gyro reads; between its readings the rate walks
   rate_walks,    // the rate does a random walk
   disturbances,  // by Euler's equations under the modelled torques, beside which an unknown torque
                  // lets the rate walk
@@ -89,7 +89,7 @@ class MotionModel {
   // The error state that add() adds to `from` to give `to`.
   VecX difference(const FilterState& to, const FilterState& from) const;
 
-  // Rate against the inertial frame, body axes: what a perfect gyro reads.
+  // Rate against the inertial frame, body axes: the reading of a perfect gyro.
   Vec3 inertial_rate_rad_s(const FilterState& state) const;
   double camera_delay_s() const;
 

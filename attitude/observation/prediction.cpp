@@ -152,7 +152,7 @@ class Comparison {
 
   void add(const Dynamics& dynamics, const Sensitivity* sensitivity, const Samples& samples) {
     const ExpectedReadings expected(dynamics, sensitivity, samples, seen_, scalars_);
-    // Nothing of what follows would be worth its steps.
+    // The rest would not be worth its steps.
     if (chi2_ > max_chi2_) throw NumericalError("the prediction has left the readings");
     for (int lane = 0; lane < samples.count; ++lane) {
       const size_t instant = samples.first + static_cast<size_t>(lane),

@@ -76,7 +76,7 @@ Plot::Curve curve(const std::string& label, const std::vector<double>& x,
   return c;
 }
 
-// The largest of every interval, for a logarithmic axis: what swings through zero shows its swing.
+// The largest of every interval, for a logarithmic axis: a swing through zero shows its amplitude.
 // Values below `least` leave a gap.
 Plot::Curve envelope(const std::string& label, const std::vector<double>& x,
                      const std::vector<double>& size, double least) {

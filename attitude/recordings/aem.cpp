@@ -349,7 +349,7 @@ bool is_aem(const std::filesystem::path& path) {
       if (!words.empty() && !words.starts_with(comment)) return words.starts_with("CCSDS_AEM_VERS");
     }
   } catch (const InputError&) {
-    // Its reader says what is wrong with it.
+    // Its reader reports its errors.
   }
   return false;
 }

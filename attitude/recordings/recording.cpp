@@ -64,7 +64,7 @@ constexpr std::string_view known_channels[] = {
     "velocity_y_m_s",
 };
 
-// NaN for an empty cell or the word nan; nullopt for what is no number.
+// NaN for an empty cell or the word nan; nullopt if it is no number.
 std::optional<double> to_number(std::string_view cell) {
   if (cell.empty() || cell == "NaN" || cell == "nan" || cell == "NA") return empty_cell;
   return number_in(cell);
@@ -176,7 +176,7 @@ class RecordingReader {
     return true;
   }
 
-  // The header is the first line that names the time; whatever stands before it is preamble.
+  // The header is the first line that names the time; the lines before it are preamble.
   void read_header() {
     constexpr int max_preamble_lines = 10000;
     std::string_view line;
@@ -364,7 +364,7 @@ Schedule Recording::schedule() const {
   ZeroOrderHold held;
   // Before its first knot a wheel is on the first line.
   if (!knots.empty()) held.wheel = knots.front();
-  // An empty cell holds what was before.
+  // An empty cell keeps the previous value.
   const auto update = [](const Channel* channel, size_t row, double& value) {
     if (channel != nullptr && !std::isnan(channel->values[row])) value = channel->values[row];
   };

@@ -1,4 +1,4 @@
-// Recordings: what the laboratory measured, or what a simulated one would have.
+// Recordings: readings of a real or a simulated laboratory.
 //
 // CSV with a header that names channel and unit (also .csv.gz). Real files have a preamble, gaps,
 // repeated and jittered times, outliers and flipped quaternions: the reader repairs what can be

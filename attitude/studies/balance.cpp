@@ -99,7 +99,7 @@ Vec3 distance_of_parts_m(const BalanceRun& run, const Fit& whole, size_t unbalan
   return has_any ? largest_m : Vec3::Constant(INFINITY);
 }
 
-// The fit again with what it left counted as noise.
+// The fit again with its residual counted as noise.
 Fit fit_with_discrepancy(const Fit& fitted, std::vector<Observation> segments) {
   const NoiseLevels noise = with_discrepancy(residuals_of(fitted, segments), segments,
                                              segments.front().noise, Remainder::correlated);

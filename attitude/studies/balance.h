@@ -36,7 +36,7 @@ struct BalanceResult {
   // added. Infinite along an axis that the recording does not determine, as the vertical of a
   // platform that stays level.
   Vec3 sigma_m = Vec3::Zero();
-  BalanceCommand command;     // of the masses, and what their steps leave
+  BalanceCommand command;     // of the masses, and the offset that their steps leave
   double resolution_m = 0.0;  // of the coarsest axis, half a step (eq. 1)
   // Of the fit with the noise of the instruments alone, and by how many standard errors it exceeds
   // one. Beyond `noticed_sigma` something acts that the model lacks: it pulls the offset as well,

@@ -1,4 +1,4 @@
-// Form drag of what slides through air: F = −k |v| v.
+// Form drag of a body that slides through air: F = −k |v| v.
 //
 // coefficient_kg_m: k ≥ 0, ½ ρ c_d A of a body.
 #include "attitude/disturbances/kind.h"

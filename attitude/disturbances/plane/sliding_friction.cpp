@@ -1,4 +1,4 @@
-// Dry friction of what slides: F = −μ m g v/|v|.
+// Dry friction of a sliding body: F = −μ m g v/|v|.
 //
 // coefficient: μ ≥ 0. Below a speed of 1e-4 m/s it fades with the speed, so that a platform that
 // comes to rest stays within a creep of that size.

@@ -1,4 +1,4 @@
-// A spring or cable that holds what slides: F = f − k r.
+// A spring or cable that holds a sliding body: F = f − k r.
 //
 // stiffness_N_per_m: k ≥ 0; pull_N[2]: f at the lab's origin, so that f/k is where it pulls to.
 #include "attitude/disturbances/kind.h"
