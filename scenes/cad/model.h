@@ -20,7 +20,7 @@ struct CadConventions {
   bool y_is_up = false;          // (x, y, z) is body (x, −z, y), as in glTF; else the body's own
 };
 
-// Units that `[scene] unit` takes, and what they are in metres; 0 for any other word.
+// Units that `[scene] unit` takes, in metres; 0 for any other word.
 double metres_of_unit(const std::string& unit);
 std::vector<std::string> cad_units();
 

@@ -332,7 +332,7 @@ class Assembly {
   const GltfOptions& options_;
   MemoryBudget* budget_;
   gltf::GeometryReader geometry_;
-  GltfModel model_;  // before what reads files into it
+  GltfModel model_;  // before the members that read files into it
   const GltfOpen& open_;
   SurfaceFiles beside_model_;
   gltf::MaterialOverrides overrides_;
