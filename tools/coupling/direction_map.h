@@ -23,7 +23,8 @@ struct DirectionMap {
 // is for that, else by rays. When the directions cover the sphere, the wrench per pressure is a
 // file of the result in the SPAD layout. The experiment's only source must be a sun. Directions are
 // shared out over `threads` (0: all); `run` itself is best made for one. `watch` has each traced
-// for it. With a checkpoint what is done is kept there now and then, and gone on from.
+// for it. With a checkpoint, finished nodes are saved there periodically, and the run resumes from
+// it.
 DirectionMap map_over_directions(const Console& console, const OpticalRun& run, int threads,
                                  const NodeWatch& watch = {}, CheckpointFile* checkpoint = nullptr);
 

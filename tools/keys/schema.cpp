@@ -178,7 +178,7 @@ std::string quantity_of(const Key& key) {
   return unit.unit.empty() ? key.name : unit.stem + " of " + unit.dimension;
 }
 
-// Every key that a table can hold, whatever it chooses.
+// Every key that a table can hold, with any of its choices.
 void flatten(const std::vector<Key>& keys, std::vector<const Key*>& all) {
   for (const Key& key : keys) {
     all.push_back(&key);
@@ -219,7 +219,7 @@ class ObjectSchema {
   }
 
  private:
-  // Keys of one quantity that mean the same whatever was chosen.
+  // Keys of one quantity whose meaning is independent of the choice.
   bool is_one(const Key& key) const {
     const std::vector<const Key*>& same = variants_.at(quantity_of(key));
     const double to_SI = unit_of_key(key.name).to_SI;

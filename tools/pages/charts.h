@@ -72,7 +72,7 @@ Map scan_map(const ScanGroup& group, const ScanView& shown, size_t number);
 
 // The curves that a sweep holds, by their numbers.
 std::vector<int> sweeps_of(const LightSeries& light);
-// A sweep: points beside both models, and what they miss.
+// A sweep: points beside both models, and their residuals.
 Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_found);
 
 // The array from its front as an element of a page, cells by their numbers, those that something

@@ -44,7 +44,7 @@ void add_light(SceneStage& stage, const OpticalRun& run, const RigidTransform& l
                const OpticalResult& result, size_t lights);
 
 // The light at up to 12 of some attitudes of the body, evenly over them; each of them shows the
-// nearest, and the stage's remark says so.
+// nearest, and the stage's remark states it.
 void light_along(SceneStage& stage, const OpticalRun& run, const std::vector<Quat>& lab_from_body);
 
 // The surface of a receiver's bins, to be painted with maps that the caller gives.

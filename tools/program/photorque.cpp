@@ -80,9 +80,9 @@ int run(int argc, char** argv, Interruption& interruption) {
 }
 
 // The last resort: one line and a documented status where a library, or this program, would end by
-// a signal. Calls nothing but what is allowed in a handler.
+// a signal. Calls only functions that are allowed in a handler.
 [[noreturn]] void end_after_fault(int) {
-  // Libraries that do not check what they allocate end here too.
+  // Libraries that do not check their allocations end here too.
   constexpr size_t some = size_t{256} << 20;
   const bool has_memory = ::mmap(nullptr, some, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS,
                                  -1, 0) != MAP_FAILED;

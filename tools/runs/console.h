@@ -27,7 +27,7 @@ class Console {
   void line(const std::string& text = "") const;
   void heading(const std::string& text) const;
 
-  // For what only --verbose prints: silent without it.
+  // For output of --verbose only: silent without it.
   Console details() const;
 
   // For TraceOptions::progress and the like; empty without a listener.

@@ -160,7 +160,7 @@ void RunDatabase::require_plain_tables() const {
   if (others.step() && others.whole(0) > 0) fail("a database with other tables than a sweep's");
 }
 
-// Readers do not wait for writers (WAL), and what is committed stays after a power cut (FULL).
+// Readers do not wait for writers (WAL), and committed runs survive a power cut (FULL).
 void RunDatabase::prepare_tables() {
   Statement tables(*this, "SELECT count(*) FROM sqlite_master");
   const bool is_new = tables.step() && tables.whole(0) == 0;
