@@ -11,9 +11,9 @@ namespace photorque {
 
 // When gyro and attitude contradict each other as read, and one other reading of the same numbers
 // (quaternion conjugated, scalar last, axes permuted or reversed, degrees per second under a header
-// that says radians or the reverse) makes them agree, the observations are changed to that reading
-// and a sentence says so. Empty: nothing was changed. Without a gyro nothing can be checked. The
-// segments of one recording are read in one way: long ones decide for short ones.
+// that says radians or the reverse) makes them agree, the observations are changed to that reading.
+// Returns a sentence about it; empty: nothing was changed. Without a gyro nothing can be checked.
+// The segments of one recording are read in one way: long ones decide for short ones.
 std::string repair_conventions(std::span<Observation> segments);
 
 // How roll, pitch and yaw of a recording are to be read.

@@ -76,9 +76,9 @@ std::vector<double> usual_nearby(const std::vector<double>& sizes) {
   return usual;
 }
 
-// Rows at which the angle about the one axis, or the path of what slides, has a kink that its own
-// readings do not know: an unrecorded firing, a wall. Noise and torques make those nearby alike;
-// what has decayed later says nothing of the beginning.
+// Rows at which the angle about the one axis, or the path of a sliding body, has a kink that its
+// own readings do not know: an unrecorded firing, a wall. Noise and torques make those nearby
+// alike; what has decayed later says nothing of the beginning.
 std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   std::vector<char> kinks(rows.blocks(), 0);
   const bool slides = platform.slides();

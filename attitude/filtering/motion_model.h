@@ -76,7 +76,7 @@ class MotionModel {
   // The motion has changed by an unknown kick: rate and attitude are uncertain again.
   void begin_anew(FilterState& state) const;
 
-  // To a later time; `gyro_rad_s` is read there and drives where the motion says so and all three
+  // To a later time; `gyro_rad_s` is read there and drives if the motion requires it and all three
   // axes were read.
   Transition advance(FilterState& state, double time_s, const Vec3& gyro_rad_s) const;
 

@@ -52,7 +52,7 @@ constexpr NumberKey initial_time(
 constexpr TextKey commands(
     "commands",
     "CSV: `t_s` and any of `command_x_N_m`, `…_y_…`, `…_z_…`, `command_x_N`, `command_y_N` (of "
-    "what slides), `battery_current_A`, "
+    "a sliding body), `battery_current_A`, "
     "`led_current_A`, each row held until the next (zero-order hold); *or*",
     {.usually = "none"});
 constexpr NumberKey time("time_s", {}, "rising");

@@ -135,7 +135,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
 
 DisturbanceKind kind() {
   return {.name = "radiation_pressure",
-          .summary = "light pushes on what it falls on",
+          .summary = "light exerts pressure on the surfaces that it meets",
           .read = read,
           .screening = {.of_experiment = of_experiment,
                         .widths = "1 m³, where `[environment.sun]` is stated"},

@@ -29,7 +29,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 DisturbanceKind kind() {
   return {.name = "body_force",
-          .summary = "a constant force that turns with what slides",
+          .summary = "a constant force that turns with a sliding body",
           .read = read,
           .screening = {.parametrisations = {{"a constant force acts that turns with the platform: "
                                               "a leaking thruster, a hose, a fan on board",

@@ -28,15 +28,16 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "sliding_friction",
-          .summary = "dry friction of what slides, the same at every speed",
-          .read = read,
-          .screening = {.parametrisations = {{"dry friction brakes what slides, the same at every "
-                                              "speed",
-                                              {EffectKey::not_negative(coefficient.name, 1e-3)}}},
-                        .needs = Requirement::plane},
-          .budget = {.reason_against = "a force, not a torque"},
-          .keys = {coefficient}};
+  return {
+      .name = "sliding_friction",
+      .summary = "dry friction of a sliding body, equal at every speed",
+      .read = read,
+      .screening = {.parametrisations = {{"dry friction brakes a sliding body, equally at every "
+                                          "speed",
+                                          {EffectKey::not_negative(coefficient.name, 1e-3)}}},
+                    .needs = Requirement::plane},
+      .budget = {.reason_against = "a force, not a torque"},
+      .keys = {coefficient}};
 }
 
 }  // namespace photorque::kinds::sliding_friction
