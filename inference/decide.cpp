@@ -254,7 +254,7 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
     d.finding = Finding::unknown;
     d.because = only_empirical   ? "a smooth law without physics explains the recording better"
                 : structure_left ? "the best known physics leaves structure in the recording"
-                                 : "the best known physics does not predict what was held out";
+                                 : "the best known physics does not predict the held-out data";
     d.chosen = only_empirical ? empirical : named;
     const bool law_does = only_empirical && judge.predicts(empirical) &&
                           judge.predicts_far_better(empirical) &&

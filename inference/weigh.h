@@ -138,8 +138,8 @@ class Weighing {
   }
 
   // More readings cannot lower χ²: where all runs leave less than some of them do, the fit to these
-  // ended in another minimum, and what was held out would seem to be predicted beyond measure. It
-  // starts again from where the fit to all ended.
+  // ended in another minimum, and the held-out data would seem to be predicted too well. It starts
+  // again from where the fit to all ended.
   void bring_to_one_minimum() {
     parallel_for(leaders_.size(), threads_, [&](size_t k) {
       const Trial& joint = leaders_[k].joint;
@@ -270,8 +270,8 @@ class Weighing {
     return domain_.assemble(start, members, train_, effort);
   }
 
-  // Of an explanation that leads already the better pair stays: what is held out is the difference
-  // of the two fits, which have to be of one minimum.
+  // Of an explanation that leads already the better pair stays: the held-out evidence is the
+  // difference of the two fits, which have to be of one minimum.
   void add_leader(Trial train, Trial joint) {
     const auto leader = std::find_if(leaders_.begin(), leaders_.end(), [&](const Leader& l) {
       return same_candidates(train.candidates, trials_[l.at].candidates);
@@ -391,7 +391,7 @@ class Weighing {
   std::vector<Leader> leaders_;
 };
 
-// How well the leaders also explain what was held out: their evidence on all runs together takes
+// How well the leaders also explain the held-out data: their evidence on all runs together takes
 // the place of that on the fitted ones. The others gain over the nominal model in the ratio of the
 // best, and stay below the leaders. What only all runs together show, because one of them alone
 // leaves it to the uncertainty of a nominal model, is scored and added to `trials`, fitted to the

@@ -99,7 +99,7 @@ Answer searched(const NominalModel& nominal, const Fit& nominal_fit, const Recor
   a.trials =
       inference::search(domain, base, data.train, options.threads, begin ? &*begin : nullptr);
   a.depends_on = dependences(a.trials, a.all);
-  tell(options, "comparing with what was held out");
+  tell(options, "comparing with the held-out data");
   inference::weigh_with_held_out(domain, data.train, data.held, options.threads, a.trials);
   const auto excess = [&](size_t trial) {
     return domain.excess_sigma(a.trials[trial], data.train);
@@ -138,9 +138,8 @@ void keep_what_predicts(const RecordedData& data, const Thresholds& limits, Answ
   const std::vector<size_t>& acts = a.trials[kept].candidates;
   std::erase_if(a.decision.beside_law,
                 [&](size_t c) { return std::find(acts.begin(), acts.end(), c) == acts.end(); });
-  a.decision.because = kept == 0 ? "nothing that was tried predicts what was held out"
-                                 : "what explains the recording best does not predict what was "
-                                   "held out";
+  a.decision.because = kept == 0 ? "no tried explanation predicts the held-out data"
+                                 : "the best explanation does not predict the held-out data";
 }
 
 // The answer with the noise that the readings show about their explanation.

@@ -283,7 +283,7 @@ void decide_beside_the_rest(Answer& a) {
   const double least = *std::ranges::min_element(a.beside->sigma);
   const double by_chance = 0.5 * std::erfc(least / std::sqrt(2.0));
   a.decision.confidence = std::max(0.0, 1.0 - static_cast<double>(a.all.size()) * by_chance);
-  a.decision.because = "more is left than the noise of the readings, and counts as noise";
+  a.decision.because = "the residual exceeds the noise of the readings, and counts as noise";
 }
 
 }  // namespace
@@ -317,7 +317,7 @@ std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, Recorde
         with_discrepancy(residuals_of(left_by, data.train), data.train, own, Remainder::white);
     if (round > 0 && !is_quieter(noise, data.train.front().noise)) break;
     use_noise(noise, data);
-    tell(options, "naming what stands out, with the rest counted as noise");
+    tell(options, "naming effects, with the residual counted as noise");
     Answer next = searched(nominal, fit_nominal(nominal, data.train, options.limits), data, options,
                            among_beside_the_rest(nominal, data), laws);
     Contest contest(next, data, stretches_of(next, data, own), options.threads);

@@ -106,7 +106,7 @@ std::vector<std::string> warnings_of(const RecordedData& data,
   for (const InstrumentFinding& finding : data.instruments) warnings.push_back(finding.text);
   if (decision.undecided) {
     warnings.push_back(
-        "the recordings and what was held out show together what neither shows alone, but not "
+        "fitted and held-out recordings together show an effect that neither shows alone, but not "
         "which effect it is: see the alternatives");
   }
   return warnings;
@@ -129,15 +129,16 @@ void say_limits_of_held_out(Diagnosis& d) {
   const double before = d.holdout->chi2_per_sample_before, after = d.holdout->chi2_per_sample_after;
   if (!d.effects.empty() && after > as_well * before) {
     d.warnings.push_back(written(
-        "what was held out does not test the names: the nominal model predicts it as well (χ² per "
+        "the held-out data do not test the names: the nominal model predicts them as well (χ² per "
         "sample %.3g, with the names %.3g)",
         before, after));
   }
   const double sigma = (after - 1.0) * std::sqrt(0.5 * static_cast<double>(d.holdout->samples));
   if (sigma < too_quiet_sigma) {
     d.warnings.push_back(written(
-        "what was held out scatters less than the noise that was used (χ² per sample %.3g, %.0f "
-        "standard errors below 1): the noise is stated too large, or took up something that acts",
+        "the held-out data scatter less than the noise that was used (χ² per sample %.3g, %.0f "
+        "standard errors below 1): the stated noise is too large, or an effect was counted as "
+        "noise",
         after, -sigma));
   }
 }

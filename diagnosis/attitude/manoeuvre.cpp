@@ -56,8 +56,8 @@ std::vector<StartManoeuvre> start_manoeuvres() {
       {"repeat the run with the opposite sense of rotation: a driving torque keeps its sign, "
        "friction changes it",
        turn_back},
-      {"repeat the run from a yaw a quarter turn further: what is fixed to the body turns with "
-       "it, what is fixed to the room does not",
+      {"repeat the run from a yaw a quarter turn further: effects fixed to the body turn with "
+       "it, those fixed to the room do not",
        turn_a_quarter},
       {"start the run at 0.2 rad more tilt: righting torques depart from the sine, each in its own "
        "way",

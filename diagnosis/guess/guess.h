@@ -23,9 +23,9 @@ void guess_module(TomlDocument& experiment, const std::vector<std::filesystem::p
                   const std::filesystem::path& folder);
 
 struct GuessedColumn {
-  std::string in_file;  // as the header has it
-  std::string channel;  // "gyro_x_deg_s", its unit that of the file; empty: unknown
-  bool is_sure = true;  // the file says so itself: the channel's own name, or its unit beside it
+  std::string in_file;       // as the header has it
+  std::string channel;       // "gyro_x_deg_s", its unit that of the file; empty: unknown
+  bool is_sure = true;       // stated by the file: the channel's own name, or its unit beside it
   std::string because = {};  // assumption behind one that is not sure
 };
 

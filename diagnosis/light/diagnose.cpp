@@ -149,7 +149,7 @@ LightAnswer explain_light(const LightLab& lab, const LightBelief& nominal, Light
                                        domain.limits().search.max_effects, options.threads)
             .run(from);
   }
-  tell(options, "comparing with what was held out");
+  tell(options, "comparing with the held-out data");
   inference::weigh_with_held_out(domain, data.train, data.held, options.threads, answer.trials);
   std::vector<FittedRun> everything = data.train;
   everything.insert(everything.end(), data.held.begin(), data.held.end());
@@ -301,7 +301,7 @@ Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
   d.data = data.quality;
   if (answer.decision.undecided) {
     d.warnings.push_back(
-        "the recordings and what was held out show together what neither shows alone, but not "
+        "fitted and held-out recordings together show an effect that neither shows alone, but not "
         "which effect it is: see the alternatives");
   }
   if (!answer.decision.held_out_tests_names) d.warnings.push_back(untested_names(*d.holdout));

@@ -76,7 +76,7 @@ inference::Parameters reference_parameters(const ModuleDesign& design,
   const VectorXd logs = logs_of(start.diode, design.cells, design.reference_temperature_K);
   inference::Parameters parameters;
   const char* const names[] = {"photocurrent", "saturation", "ideality", "series", "shunt"};
-  // Bounds of what silicon and its contacts can be: a fit that ends there says so by its misfit.
+  // Bounds of real silicon and its contacts: a fit that ends there has a large misfit.
   const double low[] = {logs[0] - 1.0, logs[1] - 30.0, std::log(0.5), std::log(1e-6),
                         std::log(1e-2)};
   const double high[] = {logs[0] + 1.0, logs[1] + 30.0, std::log(4.0), std::log(1e2),
