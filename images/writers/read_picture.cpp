@@ -44,8 +44,8 @@ uint32_t checksum_of(std::string_view bytes) {
   return ~sum;
 }
 
-// Whether every chunk of a PNG is there and as it was written: of one that is not, its library says
-// so on the terminal, beside the one line of this program.
+// Whether every chunk of a PNG is there and as it was written: otherwise its library prints on the
+// terminal, beside the one line of this program.
 bool has_whole_chunks(std::string_view png) {
   constexpr size_t signature = 8,
                    around = 12;  // of a chunk: length and type before, checksum after

@@ -51,8 +51,8 @@ void light_along(SceneStage& stage, const OpticalRun& run, const std::vector<Qua
 PaintedSurface painted_receiver(const OpticalRun& run, const std::string& receiver);
 
 // The even ellipsoid whose principal moments are in the platform's proportions, half as long as
-// 1 m at its longest, and a rod along body x; camera and radius to match, and a remark that says
-// so. A platform about one axis has one moment: a disc about that axis.
+// 1 m at its longest, and a rod along body x; camera and radius to match, and a remark that
+// states it. A platform about one axis has one moment: a disc about that axis.
 SceneStage platform_stage(const Platform& platform);
 
 // Recordings as people know them: the end of one that was held out is part of it again, names are
