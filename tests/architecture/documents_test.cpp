@@ -27,7 +27,7 @@ std::vector<std::string> matches(const std::string& text, const std::regex& patt
   return all;
 }
 
-// Every file and folder of the tree from the top, without what builds and runs leave there.
+// Every file and folder of the tree from the top, without files of builds and runs.
 const std::set<std::string>& tree() {
   static const std::set<std::string> all = [] {
     std::set<std::string> paths;
@@ -341,7 +341,7 @@ TEST(Words, PhrasesAreFoundInCommentsStringsAndDocuments) {
             (std::vector<std::string>{" One", " Three"}));
 }
 
-// Prose of a document: paragraphs and items of lists, without tables, code and what commands write.
+// Prose of a document: paragraphs and items of lists, without tables, code and generated text.
 std::vector<std::string> paragraphs_of(const std::string& document) {
   static const std::regex item(R"(^\s*([-*]|\d+\.) )");
   std::istringstream lines(prose_of_document(document));

@@ -58,7 +58,7 @@ TEST(Diagnose, NamesADipoleAndMeasuresIt) {
   ASSERT_TRUE(d.holdout.has_value());
   EXPECT_LT(d.holdout->chi2_per_sample_after, 1.15);
   EXPECT_GT(d.holdout->chi2_per_sample_before, 1.5);
-  // The best explanation flew what was held out.
+  // The best explanation predicted the held-out data.
   ASSERT_TRUE(d.alternatives.front().holdout_chi2_per_sample.has_value());
   EXPECT_NEAR(*d.alternatives.front().holdout_chi2_per_sample, 1.0, 0.15);
 }
@@ -103,7 +103,7 @@ TEST(Score, PredictsWhatTwoEffectsGainTogether) {
               both.log_evidence - one.log_evidence,
               0.05 * (both.log_evidence - one.log_evidence) + 1.0);
 
-  // About the fit of both the same form says what one of them taken away would cost.
+  // About the fit of both, this form predicts the cost of removing one of them.
   const inference::LinearProblem about = linear_problem(both, all, terms_of(both), runs);
   for (const inference::Subset& s : inference::best_subsets(about, 2, {})) {
     if (s.groups.size() == 2) {

@@ -116,7 +116,7 @@ noise_rad_s = 0.002
   EXPECT_NEAR(d.chi2_per_sample_after, 1.0, 5.0 * std::sqrt(2.0 / (3.0 * 450.0)));
 }
 
-// Angular momentum in the frame of the stars is kept whatever a wheel on board does.
+// Angular momentum in the inertial frame is conserved at any speed of a wheel on board.
 TEST(Machines, AWheelExchangesMomentumWithItsBody) {
   NominalModel nominal = machine(R"([platform]
 topology = "free"
@@ -456,7 +456,7 @@ TEST(Machines, ATwistedLineIsFoundByTheRateAlone) {
   expect_near_truth(d, "bearing_drag", "coefficient_N_m_s", c, 0.0);
 }
 
-// The scatter of what moves, not of what rests, and no less than the step.
+// The scatter of moving channels, not of resting ones, and no less than the step.
 TEST(Machines, AnEncoderAtRestSaysNothingOfItsNoise) {
   Platform axle;
   axle.topology = Topology::one_axis;

@@ -1,4 +1,4 @@
-// Where a fit ends before it converges: what is not worth its time.
+// Fits that end before they converge, because they are not worth their time.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,8 +33,8 @@ TEST(Fit, EndsWhereItFallsTooSlowlyToBeWorthIt) {
   EXPECT_EQ(worth.chi2, converging.chi2);
 }
 
-// χ² = 1e6 + x²: every step is too short, as above, and what it gains is less than a thousandth.
-// Where as much is left of a million samples, it fits, and goes on.
+// χ² = 1e6 + x²: every step is too short, as above, and its gain is less than a thousandth. Where
+// as much is left of a million samples, it fits, and goes on.
 TEST(Fit, EndsWhereItFitsBadlyAndCreeps) {
   const auto model = [](Eigen::Index samples) {
     return ResidualModel({{"x", "", 100.0}},

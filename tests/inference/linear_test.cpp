@@ -132,7 +132,8 @@ TEST(Undetermined, IsFlaggedAndNeverGetsAnErrorOfZero) {
   const Eigen::MatrixXd covariance = (two.transpose() * two).inverse();
   EXPECT_NEAR(known.matrix(0, 0) / covariance(0, 0), 1.0, 1e-9);
   EXPECT_NE(found.report().find("undetermined"), std::string::npos);
-  // A prior determines what the data do not; the report says that it was the prior alone.
+  // A prior determines a parameter that the data do not; the report states that it was the prior
+  // alone.
   Parameters with_prior = parameters;
   with_prior.shared[2].sigma = 1e-6;
   with_prior.shared[3].sigma = 0.5;

@@ -158,7 +158,7 @@ TEST(WarmArray, IsAtTheTemperatureThatSciPyFinds) {
   }
 }
 
-// A stated temperature is that of the cells, whatever the light; its slope is given as well.
+// A stated temperature is that of the cells in any light; its slope is given as well.
 TEST(WarmArray, AStatedTemperatureHolds) {
   ArrayDesign design = twelve_cells({});
   const ArrayResult steady = evaluate_array(design, even_light(1000.0), responsivity_A_W);
