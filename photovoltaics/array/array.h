@@ -24,7 +24,7 @@ struct ArrayResult {
   // that enters at normal incidence.
   Estimate power_entering_W;
   bool entry_known = false;      // false: all light counts as perpendicular, nothing is subtracted
-  Estimate sum_of_cells_W;       // every cell at its own maximum
+  Estimate sum_of_cells_W;       // sum of the cells' maximum powers
   Estimate efficiency;           // power_W / power_on_cells_W
   Estimate efficiency_of_cells;  // sum_of_cells_W / power_on_cells_W
   Estimate mismatch_loss;        // 1 − power_W / sum_of_cells_W: uneven light, and diodes
