@@ -71,7 +71,7 @@ void remove_where(const fs::path& folder, const std::function<bool(pid_t)>& unwa
   }
 }
 
-// Whether what was opened is on the disk. True where the file system cannot do that.
+// Whether the opened file is on the disk. True where the file system cannot do that.
 bool sync_and_close(int opened) {
   const bool synced = ::fsync(opened) == 0 || errno == EINVAL || errno == EROFS;
   ::close(opened);

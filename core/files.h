@@ -23,8 +23,8 @@ std::optional<std::string> read_file_beside(const std::filesystem::path& folder,
                                             const std::string& name, uint64_t largest_bytes,
                                             bool may_leave);
 
-// A hidden name beside `path`, with its extension, for what is not whole yet. It names process and
-// machine, so that what a killed process leaves is distinguishable from the work of a living one.
+// A hidden name beside `path`, with its extension, for an incomplete file. It names process and
+// machine, so that files of a killed process are distinguishable from those of a living one.
 std::filesystem::path temporary_beside(const std::filesystem::path& path);
 
 // Removes what one process of this machine left in `folder` under such names, or what all did that
@@ -32,7 +32,7 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path);
 void remove_leftovers(const std::filesystem::path& folder, int process);
 void remove_leftovers_of_the_dead(const std::filesystem::path& folder);
 
-// Brings the names in a folder onto the disk: what is new or renamed there survives a power cut.
+// Writes the names in a folder to the disk: new and renamed files there survive a power cut.
 // InputError when that fails, but not where a file system cannot do it or the folder may not be
 // read.
 void sync_folder(const std::filesystem::path& folder);

@@ -10,7 +10,7 @@ std::filesystem::path own_file() {
     const std::filesystem::path holder = info.dli_fname;
     if (holder.filename().string().find(".so") != std::string::npos) return holder;
   }
-  // The loader knows a program by the word with which it was started.
+  // The loader identifies a program by the word with which it was started.
   return std::filesystem::read_symlink("/proc/self/exe");
 }
 

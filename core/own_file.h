@@ -1,4 +1,4 @@
-// Where this code lies: what belongs to it (fonts, modules) is found from there.
+// The place of this code, from which its fonts and modules are found.
 #pragma once
 
 #include <filesystem>

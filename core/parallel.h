@@ -1,4 +1,4 @@
-// Loops over threads. The only place that knows TBB.
+// Loops over threads. The only place that uses TBB.
 //
 // Results must not depend on the number of threads: cut the work into a fixed number of items,
 // let each item write only its own output, and combine the outputs in order of the items.

@@ -137,7 +137,7 @@ struct Plot {
 struct BarChart {
   std::string name;
   std::string title;
-  std::string x_label;  // what the lengths are, with the unit in brackets
+  std::string x_label;  // quantity of the lengths, with the unit in brackets
   struct Bar {
     std::string label;  // left of the bar
     double value = 0.0;

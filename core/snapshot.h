@@ -1,7 +1,7 @@
 // The state of a run as bytes, so that it can be broken off and gone on with later, to the last
 // bit.
 //
-// One function of a class names what its state is made of, for both directions:
+// One function of a class names the parts of its state, for both directions:
 //   void Walk::keep(Snapshot& snapshot) { snapshot(steps_, where_m_, path_m_); }
 // Values that follow from the run's inputs are recomputed, not kept.
 #pragma once
@@ -31,7 +31,7 @@ class Snapshot {
  public:
   // Takes a state.
   Snapshot() = default;
-  // Gives back what `bytes` hold, which must outlive it.
+  // Restores the state from `bytes`, which must outlive it.
   explicit Snapshot(const std::string& bytes) : source_(&bytes) {}
 
   template <class... T>

@@ -6,7 +6,7 @@
 
 namespace photorque {
 
-// More bands than this are refused; it bounds what a ray carries.
+// More bands than this are rejected; it bounds the size of a ray.
 inline constexpr int max_bands = 8;
 
 // Contiguous wavelength bands, ascending edges in metres; n bands have n + 1 edges. The default is

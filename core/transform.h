@@ -56,7 +56,7 @@ RigidTransform frame_looking_along(const Vec3& direction, const Vec3& origin_m);
 // The shortest rotation that takes the direction of `from` to that of `to` (any lengths but zero).
 Quat rotation_between(const Vec3& from, const Vec3& to);
 
-// Rotations as rotation vectors: what filters and least squares over attitudes need.
+// Rotations as rotation vectors, for filters and least squares over attitudes.
 
 // The rotation by a rotation vector [rad].
 inline Quat turn_by(const Vec3& rotation_rad) {

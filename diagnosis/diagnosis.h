@@ -1,4 +1,4 @@
-// What `diagnose` found, as plain data. The engine fills it; the writers of diagnosis.json,
+// Result of `diagnose` as plain data. The engine fills it; the writers of diagnosis.json,
 // improved.toml and report.html read it.
 #pragma once
 
@@ -16,7 +16,7 @@
 namespace photorque {
 
 enum class Verdict {
-  consistent,       // what differs is noise, or within the uncertainty that the user stated
+  consistent,       // differences are noise, or within the uncertainty that the user stated
   missing_physics,  // the effects named explain all that differs
   unexplained,      // structure is left after the best known physics
 };
@@ -31,25 +31,26 @@ struct FittedParameter {
   double neutral = 0.0;            // the value with which nothing acts
 };
 
-// An effect of the catalogue that acts in addition to what the experiment states.
+// An effect of the catalogue that acts in addition to those of the experiment.
 struct FoundEffect {
   std::string kind;          // name of a disturbance kind
   double probability = 0.0;  // that it acts, given the recordings, 0 to 1
   std::vector<FittedParameter> parameters;
   std::vector<std::string> indistinguishable_from;  // kinds that explain these data as well
   std::string explanation;                          // one sentence of physics
-  // Where numbers are known together and none of them by itself: "compliance_s2: x − 0.99 z =
-  // (4.4 ± 0.1)×10⁻¹⁰".
+  // Combinations of numbers that are determined where no single number is: "compliance_s2: x − 0.99
+  // z = (4.4 ± 0.1)×10⁻¹⁰".
   std::vector<std::string> known_together = {};
-  // What is no number: the node of a wall, the axes of a box.
+  // Parameters that are texts: the node of a wall, the axes of a box.
   std::vector<std::pair<std::string, std::string>> texts = {};
   // Under which table an experiment has it; empty: Diagnosis::effect_table.
   std::string table = {};
-  // Of what moves beside the body: how it begins in the first recording, by the keys of its kind.
+  // Initial states of a part that moves beside the body, in the first recording, by the keys of its
+  // kind.
   std::vector<FittedParameter> begins = {};
 };
 
-// What recordings of one kind say, where motion and light were recorded together.
+// Result of recordings of one kind, where motion and light were recorded together.
 struct DomainAnswer {
   std::string of;  // "motion", "light"
   Verdict verdict = Verdict::consistent;
@@ -100,8 +101,8 @@ struct Where {
 
 // One explanation among those that were fitted in full.
 struct Alternative {
-  std::vector<std::string> kinds;      // empty: nothing is missing
-  std::string label = {};              // for people when kinds do not say it: "unknown in heading"
+  std::vector<std::string> kinds;  // empty: nothing is missing
+  std::string label = {};          // printed where the kind does not say it: "unknown in heading"
   double log_evidence_relative = 0.0;  // natural logarithm, over that of "nothing is missing"
   std::optional<double> holdout_chi2_per_sample = {};
   std::string remark = {};  // why it was not chosen: "would feed energy"
@@ -119,12 +120,12 @@ struct Holdout {
   std::optional<inference::Predictive> predictive = {};
   double explained_fraction = 0.0;
 };
-// Of what the nominal model leaves of readings beyond noise, the part that another model explains,
-// 0 to 1; 1 where it leaves less than five standard errors of noise, 0 where the other diverges.
+// The fraction of the nominal model's residual beyond noise that another model explains, 0 to 1; 1
+// where that residual is less than five standard errors of noise, 0 where the other diverges.
 double explained_fraction(double chi2_per_sample_before, double chi2_per_sample_after,
                           int64_t samples);
 
-// An experiment that would tell apart what these data cannot.
+// An experiment that distinguishes effects which these data do not.
 struct Manoeuvre {
   std::vector<std::string> separates;  // kinds
   std::string text;                    // "spin up to 1 rad/s and let it run down for 600 s"
@@ -136,7 +137,7 @@ struct Manoeuvre {
 // drawn.
 struct ChannelSeries {
   std::string name;   // "attitude_x_arcsec"
-  std::string label;  // for people: "Attitude about lab x"
+  std::string label;  // as printed: "Attitude about lab x"
   std::string unit;   // of measured, before and after
   std::vector<double> time_s;
   std::vector<double> measured, before, after;
@@ -144,14 +145,14 @@ struct ChannelSeries {
   std::vector<double> residual_before, residual_after;  // measured − model
   double noise = 0.0;  // one standard deviation of one reading, residual_unit
 };
-// How the body stood over time, lab from body, where a recording says it. All vectors have the
+// Attitude of the body over time, lab from body, where a recording has it. All vectors have the
 // length of `time_s`; those of the models are empty where light was diagnosed: there the motion is
 // exact.
 struct AttitudeSeries {
   std::vector<double> time_s;
   std::vector<Quat> measured;
-  // Rotation vectors about lab axes that take what the nominal model and what the chosen one would
-  // have the camera report to what it reported, and one standard error of theirs.
+  // Rotation vectors about lab axes from the camera readings of the nominal and of the chosen model
+  // to the real readings, and one standard error of them.
   std::vector<Vec3> off_before_rad, off_after_rad, error_rad;
 };
 
@@ -176,7 +177,7 @@ struct RecordingSeries {
   bool is_held_out = false;  // all of it
 };
 
-// The array on its receiver, map coordinates [m], and what something found acts on.
+// The array on its receiver, map coordinates [m], and the parts that a found effect concerns.
 struct DrawnArray {
   struct Cell {
     double u_low, u_high, v_low, v_high;
@@ -200,25 +201,25 @@ struct Replay {
   std::optional<std::array<double, 4>> initial_place_m_m_s = {};
 };
 
-// What the readings show of the instruments themselves: noise that is not as the experiment states,
-// clocks. Never platform physics.
+// Finding about an instrument: noise that differs from the experiment's, clocks. Never platform
+// physics.
 struct InstrumentFinding {
   std::string channel;  // "attitude_x_arcsec", "gyro_z_rad_s", "time"
   std::string what;     // "noise_level", "noise_correlation_time_s", …; `value` is in its unit
   double value = 0.0;
   double sigma = 0.0;  // standard error of the value; 0: has none
-  std::string text;    // one sentence for people
+  std::string text;    // one sentence
 };
 
 // Recordings that are of one body, where others are of another: its inertia tensor in units of its
-// mean moment, which is all that motion without a known torque tells.
+// mean moment, which is all that motion without a known torque determines.
 struct BodyOfRecordings {
   std::vector<std::string> recordings;         // names as given
   std::vector<double> inertia_relative;        // Ixx, Iyy, Izz, Ixy, Ixz, Iyz
   std::vector<double> inertia_relative_sigma;  // of each
 };
 
-// What the files held.
+// Rows, rejected and repaired readings, and gaps of the files.
 struct DataQuality {
   int64_t rows = 0;
   int64_t used = 0;                         // rows of which a number entered the fit
@@ -241,8 +242,8 @@ struct Diagnosis {
   // light.
   std::string effect_table = "disturbance";
   std::vector<EmpiricalTorque> empirical;
-  // Effects that the model reported contains beside these without being named: it predicts what it
-  // does only with them.
+  // Effects that the reported model contains beside these without naming them: its predictions need
+  // them.
   std::vector<FoundEffect> unnamed = {};
   double chi2_per_sample_before = 0.0;
   double chi2_per_sample_after = 0.0;
@@ -251,7 +252,7 @@ struct Diagnosis {
   std::optional<Holdout> holdout;
   std::vector<Alternative> alternatives;  // best first
   std::vector<Manoeuvre> manoeuvres;
-  // What was nominal with an uncertainty, after the fit; keys as "disturbance[0].offset_m".
+  // Parameters with a prior, after the fit; keys as "disturbance[0].offset_m".
   std::vector<FittedParameter> priors_refined;
   std::vector<InstrumentFinding> instruments;
   std::vector<BodyOfRecordings> bodies;  // two or more: the recordings are not of one body

@@ -66,13 +66,13 @@ void add_effect(TomlDocument& document, const FoundEffect& effect, const std::st
   if (!effect.explanation.empty()) document.comment(effect.explanation);
   document.comment("Probability " + print("%.3f", effect.probability) + ".");
   for (const std::string& other : effect.indistinguishable_from) {
-    document.comment("The recordings cannot tell it from " + other + ".");
+    document.comment("The recordings do not distinguish it from " + other + ".");
   }
   TomlTable& table = document.append(table_name);
   add_kind(document, table, effect.kind);
   for (const auto& [key, value] : effect.texts) document.set(table, key, {value});
   if (table_name == "effect") {
-    // Exact numbers, with their errors as a comment: of what acts on light there is no prior.
+    // Exact numbers, with their errors as a comment: effects on light have no prior.
     for (const FittedParameter& p : effect.parameters) {
       if (p.key == "index" && p.value.size() > 1) {
         // Of places that explain as much the first is taken.
@@ -163,14 +163,14 @@ bool refine(TomlDocument& document, const FittedParameter& p) {
 
 std::string improved_experiment(TomlDocument document, const Diagnosis& diagnosis,
                                 const std::filesystem::path& folder) {
-  // An experiment that propagates has a start of its own.
+  // An experiment that propagates has its own start.
   const std::optional<Replay> replay =
       std::get<TomlTable>(document.root.value).contains("propagate") ? std::nullopt
                                                                      : diagnosis.replay;
   document.add_to_head("Written by photorque diagnose: " + diagnosis.sentence);
   document.add_to_head(
-      "The experiment with its values and comments, blank lines and line breaks apart; what was "
-      "found comes last in each table.");
+      "The experiment with its values and comments, blank lines and line breaks apart; found "
+      "effects come last in each table.");
   std::vector<FittedParameter> others;
   for (const FittedParameter& p : diagnosis.priors_refined) {
     if (!refine(document, p)) others.push_back(p);

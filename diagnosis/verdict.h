@@ -1,4 +1,4 @@
-// The verdict of a diagnosis from what the inference found.
+// The verdict of a diagnosis from the findings of the inference.
 #pragma once
 
 #include "diagnosis/diagnosis.h"
@@ -8,7 +8,7 @@ namespace photorque {
 
 Verdict verdict_of(inference::Finding finding);
 
-// The sentence where what was held out does not tell the names from the nominal model.
+// The sentence where the held-out data do not distinguish the named effects from the nominal model.
 std::string untested_names(const Holdout& holdout);
 
 }  // namespace photorque

@@ -29,7 +29,7 @@ class Judge {
     return true;
   }
 
-  // By what was held out as well, where that was weighed.
+  // With the held-out data as well, where they were weighed.
   bool is_significant(size_t trial) const {
     const Explanation& t = trials_[trial];
     return is_significant(trial,
@@ -81,7 +81,7 @@ class Judge {
     return trial;
   }
 
-  // Whether what was held out tells a trial from the nominal model.
+  // Whether the held-out data distinguish a trial from the nominal model.
   bool is_tested(size_t trial) const {
     const auto &before = trials_.front().holdout_chi2_per_sample,
                &after = trials_[trial].holdout_chi2_per_sample;
@@ -98,8 +98,8 @@ class Judge {
     return equal;
   }
 
-  // Whether the trial predicts what was held out. Where that was asked of the nominal model, one
-  // that was never asked has not shown it.
+  // Whether the trial predicts the held-out data. If the nominal model was tested as well, one that
+  // was never asked has not shown it.
   bool predicts(size_t trial) const {
     const std::optional<Predictive>& p = trials_[trial].predictive;
     if (!p) return !trials_.front().predictive;
@@ -126,7 +126,7 @@ class Judge {
     return result;
   }
 
-  // Whether it predicts what was held out far better than the nominal model, where that was asked.
+  // Whether it predicts the held-out data far better than the nominal model, where that was tested.
   bool predicts_far_better(size_t trial) const {
     const auto &before = trials_.front().holdout_chi2_per_sample,
                &after = trials_[trial].holdout_chi2_per_sample;
@@ -184,7 +184,7 @@ class Judge {
   }
 
   // Whether `whole` beats `part` by the full threshold, does not predict worse, and does not lead
-  // away from what was held out.
+  // away from the held-out data.
   bool is_missed(size_t part, size_t whole) const {
     const Explanation &a = trials_[part], &b = trials_[whole];
     if (b.log_evidence < a.log_evidence + limits_.min_log_odds) return false;
@@ -254,14 +254,14 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
     d.finding = Finding::unknown;
     d.because = only_empirical   ? "a smooth law without physics explains the recording better"
                 : structure_left ? "the best known physics leaves structure in the recording"
-                                 : "the best known physics does not predict what was held out";
+                                 : "the best known physics does not predict the held-out data";
     d.chosen = only_empirical ? empirical : named;
     const bool law_does = only_empirical && judge.predicts(empirical) &&
                           judge.predicts_far_better(empirical) &&
                           checks.excess_sigma(empirical) < limits.max_excess_sigma;
     d.leaves_more = !law_does;
     if (law_does) d.beside_law = judge.indispensable(empirical);
-    // The law is an approximation, and several effects take up together what it leaves.
+    // The law is an approximation, and several effects together absorb its residual.
     if (d.beside_law.size() > 1) d.beside_law.clear();
     d.confidence = probability_of(d.probability, [&](size_t i) { return judge.is_empirical(i); });
     if (structure_left || !predicts) {
@@ -270,8 +270,8 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
     return d;
   }
   if (named == 0) {
-    // What is less likely than nothing is no rival, however many such there are, and neither is
-    // what predicts nothing.
+    // Rivals are explanations that are more likely than the nominal model and in which every name
+    // predicts. The number of unlikely explanations therefore has no influence.
     const double rivals = probability_of(d.probability, [&](size_t i) {
       const bool predicts_nothing = std::ranges::any_of(
           unneeded, [&](const std::string& name) { return judge.has_name(i, name); });
@@ -288,15 +288,15 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
     return judge.has_names_of(named, i) || judge.exchanges_one(named, i);
   });
   const bool is_likely = of_group >= limits.min_probability;
-  // What only the recordings and what was held out show together.
+  // Weak: not probable enough, and not significant in the fitted recordings alone.
   const bool is_weak = d.confidence < limits.min_probability &&
                        !judge.is_significant(named, trials[named].significance);
   d.undecided = is_weak && judge.predicts(0);
   if (d.undecided) {
     d.confidence = 1.0 - d.confidence;
   } else if (is_weak || !is_likely) {
-    // Something acts beyond doubt, and of several explanations none is much likelier than the rest.
-    // What they share may be an error that they share: nothing is named.
+    // An effect is certain, but several explanations are about equally likely. Parameters that they
+    // share may share an error: no effect is named.
     d.finding = Finding::unknown;
     d.because = "several explanations are about as likely";
     d.chosen = named;

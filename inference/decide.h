@@ -1,6 +1,6 @@
 // The verdict on the trials of any domain. Every name passes the same gates:
 //
-//   (a) it is probable, it or what cannot be told from it; else it is a candidate and no name;
+//   (a) it, or an effect not distinguished from it, is probable; else it is only a candidate;
 //   (b) each of its groups of parameters differs from neutral;
 //   (c) segments that a fit left out are predicted better with it than without it;
 //   (d) with all names the held-out χ² agrees with its prediction; else the finding is unknown;
@@ -16,8 +16,8 @@
 namespace photorque::inference {
 
 enum class Finding {
-  nothing_missing,  // what differs is noise
-  named,            // the candidates named explain what differs
+  nothing_missing,  // differences are noise
+  named,            // the named candidates explain the differences
   unknown,          // structure is left after them, or only an empirical candidate takes it up
 };
 
@@ -26,15 +26,15 @@ struct GateLimits {
   // Standard errors over left-out segments by which they are predicted better with a name than
   // without it.
   double min_gain_sigma = 3.0;
-  // χ² of what was held out over that of the nominal model, above which it does not test a name.
+  // χ² of the held-out data over that of the nominal model, above which they do not test a name.
   double max_untested_fraction = 0.9;
-  // Log evidence that tells one place (a cell, an LED) from another: odds of 20 to 1.
+  // Log evidence that separates one place (a cell, an LED) from another: odds of 20 to 1.
   double min_log_odds_of_place = 3.0;
 };
 
-// What a domain computes of its trials for the gates; each is called for few of them.
+// Functions of a domain that check trials for the gates. Each is called for few trials.
 struct Checks {
-  // Structure that the trial leaves of what was fitted (whiteness.h) [sigma].
+  // Structure of the trial's residuals of the fitted data (whiteness.h) [sigma].
   std::function<double(size_t trial)> excess_sigma;
   // Standard errors by which left-out segments are predicted better with the candidate at `which`
   // of the trial than without it. Nothing where there are too few segments; not set: not checked.
@@ -49,7 +49,7 @@ struct Checks {
 // A candidate that passed the gates.
 struct Name {
   size_t candidate = 0;
-  double probability = 0.0;  // that it acts, or what is not told from it
+  double probability = 0.0;  // that it acts, or an effect not distinguished from it
   std::optional<double> gain_sigma = {};
   std::vector<size_t> equal_places = {};  // candidates
 };
@@ -57,8 +57,8 @@ struct Name {
 struct Decision {
   Finding finding = Finding::nothing_missing;
   double confidence = 0.0;  // posterior probability of the finding and the names
-  // Nothing missing only because what shows has no name: the runs and what was held out show it
-  // together, neither does alone, and no candidate is much likelier than all others.
+  // Nothing is missing only because the difference has no name: fitted and held-out runs show it
+  // together, neither does alone, and no candidate is much more likely than all others.
   bool undecided = false;
   // More is left beside the chosen model than noise.
   bool leaves_more = false;
@@ -72,12 +72,12 @@ struct Decision {
   std::vector<size_t> beside_law = {};
   std::vector<double> probability;  // of each trial
   std::vector<Name> names = {};     // of the chosen trial where the finding is `named`
-  // Whether what was held out tells the chosen trial from the nominal model.
+  // Whether the held-out data distinguish the chosen trial from the nominal model.
   bool held_out_tests_names = true;
 };
 
 // Trial 0 is the nominal model. `excess_sigma` is called for the best named trial. "Nothing is
-// missing" has to predict what was held out as well.
+// missing" has to predict the held-out data as well.
 Decision decide(const std::vector<Explanation>& trials, const std::vector<CandidateTraits>& all,
                 const Checks& checks, const Thresholds::Decision& limits);
 

@@ -1,10 +1,10 @@
-// The interface between the search for what is missing and the domain in which it searches.
+// The interface between the search for missing effects and the domain in which it searches.
 //
 // A domain has recordings ("runs"), a nominal model of them, and candidates: terms that may be
 // missing from that model. A trial is the nominal model with some of the candidates, fitted to the
 // runs. The flow is
 //
-//   residual -> score every candidate -> fit -> compare evidence -> weigh with what was held out
+//   residual -> score every candidate -> fit -> compare evidence -> weigh with held-out data
 //            -> decide
 //
 // (search.h, weigh.h, decide.h). How a trial is fitted, what its evidence is and what forbids it,
@@ -26,14 +26,14 @@
 
 namespace photorque::inference {
 
-// What the search has to know of a candidate.
+// Properties of a candidate that the search uses.
 struct CandidateTraits {
   // Candidates of one name are the same term in different parametrisations: it acts once.
   std::string name;
   // A smooth function without a law: it competes with the others, so that something unknown is not
   // mistaken for one of them, but it names nothing.
   bool is_empirical = false;
-  // Whether a score test can predict what its fit gains.
+  // Whether a score test can predict the gain of its fit.
   bool is_linear = true;
   // Whether it changes faster than averages show.
   bool is_fast = false;
@@ -47,7 +47,7 @@ struct CandidateTraits {
   bool is_fitted_first = false;
 };
 
-// What a trial says, without what was fitted.
+// Candidates, evidence and significance of a trial, without the fit.
 struct Explanation {
   std::vector<size_t> candidates;  // in the order in which they were added; none: the nominal model
   // Natural logarithm of the evidence, with the prior odds of the candidates, but for a constant
@@ -56,9 +56,9 @@ struct Explanation {
   // Of each candidate: √(θᵀ C⁻¹ θ) of the parameters that are its size; not a number for one that
   // has none.
   std::vector<double> significance = {};
-  std::vector<double> joint_significance = {};  // with what was held out, where that was weighed
+  std::vector<double> joint_significance = {};  // with the held-out data, where they were weighed
   std::string objection = {};                   // why it is forbidden; empty: nothing
-  // Of its prediction of what was held out, where it was asked for.
+  // Of its prediction of the held-out data, where it was requested.
   std::optional<double> holdout_chi2_per_sample = {};
   std::optional<Predictive> predictive = {};
   // How far its χ² lies above what the errors of the fitted parameters predict (held_out.h).
@@ -100,10 +100,10 @@ concept Fitted = requires(const F& fit) {
   { fit.chi2_per_sample() } -> std::convertible_to<double>;
 };
 
-// A domain says what its trials, runs, starts and begins are. A Start is where the fit of a
-// candidate starts, with the gain (fall of χ²) that a scan predicts; infinite where nothing was
-// scanned. A Begin is where the fit of one run begins: its nuisances. All functions are const and
-// are called from several threads.
+// A domain defines its trials, runs, starts and begins. A Start is the initial value of the fit of
+// a candidate, with the gain (fall of χ²) that a scan predicts; infinite where nothing was scanned.
+// A Begin contains the initial conditions of one run, which are nuisances. All functions are const
+// and are called from several threads.
 template <class D>
 concept Domain = std::derived_from<typename D::Trial, Explanation> &&
     Fitted<decltype(D::Trial::fit)> &&
@@ -119,16 +119,17 @@ concept Domain = std::derived_from<typename D::Trial, Explanation> &&
   { domain.start_of(count) } -> std::same_as<typename D::Start>;
   // A candidate more, fitted; `count` is its index.
   { domain.extend(trial, count, start, runs, effort) } -> std::same_as<typename D::Trial>;
-  // The same trial on other or more runs, each from its begin.
+  // Refits the trial to other or more runs, each from its initial conditions.
   { domain.refit(trial, runs, begins, effort) } -> std::same_as<typename D::Trial>;
-  // The same trial from where another on the same runs ended, in all that the two share.
+  // Refits the trial from the end of another trial on the same runs, in all parameters that both
+  // have.
   { domain.refit_near(trial, trial, runs, effort) } -> std::same_as<typename D::Trial>;
   // The trial's prediction of runs that it never saw: only nuisances are fitted.
   { domain.predict(trial, runs) } -> std::same_as<typename D::Trial>;
   { domain.begins_of(trial) } -> std::same_as<std::vector<typename D::Begin>>;
-  // Begins from what was read at the beginning of each run.
+  // Initial conditions from the first readings of each run.
   { domain.seen_begins(trial, runs) } -> std::same_as<std::vector<typename D::Begin>>;
-  // The same trial, to be fitted from there next.
+  // The trial with these initial conditions for its next fit.
   { domain.with_begins(trial, begins) } -> std::same_as<typename D::Trial>;
 
   // The fall of χ² that each candidate would bring (0 for those that are not linear).
@@ -140,8 +141,8 @@ concept Domain = std::derived_from<typename D::Trial, Explanation> &&
   { domain.linear_problem(trial, terms, runs) } -> std::same_as<LinearProblem>;
   // The nominal model with these members alone, fitted from where the trial ended.
   { domain.assemble(trial, members, runs, effort) } -> std::same_as<typename D::Trial>;
-  // Starts of each candidate added to the trial: one, or the most promising of a scan over what
-  // is not linear. The second runs are averages of the first.
+  // Starts of each candidate added to the trial: one, or the best of a scan over its nonlinear
+  // parameters. The second runs are averages of the first.
   {
     domain.starts(trial, candidates, runs, runs, threads)
     } -> std::same_as<std::vector<std::vector<typename D::Start>>>;
@@ -165,7 +166,7 @@ std::vector<size_t> by_evidence(const std::vector<T>& trials) {
   return order;
 }
 
-// Whether two sets of candidates are the same, in whatever order.
+// Whether two sets of candidates are equal, in any order.
 inline bool same_candidates(const std::vector<size_t>& a, const std::vector<size_t>& b) {
   return a.size() == b.size() && std::is_permutation(a.begin(), a.end(), b.begin());
 }
@@ -182,7 +183,7 @@ inline bool acts_already(const std::vector<size_t>& among, size_t candidate,
                      [&](size_t other) { return all[other].name == all[candidate].name; });
 }
 
-// Whether the derivatives of a trial say little, because its prediction is elsewhere.
+// Whether the derivatives of a trial are useless, because its prediction has diverged.
 template <class Trial>
 bool has_diverged(const Trial& trial, const Thresholds& limits) {
   return trial.fit.chi2_per_sample() > limits.diverged_chi2_per_sample;

@@ -1,4 +1,4 @@
-// How χ² of runs that a fit never saw compares with what the fit predicts of it.
+// Compares χ² of held-out runs with the value that the fit predicts.
 #pragma once
 
 #include "inference/estimator/fit.h"

@@ -13,7 +13,7 @@ using Terms = std::vector<Term<typename D::Start>>;
 
 // Each round linearises the problem about one trial, predicts what every set of candidates would
 // gain (subsets.h), and fits the few best; the next round is about the best of all. Where nothing
-// gains any more, what only a scan can find is added to the best, and the rounds go on or end.
+// gains any more, effects that only a scan can find are added to the best, and the rounds continue.
 template <Domain D>
 class Rounds {
  public:
@@ -29,15 +29,15 @@ class Rounds {
         threads_(threads),
         trials_{base} {}
 
-  // All trials that were fitted, the base first; `from`: where the rounds begin, fitted to the set;
-  // `scans`: whether what only a scan finds is looked for as well.
+  // All trials that were fitted, the base first; `from`: where the rounds start, fitted to the set;
+  // `scans`: whether effects that only a scan finds are searched as well.
   std::vector<Trial> run(const Trial& from, bool scans = true) {
     if (!from.candidates.empty()) trials_.push_back(from);
     Trial at = from;
     bool scan = false, scans_base = false;
     for (int round = 0; round < limits_.search.max_rounds; ++round) {
       std::vector<Trial> found = scan ? scanned(at) : predicted(at, round == 0);
-      // Slow effects may stand in for one that is fast: once the scan also begins without them.
+      // Slow effects may stand in for one that is fast: once the scan also starts without them.
       if (scan && !scans_base && may_be_stand_ins(at)) {
         scans_base = true;
         for (Trial& t : scanned(trials_.front())) found.push_back(std::move(t));
@@ -51,7 +51,7 @@ class Rounds {
         for (Trial& t : switched_on(at)) found.push_back(std::move(t));
       }
       std::vector<Trial> parents = {at};
-      // Pieces only say which sets to fit to the whole: there is no need to converge on them.
+      // Pieces only select the sets to fit to the whole: there is no need to converge on them.
       if (set_.pieces == 1) settle_leaders(domain_, set_.runs, threads_, found, parents);
       for (Trial& parent : parents) keep(std::move(parent));
       for (Trial& trial : found) keep(std::move(trial));
@@ -62,12 +62,12 @@ class Rounds {
       const bool gained =
           best.log_evidence > before.log_evidence + limits_.search.min_log_evidence_gain;
       at = gained ? best : before;
-      // Pieces are to say which sets are worth a fit to the whole.
+      // Pieces select the sets that are fitted to the whole.
       if (set_.pieces > 1 && explains(at)) {
         at = without_each(std::move(at));
         if (!has_empirical(at)) break;
       }
-      // What needs a scan is looked for where nothing predicted gains any more.
+      // Scans are slow: they start when no predicted candidate lowers χ² further.
       if (!gained && (scan || !scans || !is_worth_a_scan(at))) break;
       if (scan && set_.pieces > 1) break;
       scan = !gained;
@@ -78,7 +78,7 @@ class Rounds {
  private:
   bool may_be_stand_ins(const Trial& at) const {
     if (at.candidates.empty()) return false;
-    // About a base that is elsewhere a scan says nothing, if something leads back to the readings.
+    // About a diverged base a scan is useless, if some candidate leads back to the readings.
     if (has_diverged(trials_.front(), limits_) && !has_diverged(at, limits_)) return false;
     return at.candidates.size() > 1 ||
            domain_.excess_sigma(at, set_.runs) > limits_.search.explained_sigma;
@@ -122,7 +122,7 @@ class Rounds {
     return at;
   }
 
-  // In pieces of the runs a faint line or jump cannot be told; the whole is searched later.
+  // In pieces of the runs a faint line or jump is not resolved; the whole is searched later.
   bool is_worth_a_scan(const Trial& at) const {
     return set_.pieces == 1 ||
            domain_.excess_sigma(at, set_.runs) > limits_.decision.max_excess_sigma;
@@ -169,13 +169,13 @@ class Rounds {
       const bool is_single =
           first && s.groups.size() == 1 && s.gain > least_gain(s, problem, subsets);
       const bool is_leader = s.log_evidence > least && sets < limits_.search.max_fits_of_round;
-      // A law without a name bends to anything; what is known may need all of its parts at once.
+      // A law without a name fits anything; known effects may need all of their parts at once.
       const bool is_known = has_empirical(at) && !has_empirical(s, problem) &&
                             known_sets < limits_.search.max_known_fits_of_round;
       if (!is_leader && !is_single && !is_known) continue;
       Members<typename D::Start> members = members_of(s, problem, terms, is_kept);
       if (members.empty()) continue;
-      // More names than the trial has must promise something.
+      // A trial with more names must have a predicted gain.
       if (s.log_evidence < of_trial && is_enlarged(candidates_of(members), at)) continue;
       const double expected = at.log_evidence + s.log_evidence - of_trial;
       if (was_tried(members, expected) || is_refused(members, expected)) continue;
@@ -263,8 +263,8 @@ class Rounds {
     });
   }
 
-  // Whether a part of it was fitted and refused (a wrong sign), and it promises nothing beyond that
-  // part: it would be refused as well, in the place of one that is not.
+  // Whether a part of it was fitted and rejected (a wrong sign), and no gain is predicted beyond
+  // that part: it would be rejected as well, in the place of one that is not.
   bool is_refused(const Members<typename D::Start>& members, double expected) const {
     const std::vector<size_t> candidates = candidates_of(members);
     return std::any_of(trials_.begin(), trials_.end(), [&](const Trial& t) {
@@ -289,7 +289,7 @@ class Rounds {
     for (Trial& t : found) t.log_evidence += at.log_evidence - rough.log_evidence;
     found = without_twins(std::move(found));
     sort_by_evidence(found);
-    // What diverged where the best did not is not worth all readings.
+    // A trial that diverged is not refitted to all readings if the best did not diverge.
     const bool best_is_near = !has_diverged(found.front(), limits_);
     size_t refits = 0;
     while (refits < std::min(limits_.search.max_refits_of_averages, found.size()) &&
@@ -304,7 +304,7 @@ class Rounds {
     return found;
   }
 
-  // What bends too much for a forecast, one candidate at a time.
+  // Candidates that are too nonlinear for a forecast, fitted one at a time.
   std::vector<Trial> each_alone(const Trial& at) const {
     const std::vector<CandidateTraits>& all = domain_.candidates();
     std::vector<size_t> bent;
@@ -326,7 +326,7 @@ class Rounds {
     return fitted(at, chosen, averages);
   }
 
-  // What acts or does not, and has no strength of which a forecast could be made.
+  // Candidates without parameters: they act or not, so that no strength can be forecast.
   std::vector<Trial> switched_on(const Trial& at) const {
     if (at.candidates.size() >= max_effects_) return {};
     const std::vector<CandidateTraits>& all = domain_.candidates();
@@ -371,7 +371,7 @@ class Rounds {
     return found;
   }
 
-  // What acts faster than averages show.
+  // Candidates that act faster than averages of readings show.
   std::vector<Trial> scanned(const Trial& at) const {
     if (at.candidates.size() >= max_effects_) return {};
     const Runs averages = slow_runs(domain_, at, set_);

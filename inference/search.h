@@ -1,4 +1,4 @@
-// The search for what is missing: rounds of forecast and fit, about the nominal model first.
+// The search for missing effects: rounds of forecast and fit, about the nominal model first.
 #pragma once
 
 #include "inference/rounds.h"
@@ -16,7 +16,7 @@ class Search {
     trials_.push_back(nominal);
   }
 
-  // `near`: where the rounds begin, fitted to the runs; nullptr: about the nominal model.
+  // `near`: where the rounds start, fitted to the runs; nullptr: about the nominal model.
   std::vector<Trial> run(const Trial* near = nullptr) {
     const Trial nominal = trials_.front();
     if (near != nullptr) return about(nominal, *near);
@@ -53,9 +53,9 @@ class Search {
     return without_twins(std::move(trials_));
   }
 
-  // A prediction far from the readings says little about why, so the runs are cut into pieces, each
-  // with a begin of its own, in which it stays near them; what explains the pieces best is then
-  // fitted to the whole (multiple shooting).
+  // A prediction far from the readings does not show its cause, so the runs are cut into pieces,
+  // each with its own initial conditions, in which it stays near them; the best for the pieces is
+  // then fitted to the whole (multiple shooting).
   std::vector<Trial> by_pieces(const Trial& nominal, const RunSet<D>& pieces,
                                const Trial& near) const {
     std::vector<Trial> found = rounds(pieces, near).run(near);
@@ -78,8 +78,9 @@ class Search {
     return found;
   }
 
-  // Those near the best, half of the places for what has no smooth law without physics in it: in
-  // pieces such a law makes up for what it would not in the whole. `found` is by evidence.
+  // The trials near the best; half of the places are for trials without an empirical law, because
+  // in pieces such a law replaces effects that it could not replace in the whole. `found` is by
+  // evidence.
   size_t put_refits_first(std::vector<Trial>& found) const {
     const size_t most = std::min(limits_.search.max_refits_of_pieces, found.size());
     const auto has_law = [&](const Trial& t) {

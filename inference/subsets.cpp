@@ -38,7 +38,7 @@ class Forecast {
     gain_without_ = -2.0 * gradient_.dot(value_) - value_.dot(matrix_ * value_);
   }
 
-  // The gain alone: what ranks the many.
+  // The gain alone, by which the sets are ranked.
   double gain(const std::vector<size_t>& groups) const {
     if (groups.empty()) return gain_without_;
     const std::vector<Eigen::Index> at = places(groups);
@@ -107,7 +107,7 @@ class Forecast {
                        [&](size_t g) { return problem_.groups[g].is_empirical; });
   }
 
-  // No reading tells one of its parameters.
+  // No reading determines one of its parameters.
   bool is_silent(size_t group) const {
     const StrengthGroup& g = problem_.groups[group];
     return !(unit_.segment(g.first, g.count()).minCoeff() > 0.0);

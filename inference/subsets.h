@@ -1,4 +1,4 @@
-// Which candidates together explain what is left, predicted without a fit.
+// Which candidates together explain the residual, predicted without a fit.
 //
 // About a trial the problem is a quadratic form: one pass over the recordings gives the information
 // matrix H and the gradient g = −½ ∂χ²/∂θ of the strengths of all candidates, those that the trial
@@ -8,8 +8,8 @@
 //   δ_dropped = −θ_dropped,   δ_S = H_SS⁻¹ (g_S − H_SD δ_D),   gain = 2 gᵀδ − δᵀHδ.
 //
 // So pairs, triples and quadruples are searched in full where only their members' gains alone would
-// hide them, and a member that merely stands in for another is exchanged as easily as one is added.
-// The forecast holds as far as the readings are linear in the strengths; a fit follows.
+// hide them, and a member that only replaces another is exchanged as easily as one is added. The
+// forecast holds as far as the readings are linear in the strengths; a fit follows.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,7 +26,7 @@ struct StrengthGroup {
   std::string name;  // two of one name never enter together
   bool is_empirical = false;
   Eigen::Index first = 0;               // of its parameters in the problem
-  std::vector<double> value;            // where each stands at the trial; 0 for what it lacks
+  std::vector<double> value;            // of each in the trial; 0 if it lacks it
   std::vector<double> scale;            // expected of each, > 0
   std::vector<double> lowest, highest;  // bounds of physics
 
@@ -36,8 +36,8 @@ struct StrengthGroup {
 struct LinearProblem {
   Eigen::MatrixXd information;  // H
   Eigen::VectorXd gradient;     // g
-  // The diagonal of H before the nuisances were projected out of it. What is left of it at the size
-  // of rounding is no information: with it anything could be explained. Empty: as H says.
+  // The diagonal of H before the nuisances were projected out of it. A remainder of the size of
+  // rounding is no information: with it anything could be explained. Empty: as H says.
   Eigen::VectorXd before = {};
   std::vector<StrengthGroup> groups;
 };

@@ -1,4 +1,5 @@
-// What rounds of the search share: fits of the best trials, runs in fewer samples or in pieces.
+// Functions of the rounds of the search: fits of the best trials, runs in fewer samples or in
+// pieces.
 #pragma once
 
 #include <algorithm>
@@ -9,9 +10,9 @@
 
 namespace photorque::inference {
 
-// The best of many trials, fitted with more patience than all of them could be.
+// The best of many trials, fitted with more iterations than all of them could be.
 
-// Until a fit converges: one that is given up early makes whatever goes on from it seem to gain.
+// Until a fit converges: after a fit that is stopped early, every extension seems to gain.
 inline Effort patient(const Thresholds& limits) {
   return {.max_iterations = limits.fitting.patient_iterations, .creep = limits.fitting.creep};
 }
@@ -69,9 +70,7 @@ void settle_leaders(const D& domain, const std::vector<typename D::Run>& runs, i
   });
 }
 
-// What rounds of the search share: runs in fewer samples or in pieces, fits of one candidate more.
-
-// The runs, or what each was cut into.
+// The runs, or their pieces.
 template <Domain D>
 struct RunSet {
   std::vector<typename D::Run> runs;
@@ -150,8 +149,9 @@ std::vector<typename D::Trial> extend_by_tasks(const D& domain, const typename D
 }
 
 // The pieces of the runs in which the parent stays near the readings, and the parent fitted to
-// them. Where it does so in none, however short, what is missing acts fast and is seen best in long
-// ones: the longest that leave little more than the shortest do, whole runs included.
+// them. If it does so in none, however short, the missing effects act fast and are best seen in
+// long pieces: the longest with little more residual than the shortest are taken, whole runs
+// included.
 template <Domain D>
 std::pair<RunSet<D>, typename D::Trial> near_pieces(const D& domain,
                                                     const typename D::Trial& parent,

@@ -1,4 +1,4 @@
-// What the runs held out say about explanations that were found without them.
+// Evidence of the held-out runs about explanations that were found without them.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ std::vector<size_t> leaders_among(const std::vector<Trial>& trials,
   std::vector<size_t> leaders;
   for (const size_t i : order) {
     if (!trials[i].objection.empty() || leaders.size() == limits.max_leaders) continue;
-    // What is forbidden does not say how near the best is.
+    // The distance is counted from the best trial that physics allows.
     const size_t first = leaders.empty() ? i : leaders.front();
     if (trials[i].log_evidence < trials[first].log_evidence - limits.within) break;
     leaders.push_back(i);
@@ -84,7 +84,7 @@ class Weighing {
     std::array<double, 2> learnt = {};
   };
 
-  // The likeliest and the nominal model first: others are fitted as long as they may come near.
+  // The most likely and the nominal model first: others are fitted as long as they may come near.
   void add_leaders(const std::vector<size_t>& places) {
     leaders_.resize(places.size());
     std::vector<size_t> first, others;
@@ -115,14 +115,14 @@ class Weighing {
     return domain_.refit(t, all_runs_, begins, effort);
   }
 
-  // Keeps how well the trial predicts what was held out.
+  // Keeps how well the trial predicts the held-out data.
   Trial predict_held(Trial& t) const {
     Trial held = domain_.predict(t, held_);
     if (std::isfinite(held.fit.chi2)) t.holdout_chi2_per_sample = held.fit.chi2_per_sample();
     return held;
   }
 
-  // A second chance from where the best ended, but for what came to nothing before: it would again.
+  // A second fit from the end of the best, except of trials that did not converge before.
   void learn() {
     const Trial best =
         std::min_element(leaders_.begin(), leaders_.end(), [](const Leader& a, const Leader& b) {
@@ -138,8 +138,8 @@ class Weighing {
   }
 
   // More readings cannot lower χ²: where all runs leave less than some of them do, the fit to these
-  // ended in another minimum, and what was held out would seem to be predicted beyond measure. It
-  // begins again from where the fit to all ended.
+  // ended in another minimum, and the held-out data would seem to be predicted too well. It starts
+  // again from where the fit to all ended.
   void bring_to_one_minimum() {
     parallel_for(leaders_.size(), threads_, [&](size_t k) {
       const Trial& joint = leaders_[k].joint;
@@ -152,7 +152,7 @@ class Weighing {
     });
   }
 
-  // The likeliest on all runs that nothing forbids.
+  // The most likely on all runs that physics allows.
   const Leader& best() const {
     const Leader* best = nullptr;
     for (const Leader& leader : leaders_) {
@@ -180,7 +180,7 @@ class Weighing {
       result.sigma = limits_.noise.excess_unknown;
       return result;
     }
-    // The noise is known to a few per cent; what it is shows in the train runs.
+    // The noise is known to a few per cent; the train runs show it.
     const double noise = noise_of(train);
     result.sigma = (result.chi2_per_sample - noise) / std::sqrt(2.0 / held + 2.0 / fitted);
     const std::vector<typename D::Begin> begins = domain_.begins_of(joint);
@@ -194,14 +194,14 @@ class Weighing {
     return std::clamp(train.fit.chi2_per_sample(), 1.0, limits_.held_out.max_noise);
   }
 
-  // Where the best does not predict what was held out, all runs together are searched from there.
+  // If the best does not predict the held-out data, all runs together are searched from there.
   void search_on() {
     const Leader from = best();
     if (predictive_of(trials_[from.at], from.joint).sigma < limits_.decision.max_predictive_sigma)
       return;
     if (has_diverged(from.joint, limits_) || !std::isfinite(from.joint.fit.chi2)) return;
     Rounds<D> rounds(domain_, {all_runs_}, nominal().joint, limits_.search.max_effects, threads_);
-    // About a law without a name the train runs were scanned for what acts fast.
+    // About a law without a name the train runs were scanned for fast effects.
     const bool is_law = std::any_of(from.joint.candidates.begin(), from.joint.candidates.end(),
                                     [&](size_t c) { return domain_.candidates()[c].is_empirical; });
     std::vector<Trial> found = rounds.run(from.joint, !is_law);
@@ -222,7 +222,7 @@ class Weighing {
     }
   }
 
-  // What is left of the best where one of its names is taken away: each has to be missed.
+  // Refits the best explanation without each of its names: χ² must rise for each.
   // Until nothing that is left out makes a better leader.
   void add_without_each() {
     for (Leader from = best();;) {
@@ -244,12 +244,13 @@ class Weighing {
       candidates.push_back(terms[i].candidate);
     }
     if (leads(candidates)) return;
-    // Without it the rest may have to go far: nominal values that it stood in for, to begin with.
+    // Without it the rest may have to go far: above all nominal values that it replaced.
     Effort growing = patient(limits_);
     growing.windows = limits_.fitting.diverged_windows;
     Trial joint = domain_.assemble(from.joint, members, all_runs_,
                                    within_reach(growing, from.joint, limits_));
-    // What is worse than the nominal model, which it contains, was not fitted: it is missed.
+    // A fit that is worse than the nominal model, which it contains, did not converge: it is left
+    // out.
     if (!(joint.fit.chi2 < nominal().joint.fit.chi2 + limits_.leaders.near_chi2)) return;
     const bool is_lost = !is_near(joint, from.joint, limits_);
     Trial train = assembled(
@@ -269,8 +270,8 @@ class Weighing {
     return domain_.assemble(start, members, train_, effort);
   }
 
-  // Of an explanation that leads already the better pair stays: what is held out is the difference
-  // of the two fits, which have to be of one minimum.
+  // Of an explanation that leads already the better pair stays: the held-out evidence is the
+  // difference of the two fits, which have to be of one minimum.
   void add_leader(Trial train, Trial joint) {
     const auto leader = std::find_if(leaders_.begin(), leaders_.end(), [&](const Leader& l) {
       return same_candidates(train.candidates, trials_[l.at].candidates);
@@ -324,7 +325,7 @@ class Weighing {
     const auto beyond_chance = [&](size_t i) {
       return gains[i] - static_cast<double>(all[untried[i]].parameters);
     };
-    // What the best explains already and this one, by far, would not, is not worth a fit.
+    // A candidate whose predicted gain is far below the lead of the best is not fitted.
     constexpr double forecast_error = 2.0;
     const double behind_chi2 = joint.fit.chi2 - best().joint.fit.chi2 - limits_.leaders.near_chi2;
     std::vector<size_t> order;
@@ -390,7 +391,7 @@ class Weighing {
   std::vector<Leader> leaders_;
 };
 
-// How well the leaders also explain what was held out: their evidence on all runs together takes
+// How well the leaders also explain the held-out data: their evidence on all runs together takes
 // the place of that on the fitted ones. The others gain over the nominal model in the ratio of the
 // best, and stay below the leaders. What only all runs together show, because one of them alone
 // leaves it to the uncertainty of a nominal model, is scored and added to `trials`, fitted to the

@@ -13,9 +13,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// What the neighbours of reading n lead to expect: the middle of what both sides and either side
-// alone say, so that one bad neighbour does not decide and a residual that runs away steadily is no
-// outlier.
+// Expected value of reading n: the median of the predictions from both sides and from either side.
+// One bad neighbour does not decide, and a residual that grows steadily is no outlier.
 double expected(const std::vector<double>& r, size_t n) {
   std::vector<double> says;
   const bool left = n >= 1, right = n + 1 < r.size();

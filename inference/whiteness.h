@@ -1,4 +1,4 @@
-// Tests of what is left of a fit: whether it is noise, and whether differences lie above zero.
+// Tests of the residuals of a fit: whether it is noise, and whether differences lie above zero.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct Whiteness {
 // Of several runs with the same channels.
 Whiteness whiteness(const std::vector<ChannelResiduals>& runs, const Thresholds::Noise& limits);
 
-// Indices of residuals of one channel that stand out from what their neighbours lead to: by the
+// Indices of outliers of one channel, compared with the prediction from their neighbours: by the
 // noise, and far more than most readings do.
 std::vector<size_t> outliers(const std::vector<double>& residuals, const Thresholds::Noise& limits);
 
@@ -42,7 +42,7 @@ double signed_rank_sigma(const std::vector<double>& differences);
 
 // Standard errors by which one explanation predicts segments better than another, from χ² of each
 // segment: of the differences of their log scores, by their mean or, where they differ in size by
-// orders, by their ranks, whichever says more.
+// orders, by their ranks, whichever is more significant.
 double gain_sigma(const std::vector<double>& chi2_of_worse,
                   const std::vector<double>& chi2_of_better);
 

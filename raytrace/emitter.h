@@ -23,7 +23,7 @@ struct SampleBlock {
 };
 
 // Rays in the emitter's frame: origins in metres, directions of unit norm to 3e-7. In single
-// precision, which is what Embree takes; how far away the emitter is costs none of it.
+// precision, which Embree requires; the distance of the emitter costs no precision.
 struct RayBlock {
   alignas(64) std::array<std::array<float, ray_block>, 3> origin_m;
   alignas(64) std::array<std::array<float, ray_block>, 3> direction;

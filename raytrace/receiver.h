@@ -75,8 +75,8 @@ class Receiver {
   // How many numbers the tracer sums for it per replicate.
   virtual size_t bins() const = 0;
 
-  // Adds what these hits contribute to `sums` (of bins() entries). Every entry must be a sum over
-  // hits, so that batches can be added in any grouping.
+  // Adds the contributions of these hits to `sums` (of bins() entries). Every entry must be a sum
+  // over hits, so that batches can be added in any grouping.
   virtual void score(const Hits& hits, std::span<double> sums) const = 0;
 
   // The product of the sums of a trace: results with units and standard errors. `sums` must come

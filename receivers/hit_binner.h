@@ -39,7 +39,7 @@ void for_each_binned(const BinnedHits& binned, const Add& add) {
 }
 
 // Looks hits up in a grid: the instance belongs to it, the side counts, the triangle is turned the
-// right way, and the position gives the bin. Immutable; keeps what it needs of the scene.
+// right way, and the position gives the bin. Immutable; keeps the necessary parts of the scene.
 class HitBinner {
  public:
   // `grid` must have been laid over `scene`.

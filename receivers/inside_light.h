@@ -1,4 +1,4 @@
-// Light on the inner side of closed bodies: what slipped through their cracks.
+// Light on the inner side of closed bodies, which passed through their cracks.
 #pragma once
 
 #include <string>

@@ -32,7 +32,7 @@ struct MadeReceiver {
 struct ReceiverKind {
   std::string name;
   std::string summary;  // one sentence, no full stop
-  // Reads every key it knows; throws InputError, also when the scene lacks the named node.
+  // Reads all of its keys; throws InputError, also when the scene lacks the named node.
   std::function<MadeReceiver(const Settings&, const Scene&)> make;
   // The keys that `make` reads, beside `kind`.
   std::vector<Key> keys = {};

@@ -106,7 +106,7 @@ std::array<Vec2, 3> texture_corners(const Scene& scene, const SurfaceFace& face)
 // Cuts a triangle along the lines of a grid of unit cells [0, width] × [0, height] and calls
 // `add(column, row, fraction)` with the fraction of the triangle's area in each cell it meets. The
 // fractions are ≥ 0 and sum to 1 within a few roundings, also for a triangle that the grid sees
-// edge-on. `corners` are in units of cells; what is outside counts for the nearest cell.
+// edge-on. `corners` are in units of cells; parts outside count for the nearest cell.
 //
 // Method: I. E. Sutherland and G. W. Hodgman, "Reentrant polygon clipping", Comm. ACM 17 (1974),
 // first into columns and then into rows, on polygons that carry barycentric coordinates, in which

@@ -109,7 +109,8 @@ std::optional<Answer> answer_of(const TrackingCamera& camera, const Pose& pose) 
     information += weighted.back() * view->derivative;
   }
   const int unknowns = camera.knows_centre ? 3 : 6;
-  // In units in which rotations and shifts weigh alike, so that what is not seen shows.
+  // In units in which rotations and shifts have equal weight, so that unobserved directions are
+  // found.
   const Eigen::MatrixXd own = information.topLeftCorner(unknowns, unknowns);
   const Eigen::VectorXd scale = own.diagonal().cwiseSqrt();
   if (!(scale.minCoeff() > 0.0)) return {};

@@ -29,7 +29,7 @@ struct FoundPose {
 std::optional<FoundPose> find_pose(const TrackingCamera& camera,
                                    const std::vector<MarkerReading>& readings, const Pose& first);
 
-// How well a tracking camera knows the attitude, predicted from its geometry and from images.
+// The error of a tracking camera's attitude, predicted from its geometry and from images.
 
 // Covariance of the attitude read from one image, of its error as a rotation vector about lab axes
 // [rad²]: the inverse of the information of all markers in sight. Nothing where they do not fix it.

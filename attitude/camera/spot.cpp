@@ -73,7 +73,7 @@ double variance_of(double signal, const PixelNoise& noise) {
          noise.read_noise_electrons * noise.read_noise_electrons;
 }
 
-// Fisher's information on column, row and brightness of the spot, and the score of what was read.
+// Fisher's information on column, row and brightness of the spot, and the score of the reading.
 struct Score {
   Mat3 information = Mat3::Zero();
   Vec3 score = Vec3::Zero();
@@ -151,7 +151,7 @@ PixelWindow expose(const Spot& spot, const PixelNoise& noise, uint64_t seed, uin
 
 std::optional<Spot> read_spot(const PixelWindow& window, const Spot& shape,
                               const PixelNoise& noise) {
-  // Pixels that stand out of the noise say where to begin.
+  // Pixels above the noise give the start.
   const double threshold = 2.0 * std::sqrt(variance_of(0.0, noise));
   Spot spot = shape;
   double sum = 0.0;

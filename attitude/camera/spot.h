@@ -1,4 +1,4 @@
-// The image of one marker: electrons in pixels, what they say of its place, and how it is read.
+// The image of one marker: electrons in pixels, their information on its place, and its readout.
 //
 // A spot is a Gaussian, smeared evenly along its motion during the exposure and integrated over
 // each pixel. Pixels hold Poisson numbers of electrons with Gaussian read noise.

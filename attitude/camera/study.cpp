@@ -27,7 +27,7 @@ Pair arcseconds(const TrackingCamera& camera, const std::optional<Mat3>& covaria
   return {errors.in_plane_rad / arcsecond_rad, errors.out_of_plane_rad / arcsecond_rad};
 }
 
-// The larger of each; what is not seen at all is the worst.
+// The larger of each; an unobserved direction is the worst.
 Pair worse(const Pair& a, const Pair& b) {
   const auto worst = [](double x, double y) {
     return std::isnan(x) || std::isnan(y) ? unseen : std::max(x, y);
@@ -175,7 +175,7 @@ Plot tilt_plot(const CameraStudy& study, const Table& degradation) {
   return plot;
 }
 
-// Two maps, in plane and out of plane, of what `errors` gives at column and row.
+// Two maps of `errors` at column and row, in plane and out of plane.
 std::vector<Map> two_maps(Map frame, int threads, const std::string& name, const std::string& title,
                           const std::function<Pair(int, int)>& errors) {
   const auto size = static_cast<size_t>(frame.width) * static_cast<size_t>(frame.height);
@@ -262,7 +262,7 @@ std::vector<Map> design_maps(const CameraStudy& study) {
   return two_maps(frame, study.threads, "design_", " at zero tilt", errors);
 }
 
-// The paper's errors: in the image plane, out of it, each with what counts as met.
+// The paper's errors: in the image plane, out of it, each with its tolerance.
 struct Wanted {
   const char* label;
   double error_arcsec, tolerance_arcsec;

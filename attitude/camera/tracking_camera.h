@@ -50,7 +50,7 @@ struct TrackingCamera {
   double f_number = 4.0;        // focal length over the diameter of the opening
   double transmittance = 0.85;  // of lens and filter
   double spot_px = 0.6;         // standard deviation of the spot besides diffraction and motion
-  Distortion distortion;        // as it was calibrated: the pose knows it
+  Distortion distortion;        // as it was calibrated: the pose uses it
   Distortion distortion_error;  // that of the lens, less that
 
   double pixel_m = 4.8e-6;
@@ -83,7 +83,7 @@ struct TrackingCamera {
 // pixel_um, resolution, exposure_s, line_time_s (0), quantum_efficiency (0.5),
 // read_noise_electrons (10), background_electrons (0), full_well_electrons (10000), position_m
 // (lab), aim_m ([0, 0, 0]), pose ("about_centre", "free"), pose_weights ("information", "equal").
-// InputError for what cannot be: fewer markers than the pose needs, a spot that fills its pixels.
+// InputError for fewer markers than the pose needs, or a spot that fills its pixels.
 std::optional<TrackingCamera> read_tracking_camera(const Settings& settings);
 
 // One marker as the camera sees it at an instant.

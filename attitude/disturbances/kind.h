@@ -1,4 +1,4 @@
-// The catalogue of disturbances: what an experiment file may name in [[disturbance]].
+// The catalogue of disturbances: the kinds of [[disturbance]] in an experiment file.
 #pragma once
 
 #include <string>

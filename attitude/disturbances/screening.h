@@ -22,7 +22,7 @@ struct EffectKey {
   bool searched = false;  // enters nonlinearly: several starts are tried
   // Start and scale are multiples of the platform's mean moment of inertia.
   bool times_inertia = false;
-  bool is_fixed = false;  // says which law it is; not fitted
+  bool is_fixed = false;  // selects the law; not fitted
   // Fixed at the largest that the recordings have of the channel of the key's name.
   bool is_largest_recorded = false;
 
@@ -99,7 +99,7 @@ struct ConfusableKind {
 // not sum to less than this: their parameters, SI.
 struct LeastSum {
   double lowest = 0.0;
-  std::string objection;  // what the report says of a model that does
+  std::string objection;  // printed for a model that does
 };
 
 // The effect is a force on a platform that slides.
@@ -123,9 +123,9 @@ struct Screening {
   bool per_recording = false;  // has another value after every switching on
   bool steady = false;         // a torque that nothing changes, in the laboratory
   // By how much a fitted disturbance changes the platform's inertia, of which there is a limit to
-  // what is credible; null: not at all.
+  // credible value; null: not at all.
   Mat3 (*inertia_change_kg_m2)(const Disturbance&) = nullptr;
-  bool changes_mass = false;  // its first parameter is what the platform's mass is more [kg]
+  bool changes_mass = false;  // its first parameter is added to the platform's mass [kg]
   std::optional<LeastSum> least_sum = {};
   std::vector<ConfusableKind> confusable_kinds = {};
 };

@@ -27,7 +27,7 @@ struct Environment {
   double gravity_gradient_1_s2 = standard_gravity_m_s2 / earth_radius_m;
   // The Earth's rotation in lab axes: the lab turns, unless it is the inertial frame.
   Vec3 earth_rate_lab_rad_s = Vec3::Zero();
-  // Where the Sun is; none: nothing is said of it.
+  // Direction of the Sun; none: not stated.
   std::optional<SunPath> sun = {};
 
   double air_temperature_K = room_temperature_K;

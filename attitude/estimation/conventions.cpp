@@ -216,11 +216,11 @@ std::array<bool, 3> reversed_wheels(const FreeInertia& found) {
 }
 
 // The names of the columns that were turned.
-std::string turn_wheels(const std::array<bool, 3>& reversed, std::span<Observation> stretches) {
+std::string turn_wheels(const std::array<bool, 3>& reversed, std::span<Observation> segments) {
   std::string names;
   for (int k = 0; k < 3; ++k) {
     if (!reversed[static_cast<size_t>(k)]) continue;
-    for (Observation& seen : stretches) {
+    for (Observation& seen : segments) {
       for (ZeroOrderHold& held : seen.schedule.held) {
         held.wheel.speed_rad_s[k] *= -1.0;
         held.wheel.acceleration_rad_s2[k] *= -1.0;
@@ -231,7 +231,7 @@ std::string turn_wheels(const std::array<bool, 3>& reversed, std::span<Observati
   return names;
 }
 
-// A reading of the gyro, and what the rates then say of the body.
+// An interpretation of the gyro, and the inertia that the rates then give.
 struct FreeReading {
   GyroReading gyro;
   FreeInertia inertia;
@@ -248,10 +248,10 @@ struct FreeReading {
 };
 
 // All readings of the gyro under which the rates follow some inertia at all.
-std::vector<FreeReading> free_readings(std::span<const Observation> stretches) {
+std::vector<FreeReading> free_readings(std::span<const Observation> segments) {
   constexpr size_t most = 600;
   std::vector<Observation> rows;
-  for (const Observation& seen : stretches) rows.push_back(seen.averaged(most));
+  for (const Observation& seen : segments) rows.push_back(seen.averaged(most));
   std::vector<FreeReading> all;
   for (const GyroReading& gyro : gyro_readings()) {
     std::vector<Observation> turned = rows;
@@ -286,14 +286,14 @@ const FreeReading* best_reading(const std::vector<FreeReading>& all, const Mat3&
 }
 
 // Without trust in the stated inertia.
-std::string repair_by_any_inertia(std::span<Observation> stretches, const Mat3& inertia_kg_m2) {
-  const std::vector<FreeReading> all = free_readings(stretches);
+std::string repair_by_any_inertia(std::span<Observation> segments, const Mat3& inertia_kg_m2) {
+  const std::vector<FreeReading> all = free_readings(segments);
   const FreeReading* taken = best_reading(all, inertia_kg_m2);
   if (taken == nullptr || taken->inertia.left > agrees) return "";
-  const std::string wheels = turn_wheels(reversed_wheels(taken->inertia), stretches);
+  const std::string wheels = turn_wheels(reversed_wheels(taken->inertia), segments);
   std::string text;
   if (taken->gyro.changes > 0) {
-    for (Observation& seen : stretches) read_gyro_as(taken->gyro.matrix, seen);
+    for (Observation& seen : segments) read_gyro_as(taken->gyro.matrix, seen);
     text = "convention: " + taken->gyro.text +
            ": the recording was read so, because only then do the rates change as any inertia "
            "makes them; a free body shows neither which axis is reversed nor whether two are "
@@ -306,21 +306,21 @@ std::string repair_by_any_inertia(std::span<Observation> stretches, const Mat3& 
 
 }  // namespace
 
-std::string repair_free_rates(std::span<Observation> stretches, const Mat3& inertia_kg_m2) {
+std::string repair_free_rates(std::span<Observation> segments, const Mat3& inertia_kg_m2) {
   constexpr size_t fewest = 20;
   std::vector<Change> changes;
-  for (const Observation& seen : stretches) {
+  for (const Observation& seen : segments) {
     if (!seen.has_gyro || seen.sees_some_attitude()) return "";
     const std::vector<Change> own = changes_of(seen);
     changes.insert(changes.end(), own.begin(), own.end());
   }
   if (changes.size() < fewest) return "";
   const double as_is = disagreement(changes, inertia_kg_m2, Mat3::Identity());
-  // The body's own inertia explains half of what the rates do: torques may do the rest.
+  // The body's inertia explains half of the change of the rates: torques may explain the rest.
   if (as_is < 0.5) {
-    const auto found = free_inertia({stretches.begin(), stretches.end()}, FreeDrag::none);
+    const auto found = free_inertia({segments.begin(), segments.end()}, FreeDrag::none);
     if (!found || found->left > agrees) return "";
-    const std::string wheels = turn_wheels(reversed_wheels(*found), stretches);
+    const std::string wheels = turn_wheels(reversed_wheels(*found), segments);
     return wheels.empty() ? ""
                           : "convention: the sign of " + wheels +
                                 " was turned: as it stands the wheel would have a negative moment "
@@ -336,8 +336,8 @@ std::string repair_free_rates(std::span<Observation> stretches, const Mat3& iner
     best_cost = cost;
     best_gyro = gyro;
   }
-  if (best > agrees || best > 0.2 * as_is) return repair_by_any_inertia(stretches, inertia_kg_m2);
-  for (Observation& seen : stretches) read_gyro_as(best_gyro.matrix, seen);
+  if (best > agrees || best > 0.2 * as_is) return repair_by_any_inertia(segments, inertia_kg_m2);
+  for (Observation& seen : segments) read_gyro_as(best_gyro.matrix, seen);
   return "convention: " + best_gyro.text +
          ": the recording was read so, because only then do the rates change as the stated inertia "
          "makes them; a free body does not show which axis is reversed";
@@ -395,9 +395,9 @@ std::optional<AngleConvention> convention_of_angles(const Recording& recording,
   return found;
 }
 
-std::string repair_conventions(std::span<Observation> stretches) {
+std::string repair_conventions(std::span<Observation> segments) {
   std::vector<Pair> pairs;
-  for (const Observation& seen : stretches) {
+  for (const Observation& seen : segments) {
     if (!seen.has_gyro) return "";
     const std::vector<Pair> own = pairs_of(seen);
     pairs.insert(pairs.end(), own.begin(), own.end());
@@ -425,7 +425,7 @@ std::string repair_conventions(std::span<Observation> stretches) {
     }
   }
   if (best > agrees || best > 0.2 * as_is) return "";
-  for (Observation& seen : stretches) {
+  for (Observation& seen : segments) {
     for (Quat& attitude : seen.attitude) attitude = read(attitude, best_reading);
     read_gyro_as(best_gyro.matrix, seen);
   }

@@ -11,15 +11,15 @@ namespace photorque {
 
 // When gyro and attitude contradict each other as read, and one other reading of the same numbers
 // (quaternion conjugated, scalar last, axes permuted or reversed, degrees per second under a header
-// that says radians or the reverse) makes them agree, the observations are changed to that reading
-// and a sentence says so. Empty: nothing was changed. Without a gyro nothing can be checked. The
-// segments of one recording are read in one way: long ones decide for short ones.
-std::string repair_conventions(std::span<Observation> stretches);
+// that says radians or the reverse) makes them agree, the observations are changed to that reading.
+// Returns a sentence about it; empty: nothing was changed. Without a gyro nothing can be checked.
+// The segments of one recording are read in one way: long ones decide for short ones.
+std::string repair_conventions(std::span<Observation> segments);
 
 // How roll, pitch and yaw of a recording are to be read.
 struct AngleConvention {
   std::string sequence;   // of angle_sequences
-  double factor = 1.0;    // to radians, of what the header calls radians
+  double factor = 1.0;    // to radians, of the header's radians
   std::string text = {};  // a sentence; empty where they are as usual
 };
 
@@ -41,6 +41,6 @@ std::optional<AngleConvention> convention_of_angles(const Recording& recording,
 // units that leaves a third of what the header's reading leaves is taken, the one nearest to the
 // stated moments. A wheel whose own moment of inertia comes out negative by five standard errors
 // was read with the wrong sign; its speed is turned.
-std::string repair_free_rates(std::span<Observation> stretches, const Mat3& inertia_kg_m2);
+std::string repair_free_rates(std::span<Observation> segments, const Mat3& inertia_kg_m2);
 
 }  // namespace photorque

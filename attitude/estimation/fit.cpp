@@ -218,7 +218,7 @@ std::vector<Observation> averaged_about(const Fit& fit, const std::vector<Observ
 
 namespace {
 
-// The least that physics allows of a key, as the kind's own file says.
+// The least physical value of a key, from the kind's own file.
 double lowest_of(const DisturbanceKind* kind, const std::string& key) {
   if (kind == nullptr) return -inference::infinity;
   if (kind->screening.least_sum) return kind->screening.least_sum->lowest;

@@ -48,7 +48,7 @@ std::vector<inference::ChannelResiduals> channels_of(const std::vector<Predictio
 double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
                     const Thresholds::Noise& limits);
 
-// Drops readings that stand out from what their neighbours' residuals lead to. Returns their
+// Drops outliers, compared with the prediction from their neighbours' residuals. Returns their
 // number.
 int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds::Noise& limits,
                       std::vector<Observation>& runs);
@@ -67,7 +67,7 @@ std::vector<Observation> averaged_about(const Fit& fit, const std::vector<Observ
 // The nominal model of the platform, ready to be fitted.
 
 // Every parameter with a sigma is free about its nominal value; gyro biases are free for each run.
-// The runs start from what was seen at their beginning.
+// The runs start from their first readings.
 Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Observation>& runs);
 
 // Appends a disturbance: its own states begin at rest in every run. Returns its index.

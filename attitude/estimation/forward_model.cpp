@@ -111,7 +111,7 @@ std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
   // Of a recording with attitudes some part may have none.
   const bool has_attitudes =
       std::ranges::any_of(seen.attitude_rows, [](double rows) { return rows > 0.0; });
-  // Of what slides the turn may not be seen at all.
+  // The rotation of a sliding body may not be observed.
   const bool turn_is_seen = seen.sees_some_attitude() || seen.has_gyro || !platform.slides();
   const auto is_held = [&](int k) {
     if (!turn_is_seen) return true;

@@ -18,7 +18,7 @@ struct FreeInertia {
   // Of the values; singular, because their trace is given.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   // Moments of the wheels about x, y and z in the same unit, with their errors; zero where none was
-  // measured. A negative one says that the wheel's speed was read with the wrong sign.
+  // measured. A negative one means that the wheel's speed was read with the wrong sign.
   Vec3 wheel = Vec3::Zero(), wheel_sigma = Vec3::Zero();
   // The unexplained part: root mean square of the residual over that of the change of the body's
   // angular momentum in body axes. 0 for exact readings, about 1 and more where the rates follow no

@@ -1,4 +1,4 @@
-// An attitude model with what is free in it: what a fit moves.
+// An attitude model with its free parameters, which a fit moves.
 #pragma once
 
 #include <vector>
@@ -50,7 +50,7 @@ struct Hypothesis {
 // values go along. `h.runs` are the starts for `runs`, with what was per run until now.
 void suit_to_runs(Hypothesis& h, const std::vector<Observation>& runs);
 
-// A start of every run from what was seen at its beginning.
+// The initial conditions of every run from its first readings.
 PlatformState first_state(const AttitudeModel& model, const Observation& seen);
 
 // Such starts of all runs, their own parameters at the nominal model.

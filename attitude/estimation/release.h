@@ -1,4 +1,4 @@
-// Where what swings about one axis is let go.
+// The instant at which a body on one axis is released.
 #pragma once
 
 #include "attitude/observation/observation.h"

@@ -15,8 +15,8 @@ namespace photorque {
 
 namespace {
 
-// Start and rate of an axis are two numbers, its torque one more: fewer readings say nothing of it.
-constexpr size_t least_of_stretch = 6;
+// Start, rate and torque of an axis are three numbers: fewer readings do not determine them.
+constexpr size_t min_readings = 6;
 
 // Gaps over which nothing can be propagated with profit: longer than a quarter of all the time that
 // was read, and than a hundred intervals. A clock that jumps makes such a gap.
@@ -26,7 +26,7 @@ double long_gap_s(const Recording& recording) {
   std::vector<double> gaps_s;
   for (const RecordingReport::Gap& gap : report.gaps) gaps_s.push_back(gap.to_s - gap.from_s);
   std::sort(gaps_s.begin(), gaps_s.end());
-  // The longest first: whether it is long is asked of what was read without it.
+  // The longest first: its length is compared with the readings without it.
   double longest_s = std::numeric_limits<double>::infinity();
   while (!gaps_s.empty()) {
     const double gap_s = gaps_s.back();
@@ -76,9 +76,9 @@ std::vector<double> usual_nearby(const std::vector<double>& sizes) {
   return usual;
 }
 
-// Rows at which the angle about the one axis, or the path of what slides, has a kink that its own
-// readings do not know: an unrecorded firing, a wall. Noise and torques make those nearby alike;
-// what has decayed later says nothing of the beginning.
+// Rows at which the angle about the one axis, or the path of a sliding body, has a kink that its
+// own readings do not know: an unrecorded firing, a wall. Noise and torques make those nearby
+// alike; what has decayed later says nothing of the beginning.
 std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   std::vector<char> kinks(rows.blocks(), 0);
   const bool slides = platform.slides();
@@ -143,7 +143,7 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
   const auto close = [&](size_t end) {
     size_t last = end;
     if (platform.turns_about_one_axis() && !platform.slides() && rows.has_gyro) {
-      LawfulStretch lawful = lawful_stretch(rows, platform.axis, first, last);
+      LawfulSegment lawful = lawful_segment(rows, platform.axis, first, last);
       first = lawful.first;
       last = lawful.last;
       if (!lawful.left_out.empty()) result.lawless.push_back(std::move(lawful.left_out));
@@ -158,9 +158,9 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
       }
       first = released;
     }
-    if (last > first && rows.readings(first, last) >= least_of_stretch) {
+    if (last > first && rows.readings(first, last) >= min_readings) {
       const auto blocks = static_cast<size_t>(share * static_cast<double>(last - first));
-      result.all.push_back(rows.part(first, last).averaged(std::max(least_of_stretch, blocks)));
+      result.all.push_back(rows.part(first, last).averaged(std::max(min_readings, blocks)));
     } else {
       result.too_short += last > first ? 1 : 0;
     }
@@ -180,7 +180,7 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
   if (result.all.empty()) {
     throw InputError({name, 0}, "t_s",
                      "no segment between events and gaps with as many as " +
-                         std::to_string(least_of_stretch) + " readings",
+                         std::to_string(min_readings) + " readings",
                      "a recording with longer ones");
   }
   return result;
@@ -348,8 +348,8 @@ std::vector<Break> breaks_of(const AxisRates& read, size_t window) {
 
 }  // namespace
 
-LawfulStretch lawful_stretch(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
-  LawfulStretch whole = {first, last, ""};
+LawfulSegment lawful_segment(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
+  LawfulSegment whole = {first, last, ""};
   if (is_commanded(rows.schedule)) return whole;
   int along = 0;
   axis.cwiseAbs().maxCoeff(&along);
@@ -360,7 +360,7 @@ LawfulStretch lawful_stretch(const Observation& rows, const Vec3& axis, size_t f
     breaks = breaks_of(read, window);
   }
   if (breaks.empty()) return whole;
-  LawfulStretch longest = {first, first, ""};
+  LawfulSegment longest = {first, first, ""};
   size_t begin = first;
   const Break* since = nullptr;
   const auto close = [&](size_t end, const Break* until) {

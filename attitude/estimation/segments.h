@@ -19,7 +19,7 @@ struct Segments {
   int64_t long_gaps = 0;  // at which the recording was cut
   int64_t too_short = 0;  // segments with too few readings for an initial state, left out
   std::optional<AngleConvention> angles;  // how roll, pitch and yaw were read
-  std::vector<std::string> lawless;       // why parts of segments are left out (lawful_stretch())
+  std::vector<std::string> lawless;       // why parts of segments are left out (lawful_segment())
 };
 
 // `max_blocks`: of all segments together. InputError as observe() (observation.h), and where every
@@ -36,7 +36,7 @@ void refuse_jump_of_clock(const Recording& recording, const std::string& name);
 // released, a hand brakes it.
 
 // Rows [first, last) in which the rate follows one law.
-struct LawfulStretch {
+struct LawfulSegment {
   size_t first = 0, last = 0;
   std::string left_out;  // why the rest is left out; empty: nothing is
 };
@@ -47,6 +47,6 @@ struct LawfulStretch {
 // differ by half of the larger one, by ten standard errors and by eight times what is usual in the
 // recording. A rate that vanishes or changes its sign is no break (dry friction does that), and
 // where commands or measured wheels act none is looked for.
-LawfulStretch lawful_stretch(const Observation& rows, const Vec3& axis, size_t first, size_t last);
+LawfulSegment lawful_segment(const Observation& rows, const Vec3& axis, size_t first, size_t last);
 
 }  // namespace photorque

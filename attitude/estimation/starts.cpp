@@ -164,7 +164,7 @@ Begun begun_from(const Hypothesis& h, const RunStart& start, const Observation& 
 }
 
 // Leaning the other way, everything else turned with it: which a tilt and a heading do not separate
-// where only gravity has a direction, and what only priors decide.
+// where only gravity has a direction, and directions that only priors decide.
 RunStart mirrored(RunStart start) {
   const Quat half(Eigen::AngleAxisd(pi, Vec3::UnitZ()));
   start.initial.lab_from_body = half * start.initial.lab_from_body * half.conjugate();

@@ -1,4 +1,4 @@
-// Whether a filter's errors are as large as it says.
+// Whether a filter's errors agree with its predicted errors.
 //
 // Source: Y. Bar-Shalom, X. Li, T. Kirubarajan, Estimation with Applications to Tracking and
 // Navigation (2001), sec. 5.4: normalised errors squared (NEES) and innovations squared (NIS).

@@ -108,10 +108,10 @@ class FilterRun {
     FilterState state = begin();
     std::vector<FilterState> checkpoints;
     for (size_t i = first_; i < last_; ++i) {
-      if (options_.smooths && (i - first_) % stretch == 0) checkpoints.push_back(state);
+      if (options_.smooths && (i - first_) % checkpoint_rows == 0) checkpoints.push_back(state);
       pass(state, i, nullptr, true);
       put(out_.filtered, i, state);
-      if (options_.progress && i % stretch == 0) {
+      if (options_.progress && i % checkpoint_rows == 0) {
         const double part = static_cast<double>(i) / static_cast<double>(last_);
         options_.progress(options_.smooths ? 0.4 * part : part);
       }
@@ -127,7 +127,7 @@ class FilterRun {
   }
 
  private:
-  static constexpr size_t stretch = 256;
+  static constexpr size_t checkpoint_rows = 256;
 
   FilterState begin() const {
     const Reading& first = readings_.all[first_];
@@ -192,7 +192,8 @@ class FilterRun {
     // `later` is the smoothed estimate at `next`, whose prediction and way stand in `ahead`.
     std::optional<Passed> ahead;
     for (size_t c = checkpoints.size(); c-- > 0;) {
-      const size_t from = first_ + c * stretch, to = std::min(last_, from + stretch);
+      const size_t from = first_ + c * checkpoint_rows,
+                   to = std::min(last_, from + checkpoint_rows);
       std::vector<Passed> passed(to - from);
       FilterState state = checkpoints[c];
       for (size_t i = from; i < to; ++i) pass(state, i, &passed[i - from], false);

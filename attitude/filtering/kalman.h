@@ -17,7 +17,7 @@ struct AttitudeEstimate {
   double time_s = 0.0;
   Quat lab_from_body = Quat::Identity();
   Vec3 rate_body_rad_s = Vec3::Zero();
-  Vec3 inertial_rate_rad_s = Vec3::Zero();  // what a perfect gyro reads
+  Vec3 inertial_rate_rad_s = Vec3::Zero();  // reading of a perfect gyro
   // Of rotation vector and rate, body axes.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
@@ -36,7 +36,7 @@ struct Estimation {
   std::vector<AttitudeEstimate> filtered, smoothed;  // by row; the latter empty if not asked for
   InnovationSum attitude, gyro, yaw;
   double log_likelihood = 0.0;  // of the readings after the first attitude
-  // Parameters at the end, with their standard deviations, and what they were before.
+  // Parameters at the end, with their standard deviations, and their initial values.
   std::vector<std::string> parameter_names;
   VecX parameters, sigma, prior_mean, prior_sigma;
 };

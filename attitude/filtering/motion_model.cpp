@@ -11,9 +11,9 @@ namespace photorque {
 
 namespace {
 
-// A gyro's bias where the experiment does not say how large it may be.
+// A gyro's bias where the experiment does not state its size.
 constexpr double usual_bias_rad_s = 5e-3;
-// Steps as short as this are always good enough: for what swings several times in a second.
+// Steps as short as this always suffice, also for swings of several per second.
 constexpr double short_step_s = 0.05;
 
 bool is_of_gyro(const Disturbance& disturbance) {
@@ -21,7 +21,7 @@ bool is_of_gyro(const Disturbance& disturbance) {
   return kind != nullptr && kind->instrument == "gyro";
 }
 
-// Only instruments, and what the gyro senses beside the platform's rate.
+// Only instruments, and effects that the gyro senses in addition to the platform's rate.
 bool is_of_instruments(const Disturbance& disturbance) {
   const DisturbanceKind* kind = find_kind(disturbance.kind);
   return disturbance.stage == Stage::measurement || disturbance.kind == "earth_rotation" ||
@@ -99,7 +99,7 @@ FilterState MotionModel::start(double time_s, const Quat& lab_from_body,
     const double about_rad2 = model_.platform.axis.dot(attitude_lab_rad2 * model_.platform.axis);
     state.covariance.topLeftCorner<3, 3>() = about_rad2 * along;
   }
-  // Extra states begin as the model says: at rest with the platform.
+  // Extra states start as in the model: at rest with the platform.
   for (Eigen::Index i = 0; i < prior_sigma_.size(); ++i) {
     const Eigen::Index at = first_parameter() + i;
     state.covariance(at, at) = std::pow(prior_sigma_[i], 2);
@@ -119,7 +119,7 @@ void MotionModel::begin_anew(FilterState& state) const {
 }
 
 void MotionModel::refresh(FilterState& state) const {
-  // The laws hold the parameters to this fraction of what is known of them.
+  // The laws hold the parameters to this fraction of their uncertainty.
   constexpr double near = 0.05;
   for (Eigen::Index i = 0; i < state.parameters.size(); ++i) {
     const Eigen::Index at = first_parameter() + i;

@@ -19,7 +19,7 @@ using VecX = Eigen::VectorXd;
 
 // How the platform turns from one reading to the next.
 enum class Motion {
-  gyro_drives,   // as the gyro says; between its readings the rate walks
+  gyro_drives,   // as the gyro reads; between its readings the rate walks
   rate_walks,    // the rate does a random walk
   disturbances,  // by Euler's equations under the modelled torques, beside which an unknown torque
                  // lets the rate walk
@@ -76,7 +76,7 @@ class MotionModel {
   // The motion has changed by an unknown kick: rate and attitude are uncertain again.
   void begin_anew(FilterState& state) const;
 
-  // To a later time; `gyro_rad_s` is read there and drives where the motion says so and all three
+  // To a later time; `gyro_rad_s` is read there and drives if the motion requires it and all three
   // axes were read.
   Transition advance(FilterState& state, double time_s, const Vec3& gyro_rad_s) const;
 
@@ -89,7 +89,7 @@ class MotionModel {
   // The error state that add() adds to `from` to give `to`.
   VecX difference(const FilterState& to, const FilterState& from) const;
 
-  // Rate against the inertial frame, body axes: what a perfect gyro reads.
+  // Rate against the inertial frame, body axes: the reading of a perfect gyro.
   Vec3 inertial_rate_rad_s(const FilterState& state) const;
   double camera_delay_s() const;
 

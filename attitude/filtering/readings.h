@@ -1,4 +1,4 @@
-// A recording as a filter takes it: what was read at which instant.
+// A recording as a filter takes it: readings by instant.
 #pragma once
 
 #include <limits>

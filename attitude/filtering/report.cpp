@@ -70,8 +70,8 @@ Plot::Curve error_curve(const std::string& label, const std::vector<AttitudeEsti
                         const TruthTrack& truth) {
   Plot::Curve curve;
   curve.label = label;
-  constexpr size_t stretches = 240;
-  const size_t step = std::max<size_t>(1, estimates.size() / stretches);
+  constexpr size_t intervals = 240;
+  const size_t step = std::max<size_t>(1, estimates.size() / intervals);
   for (size_t i = 0; i < estimates.size(); i += step) {
     double sum = 0.0;
     size_t count = 0;

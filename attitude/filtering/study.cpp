@@ -260,7 +260,7 @@ Recording recording_of(const std::vector<AttitudeEstimate>& estimates, const Rec
   return out;
 }
 
-// Simulated runs, and what a filter makes of many of them.
+// Simulated runs, and the results of a filter on many of them.
 
 SimulatedRun simulate_run(const PropagationRun& nominal, uint64_t seed) {
   PropagationRun run = nominal;

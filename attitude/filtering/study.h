@@ -1,4 +1,4 @@
-// `estimate`: what each ingredient brings to the attitude of a recording or of simulated runs.
+// `estimate`: the contribution of each instrument to the attitude, in recordings or simulated runs.
 #pragma once
 
 #include <cstdint>
@@ -50,7 +50,7 @@ struct EstimateResult {
   std::vector<Ingredients> ways;
   size_t chosen = 0;  // among them: the one that is written
   Product product;
-  // A line each about what the recording cannot say.
+  // One line for each quantity that the recording does not determine.
   std::vector<std::string> unseen;
 };
 
@@ -63,7 +63,7 @@ EstimateResult estimate_ways(const EstimateStudy& study, const Readings& reading
 // without bias, scale and noise; commands, currents and others stay as they are.
 Recording recording_of(const std::vector<AttitudeEstimate>& estimates, const Recording& source);
 
-// A run whose uncertain parameters are drawn from their sigmas, and what is true in it.
+// A run whose uncertain parameters are drawn from their sigmas, with its true values.
 struct SimulatedRun {
   Recording recording;
   TruthTrack truth;

@@ -54,10 +54,10 @@ namespace photorque {
 // When a disturbance acts while one instant is evaluated. Within a stage the order is that of the
 // experiment file and must not matter.
 enum class Stage {
-  conditions,   // changes what all others see: gravity, field, command, inertia
+  conditions,   // changes the input of all others: gravity, field, command, inertia
   mass,         // moves the centre of mass, by EvaluationContext::move_mass(), or turns the lab
   torque,       // acts on the body
-  measurement,  // changes only what the instruments read
+  measurement,  // changes only the readings of the instruments
 };
 
 // The evaluation context: everything about eight instants that a disturbance may read, and what it
@@ -71,7 +71,7 @@ struct EvaluationContext {
   // The state.
   T time_s;
   QuatOf<T> attitude;       // lab from body, unit
-  Mat3Of<T> lab_from_body;  // the same as a matrix
+  Mat3Of<T> lab_from_body;  // as a matrix
   Vec3Of<T> rate_body_rad_s;
   T charge_drawn_C;
 
@@ -164,7 +164,7 @@ struct ExtraState {
   // Its additional initial value when the platform starts by turning as one rigid body: this times
   // the rate, body axes. For states that count from the inertial frame.
   Vec3 per_body_rate = Vec3::Zero();
-  // Key of an experiment file that says `initial`, in the key's unit; empty: none does.
+  // Key of an experiment file for `initial`, in the key's unit; empty: none.
   std::string key = {};
 };
 

@@ -402,7 +402,7 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
     }
     return false;
   };
-  // Torques and what follows from them reach the instruments through the state alone.
+  // Torques and their results reach the instruments through the state alone.
   std::vector<size_t>&acting = room.acting, &owners = room.owners;
   acting.clear();
   owners.clear();
@@ -414,7 +414,7 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
     if (reaches_all || owner) owners.push_back(d);
     everything = everything || (reaches_all && owner);
   }
-  // An instrument's error may scale with what it senses.
+  // An instrument's error may be proportional to its input.
   everything = everything ||
                (with_instruments && std::any_of(instruments_.begin(), instruments_.end(), owns));
 

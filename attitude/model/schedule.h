@@ -24,7 +24,7 @@ struct ContinuedTorque {
   bool operator==(const ContinuedTorque&) const = default;
 };
 
-// The measured speeds of wheels about the body's axes, straight lines between what was measured.
+// The measured speeds of wheels about the body's axes, linear between measurements.
 struct WheelSpeeds {
   double from_s = 0.0;
   Vec3 speed_rad_s = Vec3::Zero();  // relative to the body
@@ -61,7 +61,7 @@ struct ZeroOrderHold {
 struct Schedule {
   std::vector<double> time_s;
   std::vector<ZeroOrderHold> held;
-  // The battery's current is what was measured, all of it: no law of the model adds to it.
+  // The battery's current is the measured one: no law of the model adds to it.
   bool current_is_measured = false;
 
   ZeroOrderHold at(double t_s) const;

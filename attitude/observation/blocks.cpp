@@ -9,7 +9,7 @@ namespace photorque {
 
 namespace {
 
-// How fast a scalar says that it turns: an angle from one reading to the next, a rate as it is.
+// The rate of rotation by a scalar: of an angle from one reading to the next, of a rate its value.
 double fastest_of_scalar(const ScalarReadings& read, Measures measures,
                          const std::vector<double>& time_s) {
   if (measures != Measures::angle && measures != Measures::rate) return 0.0;

@@ -8,7 +8,7 @@
 
 namespace photorque {
 
-// The instants at which a model is asked for what the mean over a block should be.
+// The instants at which a model is evaluated for the mean over a block.
 
 // How fast the platform is seen to turn at most: by the gyro, or from one attitude to the next; 0.1
 // at least [rad/s].

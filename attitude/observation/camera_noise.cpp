@@ -237,7 +237,7 @@ class Search {
   }
 
   double of(const Point& p) const {
-    // Far beyond what instruments do; the search is to stay inside.
+    // Far beyond real instruments; the search stays inside.
     if (std::abs(p.level) > 7.0 || p.roughness < -60.0 || p.roughness > 20.0) return INFINITY;
     const bool is_coloured = p.coloured > 0.0;
     if (is_coloured && (p.time < std::log(shortest_s) || p.time > std::log(longest_s))) {

@@ -34,7 +34,7 @@ void add_normal_equations(const KinematicSeries& series, const AngleNoise& noise
 // Of one channel: the estimate and its significance.
 struct FoundNoise {
   ChannelNoise noise;        // to be used: as stated unless something else was found
-  bool level_found = false;  // differs from what was stated
+  bool level_found = false;  // differs from the stated level
   bool colour_found = false;
   double level_sigma = 0.0;   // standard error of ln level
   double time_sigma_s = 0.0;  // of the correlation time

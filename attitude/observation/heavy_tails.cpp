@@ -14,7 +14,7 @@ namespace {
 constexpr size_t reach = deviation_window / 2;
 constexpr size_t lags = 5;
 
-// Correlation at each lag of what a parabola through a window leaves of white noise at its middle.
+// Correlation at each lag of the residual of white noise at the middle of a fitted parabola.
 std::array<double, lags + 1> correlations_of_white_noise() {
   // Weights of the value at the middle (Savitzky and Golay, Anal. Chem. 36, 1627, 1964).
   const double m = reach;
@@ -298,7 +298,7 @@ void robustify(const HeavyTails& tails, const std::vector<Prediction>& residuals
   for (int channel = 0; channel < 6; ++channel) {
     const std::optional<HeavyTail>& tail = tails[static_cast<size_t>(channel)];
     if (!tail) continue;
-    // Over the mean slope of the influence, so that a shift of all readings stays what it is.
+    // Over the mean slope of the influence, so that a shift of all readings is unchanged.
     const double slope = (tail->degrees + 1.0) / (tail->degrees + 3.0);
     for (size_t run = 0; run < runs.size(); ++run) {
       std::vector<Deviations> one = {deviations(residuals[run], runs[run], channel)};

@@ -104,7 +104,7 @@ struct Left {
 };
 
 bool is_near(const Prediction& about) {
-  // Products of two such angles are below the noise of what they are compared with, and smooth.
+  // Products of two such angles are smooth, and below the noise of the quantities compared.
   constexpr double farthest_rad = 0.05;
   for (const WhiteRow& off : about.off) {
     if (off.head<3>().array().isFinite().all() && off.head<3>().norm() > farthest_rad) return false;

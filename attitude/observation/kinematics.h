@@ -1,4 +1,4 @@
-// Camera against gyro: residuals of both about one motion, whatever torque acts.
+// Camera against gyro: residuals of both about one motion, under any torque.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct KinematicSeries {
   bool about_readings = false;                     // as in KinematicRun
   std::vector<char> jumps;                         // a command changed since the block before
   double interval_s = 0.0, gyro_interval_s = 0.0;  // between the readings of each
-  // Means over more than four correlation times no longer show what the time was.
+  // Means over more than four correlation times no longer determine the correlation time.
   double shortest_correlation_s = 0.0;
   // Contributions of instrument errors: of the gyro biases (3), a linear drift of them (3), scale
   // and misalignment (9, by rows), of the camera its delay and how that grows with time; then the

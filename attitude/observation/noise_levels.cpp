@@ -268,7 +268,7 @@ void append_left(const std::vector<Prediction>& residuals, const std::vector<Obs
   }
 }
 
-// Channels with one remainder between them: what pushes on a table prefers neither x nor y.
+// Channels with one remainder between them: forces on a table have no preferred axis.
 std::vector<std::vector<int>> alike_channels() {
   std::vector<std::vector<int>> groups;
   for (int channel = 0; channel < channel_count; ++channel) {

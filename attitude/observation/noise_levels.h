@@ -1,4 +1,4 @@
-// Levels of noise: of single channels, and with what a model leaves counted as noise.
+// Levels of noise: of single channels, and with the residual of a model counted as noise.
 #pragma once
 
 #include <optional>
@@ -34,14 +34,13 @@ std::optional<NoiseLevel> gyro_level(const std::vector<Observation>& seen,
                                      const std::vector<KinematicRun>& runs, int k,
                                      const Thresholds::Noise& limits);
 
-// Names beside what stays unexplained. Of a real machine hardly any model leaves only noise; then
-// what a fit leaves counts as noise too, correlated in time, and an effect is found with certainty
-// where it stands out of that.
+// Hardly any model of a real machine leaves only noise. The residual of a fit then counts as
+// correlated noise, and an effect is certain only if it exceeds that.
 
-// The noise of the runs with what a fit leaves of them (`residuals`, NaN where nothing was read) in
-// it, at least `own`, the noise of the readings alone. Channel by channel, white: with the mean
-// square of the residuals; correlated: besides over the time after which its autocorrelation falls
-// below 1/e, so that a slow remainder counts for the few independent numbers that it is.
+// The noise of the runs including the residuals of a fit (`residuals`, NaN where nothing was read),
+// at least `own`, the noise of the readings alone. Channel by channel. White: with the mean square
+// of the residuals; correlated: also with the time after which their autocorrelation falls below
+// 1/e, so that a slow residual counts as few independent numbers.
 enum class Remainder { white, correlated };
 NoiseLevels with_discrepancy(const std::vector<Prediction>& residuals,
                              const std::vector<Observation>& runs, const NoiseLevels& own,

@@ -1,4 +1,4 @@
-// The noise of the readings as the readings show it, whatever torque acts.
+// The noise of the readings, determined from the readings under any torque.
 #pragma once
 
 #include <array>

@@ -228,7 +228,7 @@ Observation Observation::averaged(size_t max_blocks) const {
     // A motion starts at a reading: no mean over times before its start could be predicted.
     const bool stands_alone = first == 0 || (apart && attitude_rows[first] > 0.0);
     while (!stands_alone && last < blocks() && is_within(last)) ++last;
-    // No short one at the end, unless it is far from what comes before.
+    // No short one at the end, unless it is far from the one before.
     const double left_s = last < blocks() ? time_s.back() - time_s[last] + row_interval_s : block_s;
     const bool goes_on = last < blocks() && time_s[last] - time_s[last - 1] < block_s;
     if (!stands_alone && !apart && goes_on && left_s < 0.5 * block_s) last = blocks();

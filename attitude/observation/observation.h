@@ -69,7 +69,7 @@ struct Observation {
 
   // Blocks of rows, by the mean of their times. A block without a reading has count 0.
   std::vector<double> time_s;
-  // Over what times a block's means are taken. They hold the motion's curvature.
+  // The times over which a block's means are taken. They contain the motion's curvature.
   struct Spread {
     double readings_s = 0.0, attitude_s = 0.0;  // root mean square about time_s
     double readings_fourth_s = 0.0;             // fourth root of the mean fourth power
@@ -111,7 +111,7 @@ struct Observation {
   // times before the part began, a reading at its middle is made as far as its neighbours allow.
   Observation part(size_t first, size_t last) const;
   // Neighbours averaged until about `max_blocks` are left, but for the first row, with which a
-  // motion starts: as good for what is slow against them.
+  // motion starts: sufficient for slow motion.
   Observation averaged(size_t max_blocks) const;
 };
 

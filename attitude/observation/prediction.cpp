@@ -152,7 +152,7 @@ class Comparison {
 
   void add(const Dynamics& dynamics, const Sensitivity* sensitivity, const Samples& samples) {
     const ExpectedReadings expected(dynamics, sensitivity, samples, seen_, scalars_);
-    // Nothing of what follows would be worth its steps.
+    // The rest would not be worth its steps.
     if (chi2_ > max_chi2_) throw NumericalError("the prediction has left the readings");
     for (int lane = 0; lane < samples.count; ++lane) {
       const size_t instant = samples.first + static_cast<size_t>(lane),
@@ -275,7 +275,7 @@ Prediction predict(const Dynamics& dynamics, const PlatformState& initial, const
                         options.keep_residuals, options.max_chi2);
   PropagationOptions propagation = options.propagation;
   // A trial of parameters that make the motion run away is not worth its steps.
-  // What rubs and stops needs thousands in a short time.
+  // A body that friction stops needs thousands of steps in a short time.
   constexpr int64_t steps_at_least = 20000;
   constexpr double steps_per_second = 40.0;
   const size_t count = blocks * instants.per_block();

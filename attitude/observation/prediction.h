@@ -78,8 +78,8 @@ struct Prediction {
   std::vector<WhiteRow> residual;  // whitened: independent, in units of their standard deviation
   std::vector<WhiteRow> off;       // measured − predicted [rad, rad/s]
   std::vector<PlatformState> states;
-  std::vector<Vec3> camera_offset_lab_rad;  // from the state's attitude to what the camera reports
-  std::vector<Vec3> gyro_rad_s;             // what the gyro reads
+  std::vector<Vec3> camera_offset_lab_rad;  // from the state's attitude to the camera's reading
+  std::vector<Vec3> gyro_rad_s;             // readings of the gyro
   // The reading of each scalar of the observation; zero for others.
   std::vector<Eigen::Matrix<double, scalar_count, 1>> scalars;
 };

@@ -34,7 +34,7 @@ class DryContact {
   Slip released(double time_s, const ZeroOrderHold& held, std::span<const double> y) const;
 
   // Positive where the slip that is held has ended: the rate has changed its sign, or the other
-  // torques exceed what sticks.
+  // torques exceed the static friction.
   Lanes beyond(const Lanes& time_s, const ZeroOrderHold& held, const Lanes* y) const;
   // The first two of the step's start, stages and end between which it ends.
   struct Stretch {
@@ -42,7 +42,7 @@ class DryContact {
   };
   std::optional<Stretch> ends_within(const CollocationStep& step, const ZeroOrderHold& held,
                                      double end_s) const;
-  // Whether the stages of an attempted step see how the torques on what sticks change.
+  // Whether the stages of an attempted step resolve the change of the torques on a sticking body.
   bool resolves(const CollocationStep& step, const ZeroOrderHold& held) const;
 
   // dy/dt, just before `time_s`.

@@ -1,5 +1,5 @@
-// A run that is watched and commanded while it proceeds: what the instruments say at a tick, and
-// what is commanded from it until the next.
+// A run that is observed and commanded while it proceeds: the readings at a tick, and the commands
+// until the next.
 #pragma once
 
 #include <deque>
@@ -29,7 +29,7 @@ struct LiveRow {
   PlatformState truth;
 };
 
-// Decides what holds until the next tick. May wait as long as it likes: the run waits with it.
+// Decides the command until the next tick. It may wait as long as necessary: the run waits with it.
 using LiveCommander = std::function<ZeroOrderHold(const LiveRow& row)>;
 
 // The attitude so long before `state`, turning as it does there.
@@ -41,7 +41,7 @@ class LiveInstruments {
   LiveInstruments(const Dynamics& dynamics, const PlatformState& initial, double rate_Hz,
                   double camera_delay_s, const Sensors& sensors, uint64_t seed);
 
-  // After every step of the motion: what the camera saw within it.
+  // After every step of the motion: the camera's readings within it.
   void follow(const Propagator& motion);
   // At the ticks, in order. `held` is what was commanded before; `power` is that of a power system
   // beside the motion.

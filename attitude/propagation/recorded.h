@@ -1,4 +1,4 @@
-// A run on its way, stepped by its caller, and what is recorded of it.
+// A run that its caller steps, and its recording.
 #pragma once
 
 #include <deque>

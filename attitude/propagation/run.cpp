@@ -52,7 +52,7 @@ constexpr NumberKey initial_time(
 constexpr TextKey commands(
     "commands",
     "CSV: `t_s` and any of `command_x_N_m`, `…_y_…`, `…_z_…`, `command_x_N`, `command_y_N` (of "
-    "what slides), `battery_current_A`, "
+    "a sliding body), `battery_current_A`, "
     "`led_current_A`, each row held until the next (zero-order hold); *or*",
     {.usually = "none"});
 constexpr NumberKey time("time_s", {}, "rising");
@@ -184,7 +184,7 @@ Quat read_initial_attitude(const Settings& settings) {
   return attitude.normalized();
 }
 
-// Bearings leave one axis: what begins beside it is a motion that they do not allow.
+// Bearings leave one axis: initial motion about another axis is not allowed.
 void check_begins_about_axis(const Settings& settings, const Platform& platform,
                              const Quat& lab_from_body, const Vec3& rate_rad_s) {
   if (!platform.turns_about_one_axis()) return;
@@ -217,7 +217,7 @@ Settings own_table(const Settings& root, const std::string& key, bool required) 
 
 namespace {
 
-// An inertia error of zero, as uncertain as [platform] says.
+// An inertia error of zero, with the uncertainty of [platform].
 Disturbance uncertain_inertia(const Mat3& sigma_kg_m2, const DisturbanceContext& context) {
   // The one kind that changes it.
   const auto& kinds = disturbance_kinds();

@@ -44,7 +44,7 @@ void Sampler::flush() {
   samples_.count = 0;
 }
 
-// The first `batch` lanes, behind what is there.
+// Appends the first `batch` lanes.
 void Sampler::file(const Lanes& times_s, int batch) {
   // Eight at once are no others than those asked for next.
   const bool is_whole = batch == Lanes::count;

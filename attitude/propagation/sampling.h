@@ -30,7 +30,7 @@ class Sampler {
   Sampler(const Propagator& propagator, size_t count, std::function<double(size_t)> time_s,
           std::function<void(const Samples&)> sink);
 
-  // After every step: what it passed, but for its end.
+  // After every step: the samples within it, without its end.
   void follow();
   // When the run has ended: its end too. Returns the number of times reached.
   size_t finish();

@@ -26,7 +26,7 @@ bool only_reads(const Dynamics& dynamics, const Variable& variable) {
          dynamics.model().disturbances[variable.disturbance].stage == Stage::measurement;
 }
 
-// Those of which the motion depends: a parameter of an instrument changes what is read of it.
+// Those on which the motion depends: a parameter of an instrument changes only readings.
 std::vector<size_t> moving_among(const std::vector<Variable>& variables, const Dynamics& dynamics) {
   std::vector<size_t> moving;
   for (size_t v = 0; v < variables.size(); ++v) {

@@ -54,9 +54,9 @@ void thin(const std::vector<double>& x, const std::vector<double>& y, Plot::Curv
     curve.y = y;
     return;
   }
-  const size_t stretches = most / 2;
-  for (size_t s = 0; s < stretches; ++s) {
-    const size_t begin = s * x.size() / stretches, end = (s + 1) * x.size() / stretches;
+  const size_t intervals = most / 2;
+  for (size_t s = 0; s < intervals; ++s) {
+    const size_t begin = s * x.size() / intervals, end = (s + 1) * x.size() / intervals;
     const auto [low, high] = std::minmax_element(y.begin() + static_cast<std::ptrdiff_t>(begin),
                                                  y.begin() + static_cast<std::ptrdiff_t>(end));
     for (const auto at : {std::min(low, high), std::max(low, high)}) {
@@ -76,16 +76,16 @@ Plot::Curve curve(const std::string& label, const std::vector<double>& x,
   return c;
 }
 
-// The largest of every interval, for a logarithmic axis: what swings through zero shows its swing.
+// The largest of every interval, for a logarithmic axis: a swing through zero shows its amplitude.
 // Values below `least` leave a gap.
 Plot::Curve envelope(const std::string& label, const std::vector<double>& x,
                      const std::vector<double>& size, double least) {
   constexpr size_t most = 240;
-  const size_t stretches = std::min(most, x.size());
+  const size_t intervals = std::min(most, x.size());
   Plot::Curve c;
   c.label = label;
-  for (size_t s = 0; s < stretches; ++s) {
-    const size_t begin = s * x.size() / stretches, end = (s + 1) * x.size() / stretches;
+  for (size_t s = 0; s < intervals; ++s) {
+    const size_t begin = s * x.size() / intervals, end = (s + 1) * x.size() / intervals;
     const double largest = *std::max_element(size.begin() + static_cast<std::ptrdiff_t>(begin),
                                              size.begin() + static_cast<std::ptrdiff_t>(end));
     const bool shows = largest >= least && largest > 0.0;

@@ -2,8 +2,7 @@
 // written in: blocks of assignments, comments and data lines.
 //
 // Everything is kept as text in its order, so that a message written back says the same in every
-// digit; what it means is read by AttitudeEphemeris.
-// Source: CCSDS 504.0-B-2 (2024), section 7.
+// digit; AttitudeEphemeris reads its meaning. Source: CCSDS 504.0-B-2 (2024), section 7.
 #pragma once
 
 #include <filesystem>

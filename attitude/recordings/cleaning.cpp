@@ -183,7 +183,7 @@ void repair_quaternions(Recording& recording) {
       along += now[k] * before[k];
     }
     if (std::isnan(square)) {
-      // Three components without the fourth say nothing safe about an attitude.
+      // Three components without the fourth do not determine an attitude safely.
       for (Channel* channel : q) channel->values[i] = empty_cell;
       continue;
     }

@@ -88,7 +88,7 @@ ScalarReading scalar_reading(Scalar scalar, const Quat& lab_from_body, const Vec
 // A difference of two readings of a scalar; of angles within half a turn.
 double scalar_difference(Scalar scalar, double measured, double predicted);
 
-// Which columns of a recording say what of the motion, for the machine at hand.
+// The meaning of the columns of a recording for a machine.
 //
 //   attitude: q_w, q_x, q_y, q_z; or roll_rad, pitch_rad, yaw_rad in the sequence that the
 //     recording states (angle_sequences), "zyx" where it states none; of a platform that turns
@@ -118,7 +118,7 @@ class MotionColumns {
   bool has_scalar(Scalar scalar) const { return scalar_at(scalar) != nullptr; }
   bool has_scalars() const;
 
-  // The first column that says something of the motion.
+  // The first column with information on the motion.
   std::string first_name() const;
 
   // Of a row; not finite where it has none.

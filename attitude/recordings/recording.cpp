@@ -11,8 +11,7 @@
 #include "attitude/recordings/named_columns.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/files.h"
-#include "core/numerics/steady_stretches.h"
-#include "core/old_names.h"
+#include "core/numerics/steady_intervals.h"
 #include "core/text/parse.h"
 
 namespace photorque {
@@ -64,7 +63,7 @@ constexpr std::string_view known_channels[] = {
     "velocity_y_m_s",
 };
 
-// NaN for an empty cell or the word nan; nullopt for what is no number.
+// NaN for an empty cell or the word nan; nullopt if it is no number.
 std::optional<double> to_number(std::string_view cell) {
   if (cell.empty() || cell == "NaN" || cell == "nan" || cell == "NA") return empty_cell;
   return number_in(cell);
@@ -185,7 +184,7 @@ class RecordingReader {
     return true;
   }
 
-  // The header is the first line that names the time; whatever stands before it is preamble.
+  // The header is the first line that names the time; the lines before it are preamble.
   void read_header() {
     constexpr int max_preamble_lines = 10000;
     std::string_view line;
@@ -235,15 +234,12 @@ class RecordingReader {
     const auto column = std::ranges::find(columns_, old_yaw, &FileColumn::name);
     if (column == columns_.end()) return;
     column->name = new_yaw;
-    has_old_yaw_ = true;
-    note_old_name(path_.string() +
-                  ": column heading is read as yaw, the azimuth of body x; name it " +
-                  std::string(new_yaw) + " (heading: the direction of the lean)");
+    recording_.report.has_old_yaw = true;
   }
 
   // Of a channel of this file.
   std::string successor_of(const std::string& channel) const {
-    return has_old_yaw_ && channel == old_yaw ? std::string(new_yaw) : channel;
+    return recording_.report.has_old_yaw && channel == old_yaw ? std::string(new_yaw) : channel;
   }
 
   void take_row(std::string_view line) {
@@ -343,7 +339,6 @@ class RecordingReader {
   std::vector<std::string_view> cells_;
   size_t time_column_ = 0;
   char separator_ = ',';
-  bool has_old_yaw_ = false;
   int64_t kept_cells_ = 0;
   std::optional<InputError> first_malformed_, first_without_time_;
 };
@@ -373,7 +368,7 @@ Schedule Recording::schedule() const {
   ZeroOrderHold held;
   // Before its first knot a wheel is on the first line.
   if (!knots.empty()) held.wheel = knots.front();
-  // An empty cell holds what was before.
+  // An empty cell keeps the previous value.
   const auto update = [](const Channel* channel, size_t row, double& value) {
     if (channel != nullptr && !std::isnan(channel->values[row])) value = channel->values[row];
   };
@@ -500,6 +495,9 @@ std::string RecordingReport::text() const {
   say(flipped_quaternions, "sign flips of the quaternion undone");
   for (const auto& [channel, count] : outliers) {
     out << "\n" << count << " outliers in " << channel << " left out";
+  }
+  if (has_old_yaw) {
+    out << "\nthe column heading is read as yaw, the azimuth of body x: name it " << new_yaw;
   }
   for (const std::string& column : absent_columns) {
     out << "\nthe column " << column << ", which [recording] names, is not in it";

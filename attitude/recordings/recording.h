@@ -1,4 +1,4 @@
-// Recordings: what the laboratory measured, or what a simulated one would have.
+// Recordings: readings of a real or a simulated laboratory.
 //
 // CSV with a header that names channel and unit (also .csv.gz). Real files have a preamble, gaps,
 // repeated and jittered times, outliers and flipped quaternions: the reader repairs what can be
@@ -34,7 +34,7 @@ struct RecordingReport {
   int64_t preamble_lines = 0;
   int64_t malformed_rows = 0;     // wrong number of cells (a torn last line): left out
   int64_t rows_without_time = 0;  // left out
-  int64_t repeated_times = 0;     // the same time again: left out
+  int64_t repeated_times = 0;     // a repeated time: left out
   int64_t backward_times = 0;     // earlier than a row before: left out
   int64_t first_backward_line = 0;
   int64_t first_repeated_line = 0;
@@ -51,6 +51,7 @@ struct RecordingReport {
   double jitter_s = 0.0;                    // standard deviation of the intervals, gaps left out
   std::map<std::string, int64_t> outliers;  // cells by channel
   bool has_decimal_commas = false;          // "0,25" between other separators, read as 0.25
+  bool has_old_yaw = false;                 // a column named heading, read as yaw
   std::set<std::string> absent_columns;     // that the options name and the file has not
 
   // The report in a few lines; only what occurred.

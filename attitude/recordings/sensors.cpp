@@ -278,7 +278,7 @@ void Recorder::add_place(const Truth& truth) {
   put("y_m", read(1));
   put("command_x_N", truth.command_lab_N.x());
   put("command_y_N", truth.command_lab_N.y());
-  // A velocity is written where its noise is stated: what sees places alone does not read it.
+  // A velocity is written where its noise is stated: an instrument for places does not read it.
   if (noise.noise_m_s > 0.0) {
     put("velocity_x_m_s", read(2));
     put("velocity_y_m_s", read(3));

@@ -3,7 +3,7 @@
 // Errors that a parameter describes (bias, scale, misalignment, latency) are disturbances of
 // Stage::measurement, so that they can be fitted like any other; what is here is noise, drift,
 // resolution and rate. Every random number is a hash of seed, instrument, row and axis: the same
-// seed gives the same recording whatever else changes.
+// seed gives the same recording when other settings change.
 #pragma once
 
 #include <array>
@@ -80,7 +80,7 @@ struct Sensors {
   std::optional<Position> position;
   std::optional<Encoder> encoder;
   Power power;
-  // The noise is what is stated here, whatever a recording shows.
+  // The stated noise is used, independent of the recording.
   bool noise_is_stated = false;
   // bias, scale, misalignment and latency as the file gives them.
   std::vector<Disturbance> errors;
@@ -98,7 +98,7 @@ struct Sensors {
 //   power: current_noise_A, power_noise_W;
 //   noise_is: "found" (diagnose looks for the noise in the recording) or "stated".
 Sensors read_sensors(const Settings& settings, const DisturbanceContext& context);
-// A camera and a gyro without errors: what is recorded when nothing is said.
+// A camera and a gyro without errors, the default.
 Sensors perfect_sensors();
 
 // Covariance of one attitude reading, of its error as a rotation vector about lab axes [rad²];

@@ -37,7 +37,7 @@ Hypothesis hypothesis_of(const BalanceRun& run, const AttitudeModel& model, size
 }
 
 // Windows that grow: a start that is far off is repaired before a long run can diverge from it.
-FitSettings patient_settings() {
+FitSettings convergent_settings() {
   FitSettings settings;
   settings.windows = {0.02, 0.07, 0.25, 1.0};
   settings.max_iterations = 30;
@@ -49,10 +49,10 @@ FitSettings patient_settings() {
 }
 
 // Residuals of the camera's attitudes.
-void add_camera_residuals(const std::vector<Observation>& stretches, BalanceResult& result) {
-  const std::vector<Prediction> predicted = residuals_of(result.fit, stretches);
-  for (size_t s = 0; s < stretches.size(); ++s) {
-    const Observation& seen = stretches[s];
+void add_camera_residuals(const std::vector<Observation>& segments, BalanceResult& result) {
+  const std::vector<Prediction> predicted = residuals_of(result.fit, segments);
+  for (size_t s = 0; s < segments.size(); ++s) {
+    const Observation& seen = segments[s];
     for (size_t i = 0; i < seen.blocks(); ++i) {
       if (!(seen.attitude_rows[i] > 0.0)) continue;
       result.residual_time_s.push_back(seen.time_s[i]);
@@ -62,7 +62,7 @@ void add_camera_residuals(const std::vector<Observation>& stretches, BalanceResu
 }
 
 // The recording between gaps, each segment with its own initial state.
-std::vector<Observation> stretches_of(const BalanceRun& run) {
+std::vector<Observation> segments_of(const BalanceRun& run) {
   std::vector<Observation> all =
       observe_segments(run.recording, "recording", run.model.platform, run.recording.rows()).all;
   for (Observation& seen : all) seen.noise = noise_levels(run.sensors);
@@ -80,17 +80,17 @@ Vec3 offset_of(const Fit& fitted, size_t unbalance) {
 // How far the offset of parts of the recording is from that of the whole at most, by axis: what the
 // model lacks pulls each of them another way, and all of them some way.
 Vec3 distance_of_parts_m(const BalanceRun& run, const Fit& whole, size_t unbalance,
-                         const std::vector<Observation>& stretches) {
+                         const std::vector<Observation>& segments) {
   constexpr size_t parts = 6, fewest_blocks = 60;
   const Vec3 offset_m = offset_of(whole, unbalance);
   Vec3 largest_m = Vec3::Zero();
   bool has_any = false;
-  for (const Observation& seen : stretches) {
+  for (const Observation& seen : segments) {
     const size_t length = std::max(fewest_blocks, seen.blocks() / parts);
     for (size_t first = 0; first + length <= seen.blocks(); first += length) {
       const std::vector<Observation> part = {seen.part(first, first + length)};
       const Hypothesis start = hypothesis_of(run, whole.best.model, unbalance, part);
-      const Fit fitted = fit(start, part, patient_settings());
+      const Fit fitted = fit(start, part, convergent_settings());
       if (!std::isfinite(fitted.chi2)) continue;
       largest_m = largest_m.cwiseMax((offset_of(fitted, unbalance) - offset_m).cwiseAbs());
       has_any = true;
@@ -99,12 +99,12 @@ Vec3 distance_of_parts_m(const BalanceRun& run, const Fit& whole, size_t unbalan
   return has_any ? largest_m : Vec3::Constant(INFINITY);
 }
 
-// The fit again with what it left counted as noise.
-Fit beside_the_rest(const Fit& fitted, std::vector<Observation> stretches) {
-  const NoiseLevels noise = with_discrepancy(residuals_of(fitted, stretches), stretches,
-                                             stretches.front().noise, Remainder::correlated);
-  for (Observation& seen : stretches) seen.noise = noise;
-  return fit(fitted.best, stretches, patient_settings());
+// The fit again with its residual counted as noise.
+Fit fit_with_discrepancy(const Fit& fitted, std::vector<Observation> segments) {
+  const NoiseLevels noise = with_discrepancy(residuals_of(fitted, segments), segments,
+                                             segments.front().noise, Remainder::correlated);
+  for (Observation& seen : segments) seen.noise = noise;
+  return fit(fitted.best, segments, convergent_settings());
 }
 
 Mat3 cross_matrix(const Vec3& v) {
@@ -256,10 +256,10 @@ BalanceResult balance(const BalanceRun& run) {
   std::vector<Parameter>& offset = model.disturbances[unbalance].parameters;
   for (size_t k = 0; k < 3; ++k) offset[k].value = guess_m[static_cast<Eigen::Index>(k)];
 
-  const std::vector<Observation> stretches = stretches_of(run);
+  const std::vector<Observation> segments = segments_of(run);
   BalanceResult result;
-  result.stretches = stretches.size();
-  result.fit = fit(hypothesis_of(run, model, unbalance, stretches), stretches, patient_settings());
+  result.segments = segments.size();
+  result.fit = fit(hypothesis_of(run, model, unbalance, segments), segments, convergent_settings());
   if (!std::isfinite(result.fit.chi2)) {
     throw NumericalError("the model cannot be propagated along the recording");
   }
@@ -267,13 +267,13 @@ BalanceResult balance(const BalanceRun& run) {
   result.excess_sigma =
       (result.chi2_per_sample - 1.0) * std::sqrt(0.5 * static_cast<double>(result.fit.samples));
   if (result.leaves_more_than_noise()) {
-    const Fit beside = beside_the_rest(result.fit, stretches);
+    const Fit beside = fit_with_discrepancy(result.fit, segments);
     if (std::isfinite(beside.chi2)) result.fit = beside;
   }
   const Vec3 distance_m = result.leaves_more_than_noise()
-                              ? distance_of_parts_m(run, result.fit, unbalance, stretches)
+                              ? distance_of_parts_m(run, result.fit, unbalance, segments)
                               : Vec3(Vec3::Zero());
-  add_camera_residuals(stretches, result);
+  add_camera_residuals(segments, result);
 
   result.offset_body_m = offset_of(result.fit, unbalance);
   const inference::Covariance known = result.fit.shared();

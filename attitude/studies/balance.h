@@ -36,7 +36,7 @@ struct BalanceResult {
   // added. Infinite along an axis that the recording does not determine, as the vertical of a
   // platform that stays level.
   Vec3 sigma_m = Vec3::Zero();
-  BalanceCommand command;     // of the masses, and what their steps leave
+  BalanceCommand command;     // of the masses, and the offset that their steps leave
   double resolution_m = 0.0;  // of the coarsest axis, half a step (eq. 1)
   // Of the fit with the noise of the instruments alone, and by how many standard errors it exceeds
   // one. Beyond `noticed_sigma` something acts that the model lacks: it pulls the offset as well,
@@ -45,7 +45,7 @@ struct BalanceResult {
   static constexpr double noticed_sigma = 6.0;
   bool leaves_more_than_noise() const { return excess_sigma > noticed_sigma; }
   std::string warning() const;  // as printed; empty where nothing more than noise is left
-  size_t stretches = 1;         // into which gaps cut the recording
+  size_t segments = 1;          // into which gaps cut the recording
   Fit fit;
   // Residuals of the camera's attitudes, lab axes, at these times.
   std::vector<double> residual_time_s;

@@ -130,7 +130,7 @@ struct Acting {
   Vec3 mean_body_N_m = Vec3::Zero();
 };
 
-// The command and all disturbances' torques at an instant, by disturbance, and what they come to.
+// The command and all disturbances' torques at an instant, by disturbance, and their sum.
 struct Snapshot {
   std::vector<Vec3> torques_body_N_m;
   Vec3 angular_acceleration_rad_s2;

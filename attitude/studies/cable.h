@@ -1,4 +1,4 @@
-// A cable to the platform: how stiff it is, what it loses, what it weighs.
+// A cable to the platform: stiffness, losses, weight.
 #pragma once
 
 namespace photorque {

@@ -109,7 +109,7 @@ double mutual_inductance_H(const CircularFilament& a, const CircularFilament& b)
     const OnCircle here = circle.at(angle_rad);
     return filament_potential_T_m_A(a, here.point_m).dot(here.tangent_m);
   };
-  // Of coils that couple fully; what is orders below it is right to as many digits less.
+  // Of fully coupled coils; much weaker coupling has correspondingly fewer correct digits.
   const double distance_m = (a.centre_m - b.centre_m).norm() + a.radius_m + b.radius_m;
   const double scale = scale_T_m_A * a.radius_m * a.radius_m * b.radius_m * b.radius_m /
                        (distance_m * distance_m * distance_m);

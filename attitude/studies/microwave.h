@@ -1,4 +1,4 @@
-// Power by a microwave beam: what arrives, what a tilted rectenna takes of it, and how it pushes.
+// Power by a microwave beam: arriving power, power of a tilted rectenna, and pressure.
 #pragma once
 
 namespace photorque {

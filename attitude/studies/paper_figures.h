@@ -68,7 +68,7 @@ struct PaperFigure {
   double published = 0.0;
   double ours = 0.0;          // NaN: not ours to compute without the user's data
   double as_published = 0.0;  // the paper's own form of the equation with these inputs; NaN: none
-  std::string why;            // why ours differs, or what agrees
+  std::string why;            // why ours differs, or agrees
 };
 std::vector<PaperFigure> paper_figures(const PaperInputs& inputs = {});
 

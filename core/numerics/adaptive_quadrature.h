@@ -17,7 +17,7 @@ struct Integral {
   double error = 0.0;
 };
 
-// The size of what is integrated: of a number, or the largest of several.
+// The size of the integral: of a number, or the largest of several.
 inline double size_of(double value) {
   return std::abs(value);
 }

@@ -32,11 +32,11 @@ Eigen::MatrixXd chebyshev_cell_means(size_t n, size_t cells);
 // do.
 
 // dy/dx at every knot: the derivative of the polynomial through the (up to) five nearest knots,
-// cut to what keeps the interpolant monotone between knots. Smooth data are met to fourth order in
+// limited so that the interpolant is monotone between knots. Smooth data are met to fourth order in
 // the spacing; the interpolant never leaves the range of the two values around it. `x` strictly
-// ascending, at least two knots; both of one length.
-// Source of the bound |slope| ≤ 3 |chord|: F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17
-// (1980) 238; of high-order slopes under it: J. M. Hyman, SIAM J. Sci. Stat. Comput. 4 (1983) 645.
+// ascending, at least two knots; both of one length. Source of the bound |slope| ≤ 3 |chord|: F. N.
+// Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238; of high-order slopes under it: J. M.
+// Hyman, SIAM J. Sci. Stat. Comput. 4 (1983) 645.
 std::vector<double> monotone_slopes(std::span<const double> x, std::span<const double> y);
 
 // The value in the middle of knots `i` and `i + 1`: of the polynomial through the (up to) six

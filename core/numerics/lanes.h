@@ -97,7 +97,7 @@ inline Lanes log(const Lanes& x) {
   return {log(x.low), log(x.high)};
 }
 Lanes pow(const Lanes& x, double exponent);
-// Good to three units in the last place for finite numbers; 0 for two zeros, whatever their signs.
+// Good to three units in the last place for finite numbers; 0 for two zeros of any sign.
 Lanes atan2(const Lanes& y, const Lanes& x);
 
 // a where x ≥ bound, b elsewhere; lane by lane.

@@ -1,4 +1,4 @@
-// Counter-based randomness: every number is a hash of what it is for, so that no order of work can
+// Counter-based randomness: every number is a hash of its purpose, so that no order of work can
 // change it. Owen-scrambled Sobol points, in blocks and in cells.
 #pragma once
 

@@ -41,7 +41,7 @@ class RotationTableBuilder {
   using Key = std::tuple<int, int32_t, int32_t, int32_t>;
 
   struct Deviation {
-    double worst = 0.0;  // relative to what is allowed; > 1 fails
+    double worst = 0.0;  // relative to the allowed error; > 1 fails
   };
 
   void begin() {
@@ -91,7 +91,7 @@ class RotationTableBuilder {
     }
   }
 
-  // How far two samples differ, over what is allowed: the tolerance, and 4.5 standard errors of
+  // The difference of two samples over the allowed one: the tolerance, and 4.5 standard errors of
   // their difference. The scatter of the table's own values is that of a sample.
   double excess(std::span<const double> value, const RotationSample& truth, double fraction) const {
     double worst = 0.0;

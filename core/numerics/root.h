@@ -22,8 +22,8 @@ struct BisectionEnd {
   double relative_width = 0.0;  // of |high|
 };
 
-// Halves [low, high], of which `is_below(x)` says whether x lies below the root, until the bracket
-// is as narrow as `end` asks for or its ends are neighbouring numbers.
+// Halves [low, high], where `is_below(x)` is whether x lies below the root, until the bracket is as
+// narrow as `end` asks for or its ends are neighbouring numbers.
 template <typename Predicate>
 RootBracket bisect(double low, double high, const Predicate& is_below, BisectionEnd end = {}) {
   for (int round = 0; round < end.max_rounds; ++round) {

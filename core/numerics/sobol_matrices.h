@@ -75,7 +75,7 @@ inline void scramble_block(const uint32_t* reversed, uint32_t common, uint32_t s
 }
 
 // Direction numbers of Joe and Kuo for the first four dimensions, as bit-reversed columns: column k
-// is what bit k of the index contributes, in the reversed fraction.
+// is the contribution of bit k of the index, in the reversed fraction.
 struct Primitive {
   int degree;
   uint32_t coefficients;

@@ -294,7 +294,7 @@ bool RotationTable::read(const std::string& bytes) {
   for (const int32_t root : table.roots_) {
     if (root >= boxes) return false;
   }
-  // In numbers that hold whatever the bytes say.
+  // In numbers that cannot overflow for any bytes.
   if (channels > table.values_.size()) return false;
   const uint64_t samples = table.values_.size() / (twists * channels);
   for (int64_t index = 0; index < boxes; ++index) {

@@ -1,7 +1,7 @@
 // A function of attitude by its values at chosen attitudes, refined until it interpolates well
 // enough.
 //
-// It is tabulated in coordinates in which what depends on an attitude is smooth. u is a direction
+// It is tabulated in coordinates in which functions of an attitude are smooth. u is a direction
 // fixed in the lab, seen from the body. Where u points is given on the half of the sphere about +z
 // or −z of the body by its stereographic projection from the other pole, p = 2 tan(θ/2) towards u,
 // |p| ≤ 2 on the half, 0 at the pole. The remaining rotation is about that direction: the twist ψ

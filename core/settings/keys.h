@@ -50,7 +50,7 @@ struct Key {
   std::string name;  // with the unit that documents show: "pitch_m"
   Type type = Type::number;
   std::string what;           // one sentence, as the meaning in a table of a document
-  bool required = true;       // whatever else the table holds
+  bool required = true;       // with any other keys of the table
   bool completes = false;     // where it stands, required keys beside it may be missing
   bool has_error = false;     // may be { value = …, sigma = … }
   bool or_array = false;      // a number that may be an array of them: one for each band, axis

@@ -26,7 +26,7 @@ class Misreading {
       } else if (is_chosen(written, known)) {
         refuse(value, known, key, full);
       } else if (const auto possible = of_every_choice(keys); find(possible, key) == nullptr) {
-        // Whatever was meant by the choice, it knows no such key.
+        // No choice of the kind has such a key.
         refuse(value, possible, key, full);
       } else {
         check_as_any(value, possible, key, full);
@@ -47,7 +47,7 @@ class Misreading {
     return all;
   }
 
-  // A value that no choice would take is wrong whatever was meant.
+  // A value that no choice accepts is wrong in any case.
   void check_as_any(const SettingsNode& value, const std::vector<const Key*>& possible,
                     const std::string& key, const std::string& full) {
     std::vector<InputError> first;
@@ -176,7 +176,7 @@ class Misreading {
 
   void number(const SettingsNode& value, const Key& key, const std::string& written,
               const std::string& full) {
-    // In the unit that the user chose, as the readers say it.
+    // In the unit that the user chose, as the readers print it.
     const KeyUnit unit = unit_of_key(written);
     const auto* whole = std::get_if<int64_t>(&value.value);
     const auto* real = std::get_if<double>(&value.value);

@@ -10,7 +10,7 @@
 namespace photorque {
 
 // The keys that were read and requested: shared by all views of one root, so that finish() on the
-// root sees what every part of the program did.
+// root sees the reads of every part of the program.
 struct Settings::Log {
   std::set<const SettingsNode*> read;
   std::map<const SettingsNode*, std::set<std::string>> asked;  // table → keys asked for

@@ -1,4 +1,4 @@
-// Typed access to what the user wrote, wherever it was written.
+// Typed access to the user's keys, of files and of the command line.
 //
 // A reader (TOML, glTF extras, command line) fills a tree of SettingsNode; the program reads it
 // through Settings. Every value is converted to SI here and nowhere else, from the unit that its
@@ -120,7 +120,7 @@ class Settings {
 
   InputLocation where() const;
   const std::string& name() const { return name_; }
-  // The error for a value of this table that is wrong for a reason only the caller knows.
+  // The error for a value of this table that is wrong for a reason of the caller.
   InputError error(std::string_view key, const std::string& found,
                    const std::string& expected) const;
 

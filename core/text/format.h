@@ -8,8 +8,8 @@
 
 namespace photorque {
 
-// Valid UTF-8 without control characters: what is not becomes U+FFFD or a space. Names come from
-// users' files, and one bad byte would stop cairo from drawing and a JSON file from being read.
+// Valid UTF-8 without control characters: others become U+FFFD or a space. Names come from users'
+// files, and one bad byte would stop cairo from drawing and a JSON file from being read.
 std::string clean_text(std::string_view text);
 
 // The number of leading bytes of `text` (valid UTF-8, not empty) that make one character.

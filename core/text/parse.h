@@ -1,5 +1,5 @@
 // Text taken apart: lines, cells and words, which are views into the text that was given; numbers
-// and columns; what JSON texts and URIs need before they are read.
+// and columns; checks of JSON texts and URIs before they are read.
 #pragma once
 
 #include <cstdint>
@@ -37,13 +37,13 @@ std::vector<std::string_view> words_of(std::string_view line,
 std::string in_quotes(std::string_view text);
 
 // Throws InputError when the beginning of a text file is UTF-16 or no text at all: readers of lines
-// would find no column in it and say so misleadingly.
+// would find no column in it and report a misleading error.
 void require_text(std::string_view begin, const InputLocation& where);
 
-// The lines of a text that say something: neither blank nor a comment from # on.
+// The lines of a text that are neither blank nor a comment from # on.
 class DataLines {
  public:
-  // `text` must outlive the reader; `file` is what messages name. See require_text().
+  // `text` must outlive the reader; `file` is the name in messages. See require_text().
   DataLines(std::string_view text, const std::string& file);
 
   // The next such line, trimmed; false at the end.
@@ -64,7 +64,7 @@ std::optional<double> number_in(std::string_view text);
 double require_number(std::string_view text, const InputLocation& where, const std::string& what,
                       const std::string& expected = "a number");
 
-// A number that counts something, as what it counts; InputError unless whole and in [low, high].
+// A count; InputError unless whole and in [low, high].
 size_t require_count(double value, const InputLocation& where, const std::string& what, int low,
                      int high);
 

@@ -136,7 +136,7 @@ std::vector<FittedParameter> fitted_parameters(const Trial& t, size_t disturbanc
       result.push_back({parameters[p].key, {}, {}});
     }
     result.back().value.push_back(parameters[p].value / unit);
-    // A component about which the motion tells nothing stays what it was.
+    // A component that the motion does not determine keeps its nominal value.
     result.back().sigma.push_back(at < 0 ? 0.0
                                          : std::sqrt(std::max(0.0, covariance(at, at))) / unit);
     if (at >= 0 && parameters[p].key == "axis" && result.back().value.size() == 3) {
@@ -148,8 +148,8 @@ std::vector<FittedParameter> fitted_parameters(const Trial& t, size_t disturbanc
 
 namespace {
 
-// What was fitted may lie beyond what physics allows by less than its error, as one that is no
-// effect at all does half of the time; an experiment cannot state it.
+// Moves fitted values to their physical bounds: a value may lie beyond its bound by less than its
+// standard error, but an experiment cannot state it.
 void keep_within_bounds(const Candidate& c, std::vector<FittedParameter>& fitted) {
   std::vector<double*> values;
   for (FittedParameter& parameter : fitted) {
@@ -204,7 +204,7 @@ std::vector<std::string> combinations(const Trial& t, size_t disturbance) {
   return texts;
 }
 
-// How the states of a disturbance begin in the first run.
+// Initial states of a disturbance in the first run.
 std::vector<FittedParameter> begins(const Trial& t, size_t disturbance) {
   const std::vector<Disturbance>& all = t.fit.best.model.disturbances;
   const PlatformState& initial = t.fit.best.runs.front().initial;
@@ -285,7 +285,7 @@ std::vector<Alternative> alternatives(const inference::Decision& decision,
   for (const auto& [label, t] : best) {
     Alternative a;
     a.kinds = kinds_of(*t, all);
-    // Kinds say all of what is physics alone.
+    // The kinds describe physics completely.
     if (a.kinds.size() != t->candidates.size()) a.label = label;
     a.holdout_chi2_per_sample = t->holdout_chi2_per_sample;
     a.log_evidence_relative = t->log_evidence - trials.front().log_evidence;

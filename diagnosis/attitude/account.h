@@ -1,4 +1,4 @@
-// What was found, in words and numbers for the reader of a diagnosis.
+// Findings as sentences and numbers for the reader of a diagnosis.
 #pragma once
 
 #include <string>
@@ -43,9 +43,10 @@ std::vector<Alternative> alternatives(const inference::Decision& decision,
 // One sentence for each nominal value that the recording contradicts.
 std::vector<std::string> contradicted_beliefs(const Trial& chosen,
                                               const Thresholds::Decision& limits);
-// What was nominal with an uncertainty, as the chosen trial has it.
+// Parameters with a prior, with their values in the chosen trial.
 std::vector<FittedParameter> refined_priors(const Trial& chosen);
-// An uncertain disturbance that no table of the experiment states, as the chosen trial has it.
+// An uncertain disturbance that no table of the experiment states, with its parameters in the
+// chosen trial.
 FoundEffect as_fitted(const Trial& chosen, size_t disturbance);
 
 std::string sentence_of(const Diagnosis& diagnosis);

@@ -53,7 +53,7 @@ std::optional<double> simpler_by(const Trial& first, const Trial& second, const 
 
 namespace {
 
-// Of names that are not told from the chosen ones the simplest stand (simpler_by()).
+// Of names not distinguished from the chosen ones, the simplest are kept (simpler_by()).
 void prefer_simpler(const Thresholds& limits, Answer& a) {
   if (a.decision.finding != inference::Finding::named) return;
   const double alike = a.chosen().log_evidence - limits.search.min_log_evidence_gain;
@@ -99,7 +99,7 @@ Answer searched(const NominalModel& nominal, const Fit& nominal_fit, const Recor
   a.trials =
       inference::search(domain, base, data.train, options.threads, begin ? &*begin : nullptr);
   a.depends_on = dependences(a.trials, a.all);
-  tell(options, "comparing with what was held out");
+  tell(options, "comparing with the held-out data");
   inference::weigh_with_held_out(domain, data.train, data.held, options.threads, a.trials);
   const auto excess = [&](size_t trial) {
     return domain.excess_sigma(a.trials[trial], data.train);
@@ -118,9 +118,9 @@ double held_chi2_per_sample(const Trial& trial, const RecordedData& data,
   return std::isfinite(found) ? found : inference::infinity;
 }
 
-// A law that bends to what was fitted and leads away from what was held out describes nothing: the
-// likeliest explanation that predicts better than the nominal model stands in its place, or, where
-// none does, the nominal model.
+// A law that fits the recordings but predicts the held-out data badly is rejected. In its place
+// stands the most likely explanation that predicts better than the nominal model or, if none does,
+// the nominal model.
 void keep_what_predicts(const RecordedData& data, const Thresholds& limits, Answer& a) {
   if (data.held.empty()) return;
   const double nominal = held_chi2_per_sample(a.trials.front(), data, limits);
@@ -138,12 +138,11 @@ void keep_what_predicts(const RecordedData& data, const Thresholds& limits, Answ
   const std::vector<size_t>& acts = a.trials[kept].candidates;
   std::erase_if(a.decision.beside_law,
                 [&](size_t c) { return std::find(acts.begin(), acts.end(), c) == acts.end(); });
-  a.decision.because = kept == 0 ? "nothing that was tried predicts what was held out"
-                                 : "what explains the recording best does not predict what was "
-                                   "held out";
+  a.decision.because = kept == 0 ? "no tried explanation predicts the held-out data"
+                                 : "the best explanation does not predict the held-out data";
 }
 
-// The answer with the noise that the readings show about what explains them.
+// The answer with the noise that the readings show about their explanation.
 Answer at_noise_of_readings(const NominalModel& nominal, RecordedData& data,
                             const DiagnoseOptions& options, Fit& nominal_fit, const Trial* near) {
   tell(options, "fitting every effect of the catalogue");
@@ -162,7 +161,7 @@ bool law_is_far_better(const Answer& a, const Thresholds& limits) {
   return is_law && law < limits.discrepancy.max_fraction_of_law * known;
 }
 
-// The law in time of what stays unexplained, in detail.
+// Refines the law in time of the unexplained residual.
 void describe(const RecordedData& data, const DiagnoseOptions& options, Answer& a) {
   if (a.decision.finding != inference::Finding::unknown) return;
   Trial& chosen = a.trials[a.decision.chosen];
@@ -172,7 +171,7 @@ void describe(const RecordedData& data, const DiagnoseOptions& options, Answer& 
 
 void leave_unexplained(inference::Decision& decision) {
   decision.finding = inference::Finding::unknown;
-  decision.because = "what is left is far more than the noise of the readings";
+  decision.because = "the residual is far above the noise of the readings";
 }
 
 // On an air bearing, and wherever attitude or place is seen, the whole search is worth its time.
@@ -230,7 +229,7 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
     describe(data, options, fine);
     return fine;
   }
-  tell(options, "describing what acts, with the rest counted as noise");
+  tell(options, "describing the effects, with the residual counted as noise");
   Answer described = searched(nominal, fit_nominal(nominal, rough.train, limits), rough, options,
                               Among::unscanned, nullptr);
   described.rest_is_noise = true;

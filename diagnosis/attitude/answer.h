@@ -1,4 +1,4 @@
-// What the search and the decision make of recordings.
+// Result of search and decision for recordings of motion.
 #pragma once
 
 #include <optional>
@@ -12,32 +12,32 @@
 
 namespace photorque {
 
-// All that was fitted, and what is made of it.
+// All fits, and the decision about them.
 struct Answer {
   Candidates all;
   std::vector<Trial> trials;
   // Before the runs held out count: in one that diverges there all explanations differ by chance.
   std::vector<Where::Dependence> depends_on;
   inference::Decision decision;
-  // What is left unexplained counted as noise.
+  // Whether the decision counted the unexplained residual as noise.
   bool rest_is_noise = false;
-  // Where it did and names came out: the names of the chosen trial stand beside it,
-  // each with the standard errors by which it predicts stretches better than its absence.
+  // If so, and if effects are named: gains in prediction of the names of the chosen trial. `sigma`:
+  // standard errors by which segments are predicted better with the name than without it.
   struct BesideTheRest {
     size_t stretches = 0;
     std::vector<double> sigma;                     // of each candidate of the chosen trial
-    std::vector<std::vector<std::string>> rivals;  // of each: what is not told from it
+    std::vector<std::vector<std::string>> rivals;  // of each: names not distinguished from it
   };
   std::optional<BesideTheRest> beside = {};
 
   const Trial& chosen() const { return trials[decision.chosen]; }
 };
 
-// The answer to recordings about which the nominal model was fitted. Every effect is scored, the
-// best sets are fitted, compared, weighed with what was held out, and decided about with the noise
-// of the readings. Where more than noise is left, it counts as noise. Its level is the residual of
-// the best explanation, and the search is repeated while that falls. Names then have to predict
-// stretches, each from fits to others. `data` gains the noise that the readings show about the best
+// The answer to recordings to which the nominal model was fitted. Every effect is scored; the best
+// sets are fitted, compared and weighted by the held-out data, and decided about with the noise of
+// the readings. A residual above noise then counts as noise. Its level is the residual of the best
+// explanation, and the search is repeated while that level falls. Names then have to predict
+// segments, each from fits to others. `data` gains the noise that the readings show about the best
 // explanation, and `nominal_fit` is fitted with it.
 Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOptions& options,
                Fit& nominal_fit);

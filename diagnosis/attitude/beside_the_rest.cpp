@@ -20,9 +20,9 @@ void use_noise(const NoiseLevels& noise, RecordedData& data) {
   }
 }
 
-// As many stretches as what the best explanation leaves has independent numbers (n (1 − ρ)/(1 + ρ)
-// of n readings whose neighbours are correlated by ρ), between `limits.stretches` and three times
-// as many: of a few, a difference that is not alike everywhere is not told from none.
+// Number of segments: the number of independent residuals of the best explanation (n (1 − ρ)/(1 +
+// ρ) of n readings whose neighbours are correlated by ρ), between `limits.stretches` and three
+// times that. With few segments, a difference that varies between them is not significant.
 size_t stretches_of(const Answer& answer, const RecordedData& data, const NoiseLevels& own) {
   constexpr double most = 3.0;
   const auto fewest = static_cast<double>(answer.all.limits.discrepancy.stretches);
@@ -45,7 +45,8 @@ size_t stretches_of(const Answer& answer, const RecordedData& data, const NoiseL
   return static_cast<size_t>(std::max(fewest, independent));
 }
 
-// An explanation and how it predicts stretches, and what was held out from the fitted alone.
+// An explanation with χ² of the segments that it predicts, and of the held-out data from a fit to
+// the fitted recordings alone.
 struct Contender {
   Trial trial;
   std::vector<double> chi2;
@@ -53,7 +54,7 @@ struct Contender {
   double held_samples = 0.0;
 };
 
-// Explanations of one search held against each other by the stretches that they predict.
+// Compares explanations of one search by the segments that they predict.
 class Contest {
  public:
   Contest(const Answer& answer, const RecordedData& data, size_t stretches, int threads)
@@ -66,8 +67,8 @@ class Contest {
 
   size_t stretches() const { return stretches_.count(); }
 
-  // The explanation that predicts best, or one that is not told from that and simpler, without
-  // names that no stretch misses.
+  // The explanation that predicts best, or a simpler one that is not distinguished from it, without
+  // names that no segment needs.
   Contender winner() {
     for (const size_t i : likely()) contenders_.push_back(contender(answer_.trials[i]));
     const Contender* best = &contenders_.front();
@@ -82,13 +83,13 @@ class Contest {
   // By how many standard errors each name of the winner predicts better than its absence.
   const std::vector<double>& sigma() const { return sigma_; }
 
-  // The winner without one of its names, and without what is then not missed.
+  // The winner without one of its names, and without names that are then not needed.
   Contender without(const Contender& best, size_t which) {
     return pruned(contender(trial_without(best.trial, which)));
   }
 
-  // Names that an explanation has in the place of the `which`-th of `best`, without being told from
-  // it.
+  // Names of explanations that have them in the place of the `which`-th of `best` and are not
+  // distinguished from it.
   std::vector<std::string> rivals(const Contender& best, size_t which) const {
     std::set<std::string> names;
     for (const Contender& other : contenders_) {
@@ -106,8 +107,8 @@ class Contest {
   }
 
  private:
-  // The likeliest that physics allows, and those that predict best what was held out; among them
-  // the nominal model.
+  // The most likely explanations that physics allows, and those that predict the held-out data
+  // best; among them the nominal model.
   std::vector<size_t> likely() const {
     std::vector<size_t> order = inference::by_evidence(answer_.trials);
     std::erase_if(order, [&](size_t i) {
@@ -134,7 +135,7 @@ class Contest {
   }
 
   // A motion about three axes bends to anything: there a name beside others has to account for half
-  // of what they leave of what was held out.
+  // of their residuals of the held-out data.
   bool tells_enough(const Contender& without, const Contender& with) const {
     const Platform& platform = answer_.trials.front().fit.best.model.platform;
     return platform.turns_about_one_axis() || platform.slides() ||
@@ -142,8 +143,8 @@ class Contest {
            with.held_chi2 < answer_.all.limits.decision.max_held_out_fraction * without.held_chi2;
   }
 
-  // By how many standard errors a name is missed by the stretches; not at all where it leads away
-  // from what was held out.
+  // Standard errors by which the segments are predicted better with a name; 0 where the name
+  // predicts the held-out data worse.
   double missed(const Contender& without, const Contender& with) const {
     constexpr double by_chance = 3.0;
     const double scatter = std::sqrt(2.0 * with.held_samples);
@@ -153,8 +154,8 @@ class Contest {
     return gain_sigma(without.chi2, with.chi2);
   }
 
-  // Of the contenders that are not told from `won` and have no more names, the likeliest, or `won`.
-  // The simpler of two kinds of one law counts as likelier (simpler_by()).
+  // The most likely of the contenders that are not distinguished from `won` and have no more names,
+  // or `won`. The simpler of two kinds of one law counts as more likely (simpler_by()).
   const Contender& likeliest_like(const Contender& won) const {
     const auto evidence = [&](const Contender& c) {
       const auto twin = std::ranges::find_if(answer_.trials, [&](const Trial& t) {
@@ -174,8 +175,8 @@ class Contest {
     return *best;
   }
 
-  // Without the names that the stretches do not miss, then without those that do not tell enough:
-  // each of two names that share one effect tells little beside the other.
+  // Removes names that the segments do not need, then names that add too little: each of two names
+  // for one effect adds little to the other.
   Contender pruned(Contender best) {
     best = without_least(std::move(best), [&](const Contender& without, const Contender& with) {
       return missed(without, with);
@@ -222,9 +223,9 @@ class Contest {
   std::vector<double> sigma_;
 };
 
-// The trial with parameters and errors by what is left beside it, as correlated as that is. The
-// less is left, the more the readings weigh against what was stated; so it goes on as long as what
-// was held out gains by it.
+// Refits the trial with its correlated residual as noise. A smaller residual gives the readings
+// more weight against the priors: the refit is repeated while the held-out data are predicted
+// better.
 Trial fitted_beside_the_rest(const Trial& named, const Candidates& all, const NoiseLevels& own,
                              RecordedData data) {
   constexpr int most_rounds = 6;
@@ -250,7 +251,7 @@ Trial fitted_beside_the_rest(const Trial& named, const Candidates& all, const No
   return std::isfinite(again.fit.chi2) ? again : result;
 }
 
-// Puts what won in the place of the chosen trial.
+// Puts the winner in the place of the chosen trial.
 void choose(const Contender& won, const Contest& contest, Answer& a) {
   const auto twin = std::ranges::find_if(a.trials, [&](const Trial& t) {
     return inference::same_candidates(t.candidates, won.trial.candidates);
@@ -282,7 +283,7 @@ void decide_beside_the_rest(Answer& a) {
   const double least = *std::ranges::min_element(a.beside->sigma);
   const double by_chance = 0.5 * std::erfc(least / std::sqrt(2.0));
   a.decision.confidence = std::max(0.0, 1.0 - static_cast<double>(a.all.size()) * by_chance);
-  a.decision.because = "more is left than the noise of the readings, and counts as noise";
+  a.decision.because = "the residual exceeds the noise of the readings, and counts as noise";
 }
 
 }  // namespace
@@ -316,7 +317,7 @@ std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, Recorde
         with_discrepancy(residuals_of(left_by, data.train), data.train, own, Remainder::white);
     if (round > 0 && !is_quieter(noise, data.train.front().noise)) break;
     use_noise(noise, data);
-    tell(options, "naming what stands out, with the rest counted as noise");
+    tell(options, "naming effects, with the residual counted as noise");
     Answer next = searched(nominal, fit_nominal(nominal, data.train, options.limits), data, options,
                            among_beside_the_rest(nominal, data), laws);
     Contest contest(next, data, stretches_of(next, data, own), options.threads);

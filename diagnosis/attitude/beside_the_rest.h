@@ -1,4 +1,4 @@
-// Names beside what stays unexplained, which counts as noise.
+// Names with an unexplained residual, which counts as noise.
 #pragma once
 
 #include <optional>
@@ -7,8 +7,8 @@
 
 namespace photorque {
 
-// All candidates; those that need no scan for where to begin; of these the ones of the catalogue;
-// of these the torques alone, because instruments that are wrong enough stand in for anything.
+// All candidates; those whose start needs no scan; of these the ones of the catalogue; of these the
+// torques alone, because large instrument errors can imitate any effect.
 enum class Among { all, unscanned, catalogue, torques };
 
 // All candidates of that choice, those of a narrower one first, so that a trial of theirs means the
@@ -16,7 +16,7 @@ enum class Among { all, unscanned, catalogue, torques };
 Candidates candidates_among(Among among, const NominalModel& nominal,
                             const std::vector<Observation>& runs, const Thresholds& limits);
 
-// What names are looked for among, with the rest counted as noise. Where angle and rate about one
+// Candidates of the search in which the residual counts as noise. Where angle and rate about one
 // axis are both read, each shows errors of the other's instrument whatever the torque.
 Among among_beside_the_rest(const NominalModel& nominal, const RecordedData& data);
 
@@ -25,14 +25,13 @@ Among among_beside_the_rest(const NominalModel& nominal, const RecordedData& dat
 Answer searched(const NominalModel& nominal, const Fit& nominal_fit, const RecordedData& data,
                 const DiagnoseOptions& options, Among among, const Trial* near);
 
-// What stands out although something unexplained is left, which counts as noise: at first all that
-// the nominal model leaves, then what the best explanation does, as long as names come out of it.
-// Under as little noise as that of the readings alone whatever is uncertain would give way to
-// anything. Every name predicts stretches of the recordings, each from fits to others, better than
-// its absence, and differs from nothing by what is left, as correlated as it is. `data` keeps the
-// noise of the last search. `laws`, where it is not null, is a fit of torques to the same runs:
-// what it leaves is the first noise, and each search begins about it. Nothing where no name comes
-// out.
+// Searches for effects although an unexplained residual remains, which counts as noise: first the
+// residual of the nominal model, then that of the best explanation, as long as effects are named.
+// With the noise of the readings alone, every uncertain parameter would be moved by the unexplained
+// part. Every name predicts segments of the recordings, each from fits to others, better than its
+// absence, and differs from zero by its error with the residual's correlation. `data` keeps the
+// noise of the last search. `laws`, where it is not null, is a fit of torques to the same runs: its
+// residual is the first noise, and each search starts from it. Nothing where no effect is named.
 std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, RecordedData& data,
                                             const DiagnoseOptions& options, const Trial* laws);
 

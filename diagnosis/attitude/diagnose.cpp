@@ -69,7 +69,7 @@ void say_what_was_found(const Answer& answer, const Fit& nominal_fit, const Reco
   d.because = decision.because;
 }
 
-// Numbers and curves of the nominal and the chosen model, beside what was fitted and held out.
+// Numbers and curves of the nominal and the chosen model, with fitted and held-out data.
 void say_how_well(const Fit& before, const Answer& answer, const RecordedData& data,
                   const Thresholds& limits, Diagnosis& d) {
   const Trial& chosen = answer.chosen();
@@ -82,7 +82,7 @@ void say_how_well(const Fit& before, const Answer& answer, const RecordedData& d
   try {
     d.channels_after = misfits(residuals_of(after, data.train));
   } catch (const NumericalError&) {
-    // What cannot be propagated along these recordings has no residuals to show.
+    // A model that cannot be propagated along these recordings has no residuals.
   }
   const Fit held_before = propagate_model(before, data.held, limits),
             held_after = propagate_model(after, data.held, limits);
@@ -106,18 +106,18 @@ std::vector<std::string> warnings_of(const RecordedData& data,
   for (const InstrumentFinding& finding : data.instruments) warnings.push_back(finding.text);
   if (decision.undecided) {
     warnings.push_back(
-        "the recordings and what was held out show together what neither shows alone, but not "
+        "fitted and held-out recordings together show an effect that neither shows alone, but not "
         "which effect it is: see the alternatives");
   }
   return warnings;
 }
 
-// Adds how much better the stretches are predicted with each name that stands beside the rest.
+// Adds how much better the segments are predicted with each name, with model discrepancy.
 void say_gains_over_stretches(const Answer& answer, Diagnosis& d) {
   if (!answer.beside) return;
   for (size_t i = 0; i < d.effects.size(); ++i) {
     d.warnings.push_back(
-        written("%s: %zu stretches, each predicted from the others, are predicted "
+        written("%s: %zu segments, each predicted from the others, are predicted "
                 "better with it than without it by %.1f standard errors",
                 d.effects[i].kind.c_str(), answer.beside->stretches, answer.beside->sigma[i]));
   }
@@ -129,15 +129,16 @@ void say_limits_of_held_out(Diagnosis& d) {
   const double before = d.holdout->chi2_per_sample_before, after = d.holdout->chi2_per_sample_after;
   if (!d.effects.empty() && after > as_well * before) {
     d.warnings.push_back(written(
-        "what was held out does not test the names: the nominal model predicts it as well (χ² per "
+        "the held-out data do not test the names: the nominal model predicts them as well (χ² per "
         "sample %.3g, with the names %.3g)",
         before, after));
   }
   const double sigma = (after - 1.0) * std::sqrt(0.5 * static_cast<double>(d.holdout->samples));
   if (sigma < too_quiet_sigma) {
     d.warnings.push_back(written(
-        "what was held out scatters less than the noise that was used (χ² per sample %.3g, %.0f "
-        "standard errors below 1): the noise is stated too large, or took up something that acts",
+        "the held-out data scatter less than the noise that was used (χ² per sample %.3g, %.0f "
+        "standard errors below 1): the stated noise is too large, or an effect was counted as "
+        "noise",
         after, -sigma));
   }
 }
@@ -160,7 +161,7 @@ bool turns_little(const std::vector<Observation>& runs, const Vec3& axis) {
   });
 }
 
-// Where nobody sees the attitude and nothing depends on it, it is not propagated.
+// Where no instrument sees the attitude and nothing depends on it, it is not propagated.
 NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
   NominalModel nominal = stated;
   const bool is_seen = std::any_of(
@@ -175,8 +176,8 @@ NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
   return nominal;
 }
 
-// Whether the inertia as it was fitted can be written: measured moments may break what every body
-// obeys by their errors.
+// Whether the fitted inertia can be written: measured moments may violate a condition that every
+// body obeys by their errors.
 bool is_an_inertia(const Trial& chosen, size_t disturbance) {
   const AttitudeModel& model = chosen.fit.best.model;
   const Disturbance& d = model.disturbances[disturbance];

@@ -1,7 +1,7 @@
-// `diagnose`: recordings against the nominal model, and what physics is missing in between.
+// `diagnose`: compares recordings with the nominal model and finds missing physics.
 //
 // A straight line: observe → fit the nominal model → whiten → search (every effect alone, then
-// together) → decide → predict what was never fitted → say it.
+// together) → decide → predict the held-out data → report.
 #pragma once
 
 #include <functional>
@@ -26,8 +26,8 @@ struct DiagnoseOptions {
   size_t max_blocks = 6000;        // into which each recording is averaged
   double holdout_fraction = 0.25;  // of each recording, its end, held out when there is no holdout
   Thresholds limits;               // of search and decision
-  std::set<std::string> read_elsewhere;  // columns that are somebody else's
-  // Called with what begins; may be empty.
+  std::set<std::string> read_elsewhere;  // columns that other readers use
+  // Called with the name of each step as it starts; may be empty.
   std::function<void(const std::string&)> progress;
 };
 

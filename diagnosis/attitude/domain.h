@@ -1,4 +1,4 @@
-// Recordings of motion as the search for what is missing sees them (inference/domain.h): runs are
+// Recordings of motion as a domain of the search for missing effects (inference/domain.h): runs are
 // observations, candidates are effects of the catalogue and empirical laws.
 #pragma once
 
@@ -49,7 +49,7 @@ class AttitudeDomain {
                                          const Runs& runs, const Runs& averages, int threads) const;
 
   Runs average(const Trial& about, const Runs& runs, size_t blocks) const;
-  // Each piece has complete attitudes enough for a start of its own.
+  // Each piece has enough complete attitudes for its own initial conditions.
   Runs cut(const Runs& runs, size_t pieces) const;
   double excess_sigma(const Trial& trial, const Runs& runs) const;
 

@@ -11,7 +11,7 @@
 
 namespace photorque {
 
-// A fitted function without a law as a short formula, and what physics it looks like.
+// A fitted function without a law as a short formula, and similar physics.
 
 // "(4.41 ± 0.02)×10⁻⁶", the value to the two digits that the error has; without an error that is
 // above 0 and finite, the value alone.
@@ -28,8 +28,6 @@ struct EmpiricalFormula {
 EmpiricalFormula formula_of(const EmpiricalShape& shape,
                             const std::vector<FittedParameter>& parameters,
                             const Eigen::MatrixXd& covariance);
-
-// What a fitted empirical law says, as numbers against its variable.
 
 // The empirical parts of a trial along its first run: means over bins of the variable, with the
 // standard errors that follow from the covariance of the law's coefficients.

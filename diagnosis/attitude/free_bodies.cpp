@@ -51,7 +51,7 @@ bool differ(const FreeInertia& a, const FreeInertia& b) {
   return false;
 }
 
-// The number of its group for each recording: those that are not told apart, directly or through
+// The number of its group for each recording: those not distinguished, directly or through
 // others, have the same.
 std::vector<size_t> groups_of(const std::vector<OneRecording>& all) {
   std::vector<size_t> group(all.size());
@@ -138,7 +138,8 @@ std::string sentence_of(const std::vector<BodyOfRecordings>& bodies) {
 
 namespace {
 
-// What is left where all rates are multiplied by a factor; infinite where no inertia comes out.
+// Residual of free motion (free_inertia.h) with all rates multiplied by a factor; infinite where
+// the rates determine no inertia.
 double left_by(double factor, std::vector<Observation> pieces) {
   for (Observation& seen : pieces) {
     for (Vec3& rate : seen.gyro_rad_s) rate *= factor;

@@ -11,7 +11,7 @@
 namespace photorque {
 namespace {
 
-// What one whitened unit of a channel is in its own unit, at one reading.
+// Noise of channel k at one reading, in the channel's unit.
 double noise_of(const Observation& seen, Eigen::Index k) {
   const auto channel = static_cast<int>(k);
   return seen.noise.of(channel).level * channel_traits(channel).per_SI;

@@ -147,7 +147,7 @@ std::vector<Where::Dependence> of_unknown_law(std::vector<Where::Dependence> dep
       std::rotate(depends_on.begin(), known, known + 1);
     }
   }
-  // A torque that no state of the platform explains is one of time, as any torque can be said.
+  // A torque that no state of the platform explains is reported as a function of time.
   if (depends_on.empty()) depends_on.push_back({"time", 0.0});
   return depends_on;
 }

@@ -1,5 +1,5 @@
-// Where recording and nominal model part: channels, intervals, band, and the variables it depends
-// on.
+// The place of the differences between recording and nominal model: channels, intervals, band, and
+// the variables on which they depend.
 #pragma once
 
 #include "diagnosis/attitude/effects/trial.h"
@@ -19,8 +19,8 @@ Where locate(const std::vector<Prediction>& residuals, const std::vector<Observa
 // little are left out.
 std::vector<Where::Dependence> dependences(const std::vector<Trial>& trials, const Candidates& all);
 
-// The same where a law is unknown: the variable of the law that was chosen comes first, and there
-// is one at least.
+// Dependences where the law is unknown: the variable of the chosen law comes first, and there is at
+// least one.
 std::vector<Where::Dependence> of_unknown_law(std::vector<Where::Dependence> depends_on,
                                               const Trial& chosen, const Candidates& all);
 

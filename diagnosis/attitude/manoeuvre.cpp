@@ -15,7 +15,7 @@ namespace {
 
 using StartChange = std::function<void(PlatformState&)>;
 
-// The same run from another start.
+// A change of the initial state of a run.
 struct StartManoeuvre {
   const char* text;
   StartChange change;
@@ -56,8 +56,8 @@ std::vector<StartManoeuvre> start_manoeuvres() {
       {"repeat the run with the opposite sense of rotation: a driving torque keeps its sign, "
        "friction changes it",
        turn_back},
-      {"repeat the run from a yaw a quarter turn further: what is fixed to the body turns with "
-       "it, what is fixed to the room does not",
+      {"repeat the run from a yaw a quarter turn further: effects fixed to the body turn with "
+       "it, those fixed to the room do not",
        turn_a_quarter},
       {"start the run at 0.2 rad more tilt: righting torques depart from the sine, each in its own "
        "way",
@@ -67,7 +67,8 @@ std::vector<StartManoeuvre> start_manoeuvres() {
 
 constexpr const char* longer = "record longer, at larger tilt and over a wider range of rates";
 
-// What follows the battery's charge shows by its current alone, whatever the start.
+// Whether only the battery's current distinguishes two kinds: effects of its charge do not depend
+// on the initial state.
 bool is_told_by_charge(const std::string& kind, const std::string& rival) {
   const auto says = [](const std::string& one, const std::string& other) {
     const DisturbanceKind* known = find_kind(one);
@@ -112,7 +113,7 @@ struct Rival {
 
 constexpr double not_known = -1.0;
 
-// What the manoeuvre would add to the rival's χ², halved; not_known where its fit does not end.
+// Half of the growth of the rival's χ² by the manoeuvre; not_known where its fit does not end.
 double expected_lead(const Trial& truth, const Rival& rival, const Candidates& all,
                      const StartChange& change) {
   try {
@@ -134,7 +135,7 @@ double expected_lead(const Trial& truth, const Rival& rival, const Candidates& a
   }
 }
 
-// The start that predicts most.
+// The start with the largest expected lead.
 Manoeuvre best_start(Manoeuvre m, const Trial& truth, const Trial& rival, const Candidates& all,
                      const std::vector<Observation>& recorded, int threads) {
   const std::vector<StartManoeuvre> known = start_manoeuvres();
@@ -148,8 +149,8 @@ Manoeuvre best_start(Manoeuvre m, const Trial& truth, const Trial& rival, const 
   m.text = known[best].text;
   if (lead[best] < all.limits.search.min_log_evidence_gain) {
     m.text = std::string(longer) +
-             "; of four other starts of the same run none would tell them "
-             "apart, the best of them this: " +
+             "; none of four other starts of the same run would distinguish "
+             "them; the best of the four: " +
              m.text;
   }
   return m;

@@ -1,4 +1,4 @@
-// Experiments that would tell apart what the recordings cannot.
+// Proposed experiments that distinguish effects which the recordings do not distinguish.
 #pragma once
 
 #include "diagnosis/attitude/effects/trial.h"

@@ -20,29 +20,29 @@ namespace photorque {
 
 namespace {
 
-// Blocks of a stretch, at the least: a start, and what it cannot take up.
+// Fewest blocks of a segment: those that its initial conditions take up, and some more.
 constexpr size_t least_of_stretch = 12;
 
-// What was said of a file's rows as it was cut.
+// Warns of rows that were left out as a file was cut.
 void say_cuts(const std::string& name, const Segments& segments,
               std::vector<std::string>& warnings) {
   const auto say = [&](int64_t count, const char* what) {
     if (count > 0) warnings.push_back(name + ": " + std::to_string(count) + what);
   };
-  say(segments.events,
-      " rows with an event are left out, and the motion begins anew after each of them");
+  say(segments.events, " rows with an event are left out; a new segment starts after each of them");
   say(segments.kinks,
-      " rows where the rate changes at once, without an event noted, are left out, and the motion "
-      "begins anew after each of them");
-  say(segments.long_gaps, " long gaps: the motion begins anew after each of them");
-  say(segments.too_short, " stretches with too few readings for a start of their own are left out");
+      " rows where the rate jumps without a recorded event are left out; a new segment starts "
+      "after each of them");
+  say(segments.long_gaps, " long gaps: a new segment starts after each of them");
+  say(segments.too_short,
+      " segments with too few readings for their initial conditions are left out");
   for (const std::string& why : segments.lawless) {
     warnings.push_back(name + ": " + why + ", which is left out");
   }
 }
 
-// An accelerometer and a magnetometer count where the experiment has them: where the one sits, and
-// that nothing aboard disturbs the other, is nothing that a recording says.
+// An accelerometer and a magnetometer count only if the experiment has them: a recording contains
+// neither the place of the one nor the disturbances of the other.
 bool is_declared(const Sensors& sensors, int scalar) {
   const Measures measures = channel_traits(vector_channels + scalar).measures;
   if (measures == Measures::force) return sensors.accelerometer.has_value();
@@ -71,7 +71,7 @@ void say_unused(const NamedRecording& r, const NominalModel& nominal,
   if (!names.empty()) warnings.push_back(r.name + ": columns that are not used: " + names);
 }
 
-// Without rates nothing tells in which sequence angles are turned.
+// Without rates the sequence of the angles is unknown.
 void say_assumed_sequence(const NamedRecording& r, const Platform& platform,
                           std::vector<std::string>& warnings) {
   const MotionColumns columns(r.recording, platform, r.name);
@@ -81,10 +81,10 @@ void say_assumed_sequence(const NamedRecording& r, const Platform& platform,
                      "; no rates are there to test it, and [recording] angle_sequence states it");
 }
 
-// What slides under forces that are commanded in answer to its place hardly moves: over a whole run
-// no force at all, the commanded one least, describes it best (closed-loop identification, L.
-// Ljung, System Identification, 2nd ed. 1999, section 13.4). Over stretches with starts of their
-// own, short against the run, the forces show.
+// A body that slides under forces commanded in answer to its place hardly moves: over a whole run,
+// a model without any force, above all without the commanded one, fits best (closed-loop
+// identification, L. Ljung, System Identification, 2nd ed. 1999, section 13.4). Over segments with
+// their own initial conditions, short against the run, the forces are visible.
 void begin_anew_under_commands(const std::string& name, const Platform& platform, size_t stretches,
                                std::vector<Observation>& all, std::vector<std::string>& warnings) {
   std::vector<Observation> result;
@@ -156,7 +156,7 @@ void thin_repetitions(Observation& seen) {
   }
 }
 
-// The stretches of each recording.
+// The segments of each recording.
 std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecording>& recordings,
                                                   const NominalModel& nominal,
                                                   const DiagnoseOptions& options,
@@ -170,13 +170,18 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
     if (r.recording.report.has_decimal_commas) {
       warnings.push_back(r.name + ": its numbers have decimal commas, read as points");
     }
+    if (r.recording.report.has_old_yaw) {
+      warnings.push_back(r.name +
+                         ": its column heading is read as yaw, the azimuth of body x: "
+                         "name it yaw_rad, or yaw_deg");
+    }
     say_unused(r, nominal, options.read_elsewhere, warnings);
     say_assumed_sequence(r, platform, warnings);
     if (MotionColumns(r.recording, platform, r.name).has_scalar(Scalar::tilt)) {
       warnings.push_back(r.name +
-                         ": a tilt does not say whereto the body leans: an answer has a mirror "
-                         "image that reads the same, leaning the other way, and priors alone "
-                         "decide between them; signs of what is found may be those of the image");
+                         ": a tilt has no direction: an answer has a mirror "
+                         "image with equal readings, which leans the other way. Priors alone "
+                         "decide between them; found signs may be those of the image");
     }
     std::string convention = segments.angles ? segments.angles->text : "";
     for (Observation& seen : segments.all) {
@@ -219,8 +224,8 @@ size_t cut_at(const Observation& seen, double fraction) {
   return reading.empty() ? of(seen.blocks()) : reading[of(reading.size())];
 }
 
-// The end of a recording in one piece; of one in many every fourth, so that what is held out saw
-// the same times and conditions.
+// Holds out the end of a recording in one piece; of one in many pieces every fourth, so that
+// held-out data have the times and conditions of the fitted data.
 void hold_out(std::vector<Observation> stretches, double fraction, RecordedData& data) {
   const auto every = static_cast<size_t>(std::lround(1.0 / fraction));
   for (size_t i = 0; i < stretches.size(); ++i) {
@@ -235,8 +240,8 @@ void hold_out(std::vector<Observation> stretches, double fraction, RecordedData&
   }
 }
 
-// What the experiment states of its instruments. Where it states nothing and no second instrument
-// tells what is motion, the readings themselves have to.
+// Noise levels from the experiment. Where it states none and no second instrument shows the motion,
+// they come from the readings.
 NoiseLevels noise_of(const Sensors& sensors, const std::vector<Observation>& runs,
                      std::vector<std::string>& warnings) {
   NoiseLevels noise = noise_levels(sensors);
@@ -341,7 +346,7 @@ InstrumentFinding tail_finding(int k, const HeavyTail& tail) {
               k < 3 ? "arcsec" : "rad/s")};
 }
 
-// Gives the runs the noise that was found, and tells of it. Returns whether any changed.
+// Gives the runs the noise that was found, and reports it. Returns whether any changed.
 bool use_noise(const NoiseFindings& findings, RecordedData& data) {
   bool changed = false;
   const NoiseLevels stated = data.train.front().noise;
@@ -358,8 +363,9 @@ bool use_noise(const NoiseFindings& findings, RecordedData& data) {
   return changed;
 }
 
-// Takes the edge off what no normal distribution has: bursts are dropped, heavy tails tamed, in
-// what is fitted and in what is held out. `near` is near the readings. Returns whether any changed.
+// Limits the weight of readings that are not normally distributed: bursts are dropped and heavy
+// tails get pseudo-values, in fitted and held-out data. `near` is near the readings. Returns
+// whether any changed.
 bool tame_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
   const int64_t in_bursts = drop_bursts(residuals_of(near, data.train), limits.noise, data.train);
   const std::vector<Prediction> residuals = residuals_of(near, data.train);
@@ -390,8 +396,8 @@ bool tame_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
   return changed;
 }
 
-// What the readings say of their own noise about a fit that is near them, put to use. Returns
-// whether anything changed.
+// Finds the noise of the readings about a fit that is near them, and uses it. Returns whether
+// anything changed.
 bool find_and_use_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
   NoiseFindings findings = find_noise(data.train, residuals_of(near, data.train), limits.noise);
   data.noise_is_open = findings.is_open;
@@ -406,12 +412,12 @@ bool find_and_use_noise(const Fit& near, const Thresholds& limits, RecordedData&
 Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data) {
   take_out_bias_drift(data);
   Fit fitted = fit_nominal(nominal, data.train, limits);
-  // One that cannot be propagated along the recording says nothing of its readings.
+  // A model that cannot be propagated along the recording gives no residuals of its readings.
   if (!std::isfinite(fitted.chi2)) return fitted;
   const std::vector<Prediction> residuals = residuals_of(fitted, data.train);
   data.outliers = drop_outliers(residuals, limits.noise, data.train);
   bool changed = data.outliers > 0;
-  // Without an attitude nothing tells noise from motion.
+  // Without an attitude, noise and motion are not separable.
   if (!nominal.sensors.noise_is_stated && data.train.front().sees_attitude()) {
     changed = find_and_use_noise(fitted, limits, data) || changed;
   }

@@ -1,4 +1,4 @@
-// The recordings of a diagnosis, made ready: what is fitted, what is held out, what was wrong.
+// The prepared recordings of a diagnosis: fitted data, held-out data, rejected readings.
 #pragma once
 
 #include <cstdio>
@@ -23,7 +23,7 @@ struct RecordedData {
   std::vector<Observation> train, held;
   int64_t outliers = 0;  // readings dropped
   std::vector<InstrumentFinding> instruments;
-  bool noise_is_open = false;  // the nominal model is too far off to tell noise from motion
+  bool noise_is_open = false;  // the nominal model is too far off to separate noise from motion
   std::vector<std::string> warnings;
 };
 
@@ -31,27 +31,25 @@ struct RecordedData {
 RecordedData read_data(const NominalModel& nominal, const std::vector<NamedRecording>& recordings,
                        const std::vector<NamedRecording>& holdouts, const DiagnoseOptions& options);
 
-// What the files held.
+// Rows, rejected readings and gaps of the files.
 DataQuality quality_of(const std::vector<NamedRecording>& recordings,
                        const std::vector<NamedRecording>& holdouts, const RecordedData& data);
 
-// What is known of the readings before anything is explained: the nominal fit, outliers, the noise.
-
-// The nominal model fitted. Readings that stand out are dropped on the way, and unless the
-// experiment wants it as stated, the noise of `data` becomes what the readings show
+// Fits the nominal model. Outliers are dropped on the way. Unless the experiment requires the
+// stated noise, the noise of `data` becomes that of the readings
 // (attitude/observation/noise_search.h), after a drift of the gyro was taken out
-// (take_out_bias_drift()); what was found is told in data.instruments. A model that cannot be
-// propagated has infinite χ², and the noise stays as stated.
+// (take_out_bias_drift()); both are reported in data.instruments. A model that cannot be propagated
+// has infinite χ², and the noise stays as stated.
 Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data);
 
-// Where the nominal model left the noise open, it is found about a model that comes near the
-// readings. Returns whether it changed.
+// Finds the noise that the nominal model left open, about a model that comes near the readings.
+// Returns whether it changed.
 bool settle_again(const Fit& explained, const Thresholds& limits, RecordedData& data);
 
 // A gyro whose bias drifts within a recording.
 
-// Takes the drift out of the gyro's readings, their mean left as it is, and says so among the
-// instruments. Nothing happens where a constant bias does for each recording.
+// Removes the drift from the gyro's readings, keeps their mean, and reports it among the
+// instruments. Does nothing where a constant bias for each recording suffices.
 void take_out_bias_drift(RecordedData& data);
 
 }  // namespace photorque

@@ -146,7 +146,7 @@ class Refinement {
   const Trial& best() const { return best_; }
 
  private:
-  // Until the fit converges, as long as it may come near what the law explained before.
+  // Until the fit converges, as long as it may reach the χ² of the previous law.
   FitSettings patient() const {
     FitSettings settings;
     settings.max_iterations = 40;
@@ -274,7 +274,7 @@ Trial refined_in_time(const Trial& chosen, Candidates& all, const std::vector<Ob
     if (law.variable != name_of(MotionVariable::time)) continue;
     double duration_s = 0.0;
     for (const Observation& seen : runs) duration_s = std::max(duration_s, seen.time_s.back());
-    // What it was weighed with besides these runs is the same for all.
+    // Its evidence from other runs is the same for all refinements.
     Trial before = refit(chosen, all, runs, chosen.fit.best.runs);
     if (is_formula_that_explains(before, law, runs, all.limits)) return chosen;
     const double weighed = chosen.log_evidence - before.log_evidence;

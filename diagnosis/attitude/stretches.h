@@ -1,8 +1,8 @@
-// How well explanations predict stretches of recordings that they were not fitted to.
+// Predictions of segments of recordings by explanations that were fitted to the other segments.
 //
-// What a model leaves of a real machine is no noise, and no distribution says by how much a missing
-// effect must lower χ² to be more than a bend that follows it. Stretches that were never fitted do:
-// they show whether an effect predicts, and how much that differs from stretch to stretch.
+// The residual of a real machine's model is not noise, and no distribution gives the fall of χ² by
+// which a missing effect differs from a curve that follows the residual. Segments that were not
+// fitted decide: they show whether an effect predicts, and how much this differs between segments.
 #pragma once
 
 #include <vector>
@@ -14,15 +14,15 @@ namespace photorque {
 
 class Stretches {
  public:
-  // Runs in stretches of about equally many blocks, about `wanted` in all; of as many runs each is
-  // one, and only how it began is taken from it.
+  // Cuts the runs into about `wanted` segments of about equally many blocks. If there are as many
+  // runs, each is one segment, and only its initial conditions are fitted to it.
   Stretches(const AttitudeDomain& domain, std::vector<Observation> train,
             std::vector<Observation> held, size_t wanted, int threads);
 
   size_t count() const { return stretches_.size(); }
 
-  // χ² of every stretch as the trial, which was fitted to the train runs, predicts it after a fit
-  // to all others: a fifth of the stretches is left out in turn. Infinite where that cannot be
+  // χ² of every segment, as predicted by the trial (which was fitted to the train runs) after a fit
+  // to other segments: each fit leaves out a fifth of the segments. Infinite where that cannot be
   // evaluated.
   std::vector<double> chi2(const Trial& trial) const;
 

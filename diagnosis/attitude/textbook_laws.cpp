@@ -28,7 +28,7 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
   inference::Effort growing = inference::patient(all.limits);
   growing.windows = {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0};
   Trial found = nominal;
-  // Of rates alone a piece does not show the angle that it begins with; the whole does.
+  // With rates alone a piece does not determine its initial angle; the whole does.
   const bool sees_angle = std::ranges::all_of(
       data.train, [](const Observation& seen) { return seen.sees_some_attitude(); });
   if (sees_angle) {

@@ -27,7 +27,7 @@ SettingsNode number(double value) {
   return {std::strtod(digits(value).c_str(), nullptr)};
 }
 
-// What the columns and readings of some recordings tell of their machine.
+// Properties of a machine that the columns and readings of its recordings determine.
 struct Machine {
   Platform platform;
   std::string why;  // the topology
@@ -106,7 +106,7 @@ SettingsNode::Table& add_machine(TomlDocument& document, const Machine& m) {
   return table;
 }
 
-// Ratios of the moments as far as the rates alone tell them.
+// Ratios of the moments as far as the rates alone determine them.
 void add_inertia(TomlDocument& document, SettingsNode::Table& table,
                  const std::vector<Observation>& runs) {
   const std::optional<FreeInertia> found = free_inertia(runs);
@@ -119,8 +119,8 @@ void add_inertia(TomlDocument& document, SettingsNode::Table& table,
                         found->sigma(2) < worth_saying;
   std::string why = "CONFIRM: the rates do not determine the ratios of the moments; guessed.";
   if (is_known) {
-    // The first moment is the unit. Torques that nobody knows shift what the rates tell by more
-    // than its own error.
+    // The first moment is the unit. Unknown torques shift the ratios by more
+    // than their standard errors.
     const InertiaNumbers in_first = found->value / found->value[0];
     constexpr double of_moment = 0.1, errors = 5.0;
     const auto uncertain = [&](int k, double scale) {
@@ -294,7 +294,7 @@ void add_columns(TomlDocument& document, const std::vector<GuessedColumn>& colum
   }
 }
 
-// Drag that slows a rate as a whole; a start from which other torques are told apart.
+// Drag that slows a rate as a whole; a start from which other torques are distinguished.
 void add_drag(TomlDocument& document, const Machine& m) {
   Eigen::Index axis = 2;
   m.platform.axis.maxCoeff(&axis);

@@ -190,7 +190,7 @@ bool is_one_of(const std::string& word, std::initializer_list<const char*> of) {
   return std::any_of(of.begin(), of.end(), [&](const char* w) { return word == w; });
 }
 
-// x, y or z: a word of its own, a number from 0, or the last letter of another.
+// x, y or z: a separate word, a number from 0, or the last letter of another.
 std::string axis_of(const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     if (is_one_of(word, {"x", "y", "z"})) return word;

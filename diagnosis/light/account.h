@@ -1,4 +1,4 @@
-// Puts what was found of light and power into words and numbers for the reader of a diagnosis.
+// Findings about light and power as sentences and numbers for the reader of a diagnosis.
 #pragma once
 
 #include "diagnosis/diagnosis.h"
@@ -15,22 +15,23 @@ struct LightAnswer {
   const LightTrial& chosen() const { return trials[decision.chosen]; }
 };
 
-// The named effects of the chosen trial, with what these recordings cannot tell each from.
+// The named effects of the chosen trial, each with the effects from which these recordings do not
+// distinguish it.
 std::vector<FoundEffect> found_light_effects(const LightAnswer& answer,
                                              const std::vector<FittedRun>& runs);
 
 std::vector<Alternative> light_alternatives(const LightAnswer& answer);
 
-// What the nominal residuals are a function of, the strongest first: by how much functions of each
-// variable alone lower χ² of what is beyond noise.
+// Variables on which the nominal residuals depend, the strongest first: by how much functions of
+// each variable alone lower the part of χ² above noise.
 std::vector<Where::Dependence> light_dependences(const LightTrial& about,
                                                  const LightCandidates& all,
                                                  const std::vector<FittedRun>& runs);
 
-// The array with the cells that what was found acts on; nothing where there is none, or nothing.
+// The array with the cells that the found effects concern; nothing without an array or such cells.
 std::optional<DrawnArray> drawn_array(const LightLab& lab, const std::vector<FoundEffect>& effects);
 
-// What was known to within an error, after the fit.
+// Parameters with a prior, after the fit.
 std::vector<FittedParameter> refined_light_beliefs(const LightAnswer& answer);
 
 // Kinds other than that of the chosen trial's candidate `which` that explain all `runs` as well in

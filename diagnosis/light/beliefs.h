@@ -1,10 +1,10 @@
-// What an experiment says of light and power before anything is fitted: the effects that it states,
-// and the numbers that it knows to within an error.
+// The nominal model of light and power before any fit: the effects that an experiment states, and
+// its numbers with an error.
 //
-// Each of these is a nuisance p of every trial, in units of its error, with a Gaussian prior of
-// width 1. The recordings move with it as a difference says, between a tenth of its error more and
-// less: the experiment is read again with either. Where it bears only one of them (a quantum
-// efficiency of 1), the other side is the number itself.
+// Each of these numbers is a nuisance p of every trial, in units of its error, with a Gaussian
+// prior of width 1. Its derivative is a difference: the experiment is read again with a tenth of
+// the error more and less. Where only one of the two is allowed (a quantum efficiency of 1), the
+// other side is the number itself.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,7 +35,7 @@ struct LightPrior {
 // ∂(predicted/noise) of a recording by each.
 Eigen::MatrixXd slopes_by_priors(const LightRun& run, const std::vector<LightPrior>& priors);
 
-// The nominal model: nothing beside the experiment acts but `state`; `uncertain` is known to
+// The nominal model: only `state` acts in addition to the experiment; `uncertain` is known to
 // within errors.
 struct LightBelief {
   LightState state;
@@ -43,16 +43,16 @@ struct LightBelief {
 };
 
 // `reread` is the experiment of the lab again with one more key assigned. The lab must outlive the
-// result. InputError for an error of what cannot be any other number.
+// result. InputError for an error of a number that can have no other value.
 LightBelief light_belief(const LightLab& lab, const std::vector<UncertainKey>& uncertain,
                          const std::function<Experiment(const std::string&)>& reread);
 
-// The key of the prior on how the body stands in the light, among the refined ones; no experiment
+// The key of the prior on the tilt of the body in the light, among the refined ones; no experiment
 // has it.
 constexpr const char* tilt_belief = "attitude_bias.bias_deg";
 
-// A prior: the body stands turned against its recorded attitude by a rotation vector about lab x
-// and y, to within errors. The lab must outlive it.
+// A prior: the body is rotated against its recorded attitude by a rotation vector about lab x and
+// y, to within errors. The lab must outlive it.
 void believe_tilt(const LightLab& lab, const Vec2& bias_rad, const Vec2& sigma_rad,
                   LightBelief& belief);
 

@@ -1,5 +1,5 @@
-// What may be missing from an experiment of light and power: every kind of effect for every lamp,
-// cell, string or diode that it can concern, and smooth laws without physics that compete.
+// Candidate effects of light and power: every kind of effect for every lamp, cell, string or diode
+// that it can concern, and competing smooth laws without physics.
 #pragma once
 
 #include <memory>
@@ -11,8 +11,8 @@
 
 namespace photorque {
 
-// A recording with what all trials share: the fields of the nominal model, and how its residuals
-// move with nominal numbers with an uncertainty, in units of that.
+// A recording with the data that all trials share: the fields of the nominal model, and the
+// derivatives of its residuals by the uncertain nominal numbers, in units of their errors.
 struct FittedRun {
   std::shared_ptr<const LightRun> run;
   std::shared_ptr<const LightFields> nominal;
@@ -28,7 +28,7 @@ struct LightCandidate {
   LightEffectKind kind;
   size_t index = 0;   // of the lamp, cell …
   std::string label;  // "led_derated[3]", "unknown in position"
-  // Of what is empirical: the variable that the law is a function of; else empty.
+  // Of an empirical law: its variable; else empty.
   std::string variable = {};
 
   bool is_empirical() const { return !variable.empty(); }

@@ -57,8 +57,8 @@ FittedRun observed(const LightLab& lab, const LightBelief& nominal, LightRecordi
   return run;
 }
 
-// Rows to fit and rows to hold out, without a holdout: the last part of what was recorded over time
-// or sweep by sweep, every so many rows of a scan, whose end is but a corner of it.
+// Rows to fit and rows to hold out, without a holdout: the last part of a recording over time or
+// sweep by sweep, every so many rows of a scan, whose end is but a corner of it.
 std::pair<std::vector<size_t>, std::vector<size_t>> split(const LightRun& run, double fraction) {
   std::vector<size_t> fitted, held;
   const size_t rows = run.rows();
@@ -73,8 +73,7 @@ std::pair<std::vector<size_t>, std::vector<size_t>> split(const LightRun& run, d
   return {fitted, held};
 }
 
-// What is held out and what is fitted must each be more than a few numbers: of one reading nothing
-// can be said, and everything explains it.
+// Fitted and held-out data must each be more than a few numbers: any model explains one reading.
 void require_enough(const LightData& data, const std::string& first) {
   constexpr size_t fewest_fitted = 8, fewest_held = 2;
   size_t fitted = 0, held = 0;
@@ -150,7 +149,7 @@ LightAnswer explain_light(const LightLab& lab, const LightBelief& nominal, Light
                                        domain.limits().search.max_effects, options.threads)
             .run(from);
   }
-  tell(options, "comparing with what was held out");
+  tell(options, "comparing with the held-out data");
   inference::weigh_with_held_out(domain, data.train, data.held, options.threads, answer.trials);
   std::vector<FittedRun> everything = data.train;
   everything.insert(everything.end(), data.held.begin(), data.held.end());
@@ -218,8 +217,8 @@ Holdout light_holdout(const LightAnswer& answer, const std::vector<FittedRun>& h
   return result;
 }
 
-// The variable of the law that was chosen comes first, with the part of what is beyond noise that
-// it takes up.
+// Puts the variable of the chosen law first, with the fraction of the residual beyond noise that
+// the law explains.
 void lead_with_chosen_law(const LightAnswer& answer, const LightTrial& about,
                           std::vector<Where::Dependence>& depends_on) {
   for (const size_t c : answer.chosen().candidates) {
@@ -261,7 +260,7 @@ Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
                          std::vector<LightRecording> holdouts, const LightDiagnoseOptions& asked) {
   if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
   LightDiagnoseOptions options = asked;
-  // There is a candidate for every lamp and cell, and light is nearly linear in what acts: few
+  // There is a candidate for every lamp and cell, and light is nearly linear in the effects: few
   // steps do. (The circuit is not: of forecasts a small one may be the right one.)
   options.limits.held_out.max_leaders = 6;
   options.limits.leaders.max_leaders = 4;
@@ -302,7 +301,7 @@ Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
   d.data = data.quality;
   if (answer.decision.undecided) {
     d.warnings.push_back(
-        "the recordings and what was held out show together what neither shows alone, but not "
+        "fitted and held-out recordings together show an effect that neither shows alone, but not "
         "which effect it is: see the alternatives");
   }
   if (!answer.decision.held_out_tests_names) d.warnings.push_back(untested_names(*d.holdout));

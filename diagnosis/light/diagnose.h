@@ -1,9 +1,9 @@
-// `diagnose` for light and power: scans, sweeps and runs against the nominal model of lamps and
-// array, and what is missing in between.
+// `diagnose` for light and power: compares scans, sweeps and runs with the nominal model of lamps
+// and array, and finds missing effects.
 //
-// Observe (wild readings dropped) → fit the nominal model → search → weigh with what was held out →
-// decide → say it. The engine is inference/; what is special to light is the forward model (model/)
-// and the kinds of effects (effects/).
+// Observe (outliers dropped) → fit the nominal model → search → weigh with the held-out data →
+// decide → report. The engine is inference/; the forward model (model/) and the kinds of effects
+// (effects/) are special to light.
 #pragma once
 
 #include <functional>
@@ -24,7 +24,7 @@ struct LightDiagnoseOptions {
   size_t max_rows = 5000, max_scan_rows = 12000;
   double holdout_fraction = 0.25;  // of each recording, where there is no holdout
   Thresholds limits;
-  std::function<void(const std::string&)> progress;  // called with what begins; may be empty
+  std::function<void(const std::string&)> progress;  // called at each step; may be empty
 };
 
 // Wild readings: those that no neighbour in place or time comes near.
@@ -35,13 +35,14 @@ struct LightDiagnoseOptions {
 std::vector<size_t> rows_without_outliers(const LightRun& run, const Eigen::VectorXd& residuals,
                                           const Thresholds::Noise& limits);
 
-// The same by a model that explains all but them: a reading that is off by five of its errors, and
-// as far from the middle of its neighbours, is drawn once in a million. (One that is multiplied
-// where there is little light is not off by more, and its place says much about where a beam ends.)
+// Rows without outliers by a model that explains all other readings: a reading that is off by five
+// of its errors, and as far from the median of its neighbours, occurs once in a million. (A reading
+// that is multiplied where there is little light is not off by more, and its place says much about
+// where a beam ends.)
 std::vector<size_t> rows_without_strays(const LightRun& run, const Eigen::VectorXd& residuals);
 
-// InputError for recordings that the experiment cannot explain at all: curves without an array.
-// The same result for any number of threads.
+// InputError for recordings that the experiment cannot explain at all: curves without an array. The
+// result does not depend on the number of threads.
 Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
                          std::vector<LightRecording> recordings,
                          std::vector<LightRecording> holdouts,

@@ -73,7 +73,7 @@ LightDomain::LightDomain(const LightCandidates& all) : all_(all) {
   for (const LightCandidate& c : all.list) traits_.push_back(traits_of_light(c));
 }
 
-// What is not fitted but read off the recordings.
+// Sets numbers that are not fitted but read from the recordings.
 LightStart LightDomain::profiled(const Trial& parent, size_t candidate, Start start,
                                  const Runs& runs) const {
   if (all_[candidate].kind.scan != LightEffectKind::Scan::trapped) return start;
@@ -206,7 +206,7 @@ LightTrial LightDomain::assemble(const Trial& from, const inference::Members<Sta
           std::clamp(member.strengths[k++], c.numbers[n].lowest, c.numbers[n].highest);
     }
   }
-  // The forecast is a start, and so is what stands there now: a forecast far off may diverge.
+  // The forecast and the present values are both starts: a fit from a forecast far off may diverge.
   Trial trial = fit_light(all_, candidates, predicted, from.priors, runs, effort.max_iterations);
   const bool is_worse = !(trial.fit.chi2 < from.fit.chi2);
   if (is_worse && predicted != plain) {

@@ -1,4 +1,4 @@
-// Recordings of light and power as the search for what is missing sees them (inference/domain.h).
+// Recordings of light and power as a domain of the search for missing effects (inference/domain.h).
 #pragma once
 
 #include "diagnosis/light/trial.h"
@@ -10,7 +10,7 @@ class LightDomain {
  public:
   using Trial = LightTrial;
   using Run = FittedRun;
-  struct Begin {};  // no recording has nuisances of its own
+  struct Begin {};  // single recordings have no nuisances
   using Start = LightStart;
   using Runs = std::vector<FittedRun>;
   using Effort = inference::Effort;

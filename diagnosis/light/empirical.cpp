@@ -1,6 +1,6 @@
 // Smooth laws without physics. They multiply the light, or add to the current, by a sum of a few
 // functions of one variable (two for a place), with one fitted strength each; and waves over the
-// receiver, found in what is left of scans.
+// receiver, found in the residuals of scans.
 #include <algorithm>
 #include <cmath>
 #include <numeric>

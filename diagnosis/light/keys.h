@@ -1,4 +1,4 @@
-// What the diagnosis of light reads, as it is declared.
+// Declarations of the keys of the diagnosis of light.
 #pragma once
 
 #include <vector>

@@ -11,8 +11,8 @@
 namespace photorque {
 namespace {
 
-// How much of what the first of `terms` changes the recordings by, at the numbers x, the strengths
-// of each other term cannot make: χ², the first entry the whole of it.
+// χ² of the effect of the first of `terms` on the recordings, at the numbers x, that the strengths
+// of each other term cannot reproduce. The first entry is the whole effect.
 Eigen::VectorXd unlike(const LightTrial& about, const LightCandidates& all,
                        const std::vector<inference::Term<LightStart>>& terms,
                        const std::vector<FittedRun>& runs, const std::vector<double>& x) {
@@ -57,8 +57,8 @@ Eigen::VectorXd unlike(const LightTrial& about, const LightCandidates& all,
   return left;
 }
 
-// The same of an effect that acts or does not, `own` with it fitted: how far χ² would stay above
-// that where each of `others` acted in its place.
+// Distance of an effect without parameters, with `own` its fit: how far χ² would stay above that
+// fit where each of `others` acted in its place.
 Eigen::VectorXd unlike_switched(const LightTrial& own, const LightTrial& without,
                                 const LightCandidates& all, const std::vector<size_t>& others,
                                 const std::vector<FittedRun>& runs) {
@@ -136,7 +136,7 @@ std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
     const LightTrial rival = fit_light(all, candidates, x, chosen.priors, runs, 25);
     if (rival.log_evidence > own.log_evidence - within) rivals.insert(c.kind.name);
   }
-  // And what was fitted in its place and came out as well.
+  // And the candidates that explain the recordings as well in its place.
   for (const LightTrial& t : answer.trials) {
     if (t.candidates.size() != chosen.candidates.size()) continue;
     if (!(t.log_evidence > chosen.log_evidence - within) || !t.objection.empty()) continue;

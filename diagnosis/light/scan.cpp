@@ -10,7 +10,7 @@
 namespace photorque {
 namespace {
 
-// All combinations of the starts that a kind names for what it does not fit linearly.
+// All combinations of the starts that a kind states for its nonlinear parameters.
 std::vector<std::vector<double>> grid_of_starts(const LightCandidate& c) {
   std::vector<std::vector<double>> all = {c.start()};
   for (size_t k = 0; k < c.numbers.size(); ++k) {

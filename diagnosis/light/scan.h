@@ -1,12 +1,12 @@
-// Where to start what enters nonlinearly, found in what a trial leaves of the recordings.
+// Starts of nonlinear parameters, from the residuals of a trial.
 #pragma once
 
 #include "diagnosis/light/trial.h"
 
 namespace photorque {
 
-// What a trial leaves of a recording, with what it takes to see how a law on the light would lower
-// it.
+// Residuals of a recording under a trial, with the slopes that predict how a law on the light would
+// lower them.
 struct LeftOfRun {
   const LightRun* run;
   std::vector<double> signals;
@@ -14,14 +14,14 @@ struct LeftOfRun {
   SignalSlopes slopes;
 };
 
-// Of each candidate, the few starts that promise most; none where nothing does.
+// Of each candidate, the few starts with the largest predicted gains; none without a gain.
 std::vector<std::vector<LightStart>> scanned_starts(const LightTrial& parent,
                                                     const LightCandidates& all,
                                                     const std::vector<size_t>& candidates,
                                                     const std::vector<FittedRun>& runs,
                                                     int threads);
 
-// Opaque boxes that could cast what is missing of the light of the scans: numbers of the effect
+// Opaque boxes that could cause the missing light of the scans: numbers of the effect
 // unmodelled_shadow, the best first. A plane above the receiver is carved: an element of it may be
 // opaque only where every ray of light through it is missing at its end. The rectangle about the
 // largest patch of such elements, at the height where it explains most.
@@ -29,7 +29,7 @@ std::vector<LightStart> shadow_starts(const LightTrial& parent, const LightCandi
                                       const std::vector<FittedRun>& runs, bool on_body);
 
 // Waves over the receiver, of those whose cycles over half of its width and height lie on a grid up
-// to 16 each way, that explain most of what is left of the scans.
+// to 16 each way, that explain most of the residuals of the scans.
 std::vector<LightStart> wave_starts(const LightCandidate& wave, const std::vector<LeftOfRun>& left,
                                     const Thresholds::Scoring& limits);
 

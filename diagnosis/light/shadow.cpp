@@ -1,4 +1,4 @@
-// Boxes that could cast what is missing of the light.
+// Boxes that could cause the missing light.
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +15,7 @@ struct CarvingRay {
   Vec3 from, to;
 };
 
-// What shines on the scans and what is missing of it, in errors.
+// Light on the scans and its deficit, in errors.
 struct CarvingData {
   std::vector<CarvingRay> rays;
   std::vector<double> missing;  // per place

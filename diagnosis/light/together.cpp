@@ -39,7 +39,7 @@ Diagnosis light_believing(const LightRecorded& light, const Tilt& tilt) {
   return diagnose_light(light.lab, belief, light.recordings, light.holdouts, light.how);
 }
 
-// What an explanation of the light says of the tilt.
+// The tilt by an explanation of the light.
 std::optional<Tilt> tilt_of_light(const Diagnosis& light) {
   for (const FittedParameter& p : light.priors_refined) {
     if (p.key != tilt_belief) continue;
@@ -49,7 +49,7 @@ std::optional<Tilt> tilt_of_light(const Diagnosis& light) {
   return std::nullopt;
 }
 
-// The same of the motion: as it was refined, or as it was found.
+// The tilt by the motion: as a refined prior, or as a found effect.
 std::optional<Tilt> tilt_of_motion(const Diagnosis& motion) {
   const auto tilt_in = [](const std::vector<FittedParameter>& all,
                           const auto& is_it) -> std::optional<Tilt> {
@@ -74,8 +74,8 @@ bool names_tilt(const Diagnosis& motion) {
   return std::ranges::find(motion.effects, of_motion, &FoundEffect::kind) != motion.effects.end();
 }
 
-// What the motion alone says, where `both` is that and the light together; nothing where that is
-// hardly more than the light.
+// The tilt by the motion alone, from `both`, the result of motion and light together; nothing where
+// `both` is hardly more precise than the light.
 std::optional<Tilt> beside(const Tilt& both, const Tilt& light) {
   constexpr double better = 0.7;
   if (!(both.sigma_rad.array() < better * light.sigma_rad.array()).any()) return std::nullopt;
@@ -146,7 +146,7 @@ void add_tilt(const std::optional<Tilt>& tilt, Diagnosis& motion, Diagnosis& lig
   light.effects.push_back(effect);
 }
 
-// What the camera would have reported without noise, by the model that was found.
+// Attitudes that the camera would have reported without noise, by the found model.
 std::map<double, Quat> attitudes_of(const Diagnosis& motion, const std::string& recording) {
   std::map<double, Quat> at;
   for (const RecordingSeries& series : motion.series) {
@@ -215,7 +215,7 @@ Holdout both_held(const Holdout& a, const Holdout& b) {
       mean_of(a.chi2_per_sample_after, a.samples, b.chi2_per_sample_after, b.samples);
   both.samples = a.samples + b.samples;
   both.explained_fraction = std::min(a.explained_fraction, b.explained_fraction);
-  // The worse of the two is what a reader has to know.
+  // The worse of the two is reported.
   if (b.predictive && (!a.predictive || b.predictive->sigma > a.predictive->sigma)) {
     both.predictive = b.predictive;
   }
@@ -251,7 +251,7 @@ Diagnosis diagnose_together(MotionRecorded motion, LightRecorded light) {
   const Diagnosis of_motion_first = moved();
   take_attitudes(of_motion_first, light.recordings);
   take_attitudes(of_motion_first, light.holdouts);
-  // Who states a tilt knows it.
+  // A stated tilt is known.
   if (has_tilt(motion.nominal.model)) {
     return joined(
         of_motion_first,

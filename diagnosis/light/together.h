@@ -1,13 +1,13 @@
 // Motion and light recorded together: one answer of two.
 //
-// The domains share how the body stands against its recorded attitude. A camera that is not level
-// makes a pendulum swing about another attitude than the upright one, which a draught does as well,
-// and lets the array stand otherwise in the light, which dirt may look like. So
-//   the motion is explained first, and says how the platform stood without the camera's noise,
+// The domains share the tilt of the body against its recorded attitude. A camera that is not level
+// makes a pendulum swing about another attitude than the upright one, as a draught does. It also
+// changes the light on the array, as dirt does. So
+//   the motion is explained first, and gives the attitude without the camera's noise,
 //   which would be noise of the light;
-//   light is explained with any tilt; where it knows the tilt,
-//   the motion is explained with that as a prior; and where the motion knows it better,
-//   light is explained once more, with what the motion alone says of it as a prior.
+//   light is explained with any tilt; where it determines the tilt,
+//   the motion is explained with that as a prior; and where the motion determines it better,
+//   light is explained again, with the result of the motion alone as a prior.
 // Light acts on the motion by the lamps' current in the recording (disturbance lamp_pressure).
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace photorque {
 
-// The rotation vector about lab x and y by which the body stands turned against what is recorded.
+// The rotation vector about lab x and y from the recorded to the true attitude of the body.
 struct Tilt {
   Vec2 bias_rad, sigma_rad;
 };
@@ -41,7 +41,7 @@ struct LightRecorded {
 Diagnosis diagnose_together(MotionRecorded motion, LightRecorded light);
 
 // Gives the rows of each run the attitudes that the motion was found to have where it has the same
-// name and is explained; others keep what was recorded.
+// name and is explained; others keep their recorded values.
 void take_attitudes(const Diagnosis& motion, std::vector<LightRecording>& runs);
 
 // Both in one, the motion first. `tilt`: what both say of it, if anything.

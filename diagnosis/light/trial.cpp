@@ -23,7 +23,7 @@ LightState acted(const LightCandidates& all, const std::vector<size_t>& candidat
   return state;
 }
 
-// Which number of which candidate a column stands for.
+// The candidate and its number that belong to a column.
 struct Place {
   size_t member, number;
 };
@@ -95,7 +95,7 @@ Eigen::VectorXd slope_by(const LightCandidates& all, const std::vector<size_t>& 
   double& b = high[place.member][place.number];
   a = std::max(a - n.step, std::min(n.lowest, a));
   b = std::min(b + n.step, std::max(n.highest, b));
-  // Slopes say where a fit steps to, χ² alone whether it does.
+  // Slopes determine the step of a fit; χ² alone decides whether it is taken.
   const LightRun::KnownLight near{&at.state, &at.fields, &at.light};
   const auto signals = [&](const LightState& state) {
     return run.run->signals_of(
@@ -161,7 +161,7 @@ double log_evidence_of(const LightTrial& trial, const LightCandidates& all) {
     result += c.is_empirical() ? limits.log_prior_empirical : limits.log_prior_effect;
     for (size_t k = 0; k < c.numbers.size(); ++k) {
       const LightCandidate::Number& n = c.numbers[k];
-      // What a scan chose among all rows costs as much as a number that is fitted.
+      // A number that a scan chose among all rows costs as much as a number that is fitted.
       if (!n.is_fitted) {
         result -= 0.5 * std::log(static_cast<double>(trial.fit.samples));
         continue;

@@ -22,7 +22,7 @@ struct LightStart {
 // Whether a lamp's derating, fitted as `column`, leaves nothing of it.
 bool leaves_nothing(double derating, const inference::Fit& fit, Eigen::Index column);
 
-// The state that a trial says.
+// The state of a trial.
 LightState state_of(const LightTrial& trial, const LightCandidates& all);
 
 // The experiment alone.
@@ -33,7 +33,7 @@ LightTrial fit_light(const LightCandidates& all, const std::vector<size_t>& cand
                      const std::vector<std::vector<double>>& x, const std::vector<double>& priors,
                      const std::vector<FittedRun>& runs, int max_iterations);
 
-// The same numbers on other recordings: nothing is fitted.
+// Predicts other recordings with the numbers of the trial: nothing is fitted.
 LightTrial predict_light(const LightTrial& trial, const LightCandidates& all,
                          const std::vector<FittedRun>& runs);
 

@@ -69,13 +69,13 @@ Json table_json(const Table& table, size_t most_rows) {
 // Of every interval of points the lowest and the highest, so that no peak is lost.
 std::vector<size_t> kept_points(const std::vector<double>& y, size_t most) {
   std::vector<size_t> kept;
-  const size_t stretches = std::max<size_t>(1, most / 2);
+  const size_t intervals = std::max<size_t>(1, most / 2);
   if (y.size() <= most) {
     for (size_t i = 0; i < y.size(); ++i) kept.push_back(i);
     return kept;
   }
-  for (size_t s = 0; s < stretches; ++s) {
-    const size_t from = s * y.size() / stretches, to = (s + 1) * y.size() / stretches;
+  for (size_t s = 0; s < intervals; ++s) {
+    const size_t from = s * y.size() / intervals, to = (s + 1) * y.size() / intervals;
     size_t low = from, high = from;
     for (size_t i = from; i < to; ++i) {
       if (y[i] < y[low] || !std::isfinite(y[low])) low = i;

@@ -27,7 +27,7 @@ nlohmann::ordered_json packed_coarse(std::span<const double> numbers, double low
 std::string script_text(const nlohmann::ordered_json& json);
 
 // Maps reduced to the limit by averaging blocks of bins, long tables cut, curves thinned; each of
-// them says so.
+// them notes it.
 nlohmann::ordered_json page_content(const RunPage& page, const PageLimits& limits);
 
 // By how much the sides of each map are divided so that together they keep to `most_bins`: those

@@ -17,7 +17,7 @@ Json packed_as(const char* type, std::span<const T> numbers) {
   return {{type, base64(std::as_bytes(numbers))}};
 }
 
-// The policy forbids the page to fetch anything, whatever its script would try.
+// The policy forbids the page to fetch anything, also by its script.
 std::string document_html(const std::string& title, const Provenance& provenance,
                           const std::string& script_policy, const std::string& body) {
   std::string html =

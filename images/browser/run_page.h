@@ -64,7 +64,7 @@ struct RunPage {
 };
 
 // Limits of what a page holds; what is beyond them is thinned or left to the other files, and the
-// page says so.
+// page notes it.
 struct PageLimits {
   size_t map_bins = 1u << 17;  // of all maps of the product together
   size_t table_rows = 200;     // of one table

@@ -42,7 +42,7 @@ struct Axis {
   Ticks ticks;
   std::string label;  // the unit in brackets holds the ticks' power of ten: "torque [×10⁻⁹ N m]"
 
-  // 0 at range.low, 1 at range.high; NaN for what a logarithmic axis cannot show.
+  // 0 at range.low, 1 at range.high; NaN for values that a logarithmic axis cannot show.
   double fraction(double value) const;
 };
 

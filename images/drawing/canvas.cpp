@@ -1,4 +1,4 @@
-// The only file that knows cairo.
+// The only file that uses cairo.
 #include "images/drawing/canvas.h"
 
 #include <cairo-pdf.h>

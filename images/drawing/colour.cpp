@@ -13,7 +13,7 @@ Eigen::Matrix3d xyz_from_linear() {
       .finished();
 }
 
-// White is what the matrix makes of (1, 1, 1), so that greys have exactly a* = b* = 0.
+// White is the matrix times (1, 1, 1), so that greys have exactly a* = b* = 0.
 Eigen::Vector3d white_xyz() {
   return xyz_from_linear() * Eigen::Vector3d::Ones();
 }

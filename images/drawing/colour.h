@@ -66,9 +66,9 @@ struct ColourScale {
 };
 
 // The scale for values from `smallest` to `largest`. Unsigned: from zero, unless all values lie in
-// the upper half of [0, largest], where a map from zero would hide what differs. Signed: blue to
-// red with zero in the middle, unless all lie on one side of zero and far from it. Constant values
-// get a scale that shows them as such.
+// the upper half of [0, largest], where a map from zero would hide differences. Signed: blue to red
+// with zero in the middle, unless all lie on one side of zero and far from it. Constant values get
+// a scale that shows them as such.
 ColourScale colour_scale(double smallest, double largest, bool signed_values);
 
 // The scale for the finite values of a map; [0, 1] or [−1, 1] if there are none.

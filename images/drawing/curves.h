@@ -22,9 +22,9 @@ struct ChartPanel {
   PageBox frame;
   Axis x, y;
   std::vector<Plot::Curve> curves;
-  double resolution = 0.5;  // points on the page: what is drawn differs by less
+  double resolution = 0.5;  // points on the page: the error of the drawing is smaller
 
-  // Where a pair of values stands on the page; NaN for what cannot be shown.
+  // The place of a pair of values on the page; NaN for values that cannot be shown.
   PagePoint at(double x_value, double y_value) const;
 };
 

@@ -26,7 +26,7 @@ struct Extent {
 AxisRange padded(const Extent& extent, bool log, double margin) {
   if (extent.low > extent.high) return log ? AxisRange{1.0, 10.0} : AxisRange{0.0, 1.0};
   if (log) {
-    // As of drawable(): what differs by rounding alone is one value.
+    // As of drawable(): values that differ by rounding alone are one value.
     const bool is_constant = extent.high <= (1.0 + 1e-9) * extent.low;
     const double factor =
         is_constant ? std::sqrt(10.0) : std::pow(extent.high / extent.low, margin);
@@ -56,7 +56,7 @@ AxisRange x_range(const std::vector<Plot::Panel>& panels, bool log) {
   return padded(extent, log, markers ? 0.03 : 0.0);
 }
 
-// Of what the curves show: all of it, or the central 99.6 % where the panel asks for that.
+// Of the shown values: all of them, or the central 99.6 % where the panel requires that.
 Extent curves_extent(const Plot::Panel& panel) {
   std::vector<double> values;
   for (const Plot::Curve& curve : panel.curves) {

@@ -1,4 +1,4 @@
-// The picture of the `render` command: what a camera sees of a scene, with the irradiance painted
+// The picture of the `render` command: the view of a camera on a scene, with the irradiance painted
 // on its receivers, lamps and rays.
 #pragma once
 

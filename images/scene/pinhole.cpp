@@ -76,7 +76,7 @@ void draw_lamp(SceneView& view, const Pinhole& camera, const Screen& screen, con
 }
 
 void draw_ray(SceneView& view, const Screen& screen, const Vec3& from_m, const Vec3& to_m) {
-  // Only what lies in front of the camera.
+  // Only parts in front of the camera.
   const double nearest_m = 1e-3 * (to_m - from_m).norm();
   double begin = 0.0, end = 1.0;
   const double from_along = screen.along_m(from_m), to_along = screen.along_m(to_m);

@@ -26,7 +26,7 @@ std::string preamble(const std::string& title, const Provenance& provenance) {
 
 std::string quoted_where_needed(const std::string& cell) {
   std::string clean = clean_text(cell);
-  // Spreadsheets take what begins so for a formula, in quotes too, unless it is a number; the
+  // Spreadsheets read such a text as a formula, in quotes too, unless it is a number; the
   // apostrophe makes it a text.
   if (!clean.empty() && std::string_view("=+-@").find(clean.front()) != std::string_view::npos &&
       clean != "-" && !number_in(clean)) {

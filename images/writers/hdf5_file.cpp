@@ -31,7 +31,7 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-// The library would print what it refuses.
+// The library would print its errors.
 class Quiet {
  public:
   Quiet() {
@@ -54,7 +54,7 @@ hid_t memory_only() {
   return properties;
 }
 
-// Texts have a fixed length, which every reader knows; ASCII where it will do, as VTK's reader
+// Texts have a fixed length, which every reader supports; ASCII where it suffices, as VTK's reader
 // requires.
 hid_t text_type(size_t length, bool ascii) {
   const hid_t type = required(H5Tcopy(H5T_C_S1));

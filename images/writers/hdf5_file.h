@@ -1,4 +1,4 @@
-// HDF5 files: the only place that knows the library.
+// HDF5 files: the only place that uses the library.
 #pragma once
 
 #include <filesystem>
@@ -25,7 +25,7 @@ class Hdf5File {
 
   void group(const std::string& place);
   bool has(const std::string& place) const;
-  // Row by row; as many numbers as the shape says.
+  // Row by row; as many numbers as in the shape.
   void numbers(const std::string& place, const std::vector<double>& values,
                const std::vector<size_t>& shape);
   void texts(const std::string& place, const std::vector<std::string>& values);

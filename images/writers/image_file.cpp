@@ -11,8 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The bytes of a file of one page; `path` says its format and stands in what an InputError says.
-// Made in memory: what OpenImageIO writes to a disk itself may fail without a word.
+// The bytes of a file of one page; `path` determines its format and is named by an InputError. Made
+// in memory: OpenImageIO may fail to write to a disk without reporting it.
 std::string bytes_of(const fs::path& path, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
                      const void* samples) {
   const std::string name = path.string();

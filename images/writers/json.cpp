@@ -1,6 +1,6 @@
 // The headline figures as summary.json.
 //
-// A caller that knows the wall time and the number of rays writes summary_json itself.
+// A caller that has the wall time and the number of rays writes summary_json.
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text/format.h"

@@ -19,12 +19,12 @@ class Writer {
  public:
   virtual ~Writer() = default;
 
-  PictureStyle style = PictureStyle::page;  // of what is drawn
+  PictureStyle style = PictureStyle::page;  // of drawings
 
   // Writes what the format can express of `product` into `folder` (made if absent), one file per
-  // item, named after it; returns the paths in order. A format that has nothing to say writes
-  // nothing. Each file appears whole or not at all. InputError when an item's sizes disagree or a
-  // file cannot be written.
+  // item, named after it; returns the paths in order. A format without content writes nothing. Each
+  // file appears whole or not at all. InputError when an item's sizes disagree or a file cannot be
+  // written.
   virtual std::vector<std::filesystem::path> write(const Product& product,
                                                    const Provenance& provenance,
                                                    const std::filesystem::path& folder) const = 0;

@@ -20,7 +20,8 @@ constexpr const char* file_name = "photorque_pictures.so";
                        PHOTORQUE_MODULE_FOLDER + " from there");
 }
 
-// Beside the program, or where it was installed to; nowhere else, whatever the environment says.
+// Beside the program, or where it was installed to; nowhere else, also with other variables of the
+// environment.
 fs::path module_path() {
   const fs::path program = own_file().parent_path();
   for (const fs::path& place : {program, program / PHOTORQUE_MODULE_FOLDER}) {
@@ -30,7 +31,7 @@ fs::path module_path() {
   fail(program, "no " + std::string(file_name));
 }
 
-// Never unloaded: what it throws may outlive any call.
+// Never unloaded: its exceptions may outlive any call.
 const PictureFunctions& load() {
   const fs::path path = module_path();
   void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);

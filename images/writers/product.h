@@ -44,7 +44,7 @@ struct RunCost {
 //  "warnings": ["…"],  one line for each of the run's own checks that failed; [] where none did
 //  "power_on_array_W": {"value": 27.1, "standard_error": 0.002}, …,
 //  "provenance": {"program", "version", "git_hash", "seed", "inputs", "rays", "wall_time_s"}}
-// Numbers read back as the same doubles; what is not finite is null. Ends in a line break.
+// Numbers read back as the same doubles; others than finite ones are null. Ends in a line break.
 // InputError if two quantities share a name or take one of the three names above.
 std::string summary_json(const Product& product, const Provenance& provenance,
                          const RunCost& cost = {});

@@ -44,8 +44,8 @@ uint32_t checksum_of(std::string_view bytes) {
   return ~sum;
 }
 
-// Whether every chunk of a PNG is there and as it was written: of one that is not, its library says
-// so on the terminal, beside the one line of this program.
+// Whether every chunk of a PNG is there and as it was written: otherwise its library prints on the
+// terminal, beside the one line of this program.
 bool has_whole_chunks(std::string_view png) {
   constexpr size_t signature = 8,
                    around = 12;  // of a chunk: length and type before, checksum after
@@ -73,7 +73,7 @@ std::optional<std::array<int64_t, 2>> stated_size(std::string_view bytes) {
   for (size_t at = 2; at + frame_bytes <= bytes.size();) {
     const auto marker = static_cast<unsigned char>(bytes[at + 1]);
     if (bytes[at] != '\xff' || marker == 0x00 || marker == 0xff) {
-      ++at;  // what stands between segments is passed over
+      ++at;  // bytes between segments are skipped
       continue;
     }
     const bool is_frame =

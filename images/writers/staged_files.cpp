@@ -23,7 +23,7 @@ bool is_head(const std::string& name) {
   return std::ranges::find(heads, name) != std::end(heads);
 }
 
-// Lists of what commands wrote, by command; empty where there is none that can be read.
+// Lists of the files of commands, by command; empty where there is no readable list.
 Json read_lists(const fs::path& path) {
   std::error_code failure;
   if (!fs::is_regular_file(path, failure)) return Json::object();

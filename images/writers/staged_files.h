@@ -9,7 +9,7 @@
 
 namespace photorque {
 
-// Whether files.json lists it among what that command wrote into the folder.
+// Whether files.json lists it among the files of that command in the folder.
 bool is_result_of(const std::filesystem::path& folder, const std::string& command,
                   const std::string& name);
 
@@ -30,7 +30,7 @@ class StagedFiles {
   std::vector<std::filesystem::path> publish();
 
   // Publishes the results of one command, which replace those of its last run in this folder:
-  // files.json lists what a command wrote, and files of the list that were not written again go
+  // files.json lists the files of a command, and files of the list that were not written again go
   // away. What no command lists and has the name of a result is kept beside it as NAME~.
   // summary.json (of `diagnose`, diagnosis.json) goes first and comes last: where it exists, all
   // files that it describes belong to one run.

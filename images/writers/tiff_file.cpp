@@ -24,7 +24,7 @@ constexpr uint32_t rows_per_strip = 32;
 // Above this many bytes of samples, offsets take 64 bits (BigTIFF): those of TIFF end at 4 GiB.
 constexpr double largest_classic = 3.5e9;
 
-// A file in memory, and what went wrong in it. No exception may pass through libtiff.
+// A file in memory, and its error. No exception may pass through libtiff.
 struct Memory {
   std::string bytes = {};
   size_t at = 0;

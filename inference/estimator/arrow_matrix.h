@@ -7,7 +7,7 @@
 
 namespace photorque::inference {
 
-// What a least-squares step needs to know of the data.
+// Sums over the data for one least-squares step.
 
 // Residuals are r = (measured − predicted)/noise, so that good ones have unit variance, and slopes
 // J = ∂(predicted/noise)/∂θ: a step δ turns r into r − J δ, to first order.
@@ -47,8 +47,8 @@ class SumsOfRows {
 
 // The symmetric matrix of least squares over several runs.
 //
-// What belongs to one run alone (where it began, its instrument's bias) meets the shared parameters
-// but no other run's:
+// Parameters of one run alone (its initial conditions, its instrument's bias) meet the shared
+// parameters but no other run's:
 //
 //   ⎡ A₁          B₁ᵀ ⎤
 //   ⎢     A₂      B₂ᵀ ⎥      A: own by own, B: shared by own, C: shared by shared
@@ -77,7 +77,7 @@ class ArrowMatrix {
 
   Eigen::VectorXd diagonal() const;
   Eigen::MatrixXd dense() const;
-  // By what all runs share.
+  // By the shared parameters.
   const Eigen::MatrixXd& shared() const { return shared_; }
   Eigen::VectorXd operator*(const Eigen::VectorXd& x) const;
   // diag(s) M diag(s).
@@ -89,10 +89,10 @@ class ArrowMatrix {
   Eigen::VectorXd solve(const Eigen::VectorXd& x) const;
   // Its natural logarithm; pivots below 1e-12 of the diagonal count as that.
   double log_determinant() const;
-  // C − Σ B A⁻¹ Bᵀ: what is known of the shared parameters whatever the runs' own may be. Its
-  // inverse is the shared block of the inverse.
+  // C − Σ B A⁻¹ Bᵀ: the information about the shared parameters with free parameters of the runs.
+  // Its inverse is the shared block of the inverse.
   Eigen::MatrixXd shared_information() const;
-  // The same, and the gradient likewise.
+  // The information and the gradient of the shared parameters, with the runs' own eliminated.
   NormalSums shared_sums(const Eigen::VectorXd& gradient, double chi2, int64_t samples) const;
 
  private:

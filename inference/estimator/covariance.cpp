@@ -18,8 +18,8 @@ Eigen::VectorXd scale_of(const Eigen::MatrixXd& information) {
       [](double s) { return s > 0.0 ? 1.0 / s : 1.0; });
 }
 
-// The marginal covariance of what is known, where some combinations are not. `scaled` has a unit
-// diagonal. With no parameter undetermined the matrix is left empty.
+// The marginal covariance of the known combinations, where others are not known. `scaled` has a
+// unit diagonal. With no parameter undetermined the matrix is left empty.
 Covariance without_unknown(const Eigen::MatrixXd& scaled) {
   const Eigen::Index n = scaled.rows();
   const SymmetricEigen eigen = symmetric_eigen(scaled);
@@ -92,7 +92,7 @@ Eigen::MatrixXd posterior_of(const Eigen::MatrixXd& information) {
 }
 
 double log_determinant(const Eigen::MatrixXd& A) {
-  // Of what nothing tells of there is no scale.
+  // Without information there is no scale.
   const Eigen::VectorXd scale = (A.diagonal().array() > 0.0).select(A.diagonal().cwiseSqrt(), 1.0);
   const Eigen::MatrixXd scaled =
       scale.cwiseInverse().asDiagonal() * A * scale.cwiseInverse().asDiagonal();

@@ -24,7 +24,7 @@ struct Covariance {
 
 // Of a symmetric information matrix. Parameters may have units that differ by any number of orders:
 // H is scaled to a unit diagonal first. A combination counts as undetermined where its information
-// is below 1e-14 of that per parameter: what is left there is rounding of the sums. (In terms of
+// is below 1e-14 of that per parameter: the remainder is rounding of the sums. (In terms of
 // the singular values of J, 1e-7.)
 Covariance covariance_of(const Eigen::MatrixXd& information);
 

@@ -1,8 +1,8 @@
-// The evidence for a model: the probability of the data under it, whatever its parameters.
+// The evidence for a model: the probability of the data under it, averaged over its parameters.
 //
 // Laplace's approximation (D. MacKay, Information Theory, Inference, and Learning Algorithms, 2003,
 // eq. 28.5) integrates the posterior as the Gaussian that it is near its maximum. It is exact for
-// linear models, and says by how much a better fit must be better to be worth its parameters.
+// linear models, and gives the gain of χ² that additional parameters must bring.
 #pragma once
 
 #include <limits>
@@ -22,13 +22,13 @@ namespace photorque::inference {
 // compare only between models that have it in common. −1e300 where the model cannot be evaluated.
 double log_evidence(const Fit& fit);
 
-// Strengths: parameters that enter linearly and whose size nobody knows beforehand, such as those
+// Strengths: parameters that enter linearly and whose size is unknown beforehand, such as those
 // of an effect that was left out of a model.
 struct Strengths {
   std::vector<Eigen::Index> at;  // which of the parameters of the covariance
   std::vector<size_t> owner;     // which effect each belongs to
   std::vector<double> value;     // fitted with a flat prior
-  std::vector<double> scale;     // what is expected of each, > 0
+  std::vector<double> scale;     // expected size of each, > 0
 };
 
 // ln ∫ N(θ; 0, S) … over the widths of S: the width of the prior of each effect's strengths, a
@@ -38,30 +38,30 @@ struct Strengths {
 double log_strength_evidence(const Strengths& strengths, const Eigen::MatrixXd& covariance,
                              size_t effects, const Thresholds::Evidence& limits = {});
 
-// What a fit predicts of runs that it never saw.
+// Predictions of runs that were not fitted.
 
-// How a trial, fitted to the train runs alone, predicts those held out. Its parameters are as
-// uncertain as the fit says, and so is the prediction: the least of χ² over the held-out runs'
-// nuisances and the parameters, these with the fit's posterior as their prior, is that of the
-// predictive distribution, with as many degrees of freedom as there are numbers, less the
-// nuisances. It is by how much χ² grows when the held-out runs are fitted as well.
+// Prediction of the held-out runs by a trial that was fitted to the train runs alone. The
+// prediction includes the uncertainty of the parameters: χ² is minimised over the nuisances of the
+// held-out runs and over the parameters, with the posterior of the fit as their prior. This minimum
+// is the χ² of the predictive distribution. Its degrees of freedom are the number of readings less
+// the number of nuisances. It equals the growth of χ² when the held-out runs are fitted as well.
 struct Predictive {
   double chi2_per_sample = 0.0;
-  // Beyond what noise makes, in standard errors: of χ² as a whole or of what is left over some
-  // neighbours (whiteness.h), whichever is larger.
+  // Excess over noise in standard errors: of χ² as a whole or of the residuals over some neighbours
+  // (whiteness.h), whichever is larger.
   double sigma = 0.0;
   // Natural logarithm of the probability of the held-out runs given the others, up to a constant
   // that all trials share.
   double log_score = 0.0;
-  // Of the held-out runs against the fitted parameters as they stand, as expected_chi2 says.
+  // Of the held-out runs against the fitted parameters without their errors, see expected_chi2.
   double expected_chi2_per_sample = std::numeric_limits<double>::quiet_NaN();
 };
 
-// What the parameters of a fit leave per number of runs that it never saw, each of which starts
-// where it was seen to: 1 by their noise, and by the errors of the parameters, which the motion
-// carries along, tr(G C)/n more. C: the posterior of the shared parameters of `train`; G: what
-// the held-out runs tell of them, from `joint`, the fit of the same model to all runs; n: held-out
-// numbers. To first order; NaN where a matrix is not finite.
+// Expected χ² per held-out number, where each held-out run starts from its measured initial
+// conditions: 1 from noise, and tr(G C)/n from the errors of the parameters. C: the posterior of
+// the shared parameters of `train`; G: the information of the held-out runs about them, from
+// `joint`, the fit of the same model to all runs; n: the number of held-out numbers. First order;
+// NaN where a matrix is not finite.
 double expected_chi2_per_sample(const Fit& train, const Fit& joint);
 
 }  // namespace photorque::inference

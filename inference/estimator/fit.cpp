@@ -27,7 +27,8 @@ Eigen::VectorXd damped_step(const SumsOfRuns& sums, const Eigen::VectorXd& dampe
   return scale.cwiseProduct(scaled.solve(right));
 }
 
-// What the damping of each parameter is measured by.
+// Scale of the damping of each parameter: 1, or the largest diagonal of H so far over the present
+// one.
 class DampingScale {
  public:
   explicit DampingScale(bool keeps_largest) : keeps_largest_(keeps_largest) {}
@@ -69,7 +70,7 @@ Eigen::VectorXd step_within_bounds(const SumsOfRuns& sums, const Parameters& par
   return step;
 }
 
-// Whether χ², as fast as it falls, comes below what is worth the fit, and whether it falls at all.
+// Whether χ², at its present rate, falls below the useful limit, and whether it falls at all.
 class Outlook {
  public:
   Outlook(double worth_chi2, double creep, int max_iterations)
@@ -107,9 +108,9 @@ class Outlook {
 // A window that is not the whole only brings the start of the next one near.
 constexpr int iterations_of_first_windows = 20;
 constexpr double gain_in_first_windows = 1.0;
-// By how much χ² of one that was given time no more may be above what is worth the fit.
+// By how much χ² of a stopped fit may be above the useful limit.
 constexpr double still_falling = 4.0;
-// χ² over what is worth the fit, where the whole runs begin: predictions off by a thousand standard
+// χ² over the useful limit, where the whole runs start: predictions off by a thousand standard
 // errors, from which no slope leads back.
 constexpr double off_course = 1e6;
 
@@ -120,7 +121,7 @@ class Fitter {
 
   Fit run() {
     Fit result;
-    // What cannot be evaluated in a window cannot be in a longer one.
+    // A model that cannot be evaluated in a window cannot be evaluated in a longer one.
     bool is_hopeless = false;
     for (size_t w = 0; w < options_.windows.size() && !is_hopeless; ++w) {
       result.termination = fit_window(options_.windows[w]);
@@ -148,7 +149,7 @@ class Fitter {
   }
 
  private:
-  // Leaves in `ended_at_` what the model says of the whole runs where it ends, if that is known.
+  // Leaves in `ended_at_` the model's evaluation of the whole runs at the end, if that is known.
   Termination fit_window(double window) {
     ended_at_.reset();
     const bool grew = window == 1.0 && options_.windows.size() > 1;
@@ -171,7 +172,7 @@ class Fitter {
     double damping = options_.initial_damping;
     DampingScale scale(options_.keep_largest_scale);
     const bool is_whole = window == 1.0;
-    // Patience in the first windows is for what must be fitted, however poor its start.
+    // More steps in the first windows are for models that must be fitted, however poor their start.
     const bool is_brief = !is_whole && options_.worth_chi2 < infinity;
     const int most = is_brief ? std::min(options_.max_iterations, iterations_of_first_windows)
                               : options_.max_iterations;
@@ -340,7 +341,7 @@ const char* words_of(Termination termination) {
   return "";
 }
 
-// What holds a parameter where it is.
+// The reason for the value of a parameter other than the data; empty: the data determine it.
 const char* determined_by(const Parameter& p, double standard_error, bool is_determined) {
   if (!is_determined) return "undetermined";
   if (p.value <= p.lowest || p.value >= p.highest) return "on its bound";

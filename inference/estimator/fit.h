@@ -1,6 +1,6 @@
 // Nonlinear least squares with priors, bounds and nuisances: the one estimator of this program.
 //
-// What is minimised over the parameters θ of a forward model (forward_model.h) is
+// The fit minimises over the parameters θ of a forward model (forward_model.h)
 //
 //   χ²(θ) = Σ_runs Σ_i r_i(θ)² + Σ_k ((θ_k − μ_k)/σ_k)²   with   lowest_k ≤ θ_k ≤ highest_k,
 //
@@ -35,9 +35,9 @@ struct Options {
   // A window is done when the next step predicts to lower χ² by less than the larger of these.
   // In units of χ²: a parameter is then within √min_gain of its standard error of the minimum.
   double min_gain = 0.01;
-  double min_gain_fraction = 1e-6;  // of χ²: what a bad fit could hardly show
+  double min_gain_fraction = 1e-6;  // of χ²: hardly visible in a bad fit
   // Whether steps are then taken untested as long as their predicted gains fall: χ² shows
-  // parameters to a part in 1e7 of their errors, but its gradient knows better.
+  // parameters to a part in 1e7 of their errors, but its gradient is more precise.
   bool polish = false;
   // A start whose χ² is larger is not worth its derivatives: it counts as not evaluable.
   double max_start_chi2 = infinity;
@@ -46,8 +46,7 @@ struct Options {
   // fit, as if it could not be evaluated. Infinite: none of these.
   double worth_chi2 = infinity;
   // One of whole runs also ends where χ² fell by less than this fraction a step, on average over
-  // the last six, and there is more than 1.2 per sample: what fits badly and hardly moves. 0: goes
-  // on.
+  // the last six, and there is more than 1.2 per sample: a bad fit that hardly moves. 0: goes on.
   double creep = 0.0;
   double initial_damping = 1e-9;  // λ, ≥ 0
   double min_damping = 0.0;  // ≥ 0: keeps combinations that nothing determines where they are
@@ -65,7 +64,7 @@ struct Options {
 };
 
 enum class Termination {
-  converged,       // no step promises what is worth having
+  converged,       // no step predicts a gain above the limit
   no_step_lowers,  // at the limit of precision, or of the derivatives
   max_iterations,
   out_of_reach,   // of worth_chi2
@@ -91,16 +90,17 @@ struct Fit {
   // its root standard errors widen that shall rest on the scatter instead. 0 without freedom.
   double variance() const;
   // Standard errors of all parameters by the scatter of the data, √(variance · covariance),
-  // whatever noise was stated; infinite where undetermined.
+  // independent of the stated noise; infinite where undetermined.
   Eigen::VectorXd scatter_errors() const;
   Covariance covariance() const { return covariance_of(hessian.dense()); }
-  // Of the shared parameters alone, whatever the runs' own may be.
+  // Of the shared parameters alone, with free parameters of the runs.
   Covariance shared() const;
-  // The same where priors hold every parameter: always finite, whatever the data determine.
+  // Covariance of the shared parameters where every parameter has a prior: always finite, whatever
+  // the data determine.
   Eigen::MatrixXd shared_posterior() const;
 
-  // What a person wants to know of it: a line on how it ended, then every parameter with its error,
-  // and whether data, prior, a bound or nothing at all determines it.
+  // Text: one line on how the fit ended, then every parameter with its error, and whether data,
+  // prior or a bound determines it.
   std::string report() const;
 };
 

@@ -1,11 +1,11 @@
-// The interface between the estimator and whatever is estimated.
+// The interface between the estimator and a model with parameters.
 //
-// A forward model says what recordings ("runs") would read if its parameters were θ. The estimator
-// never sees a recording; of every run it asks for sums over the residuals, whitened by their noise
-// (NormalSums), and of the whole for the parameters' priors. A point θ is a vector of
-// coordinates that the model alone understands: a parameter may live on a manifold, as an attitude
-// does, whose four quaternion components move along three directions. What the estimator adds to a
-// point is a step, in the order of Parameters, through stepped().
+// A forward model predicts recordings ("runs") for parameters θ. The estimator never sees a
+// recording; of every run it asks for sums over the residuals, whitened by their noise
+// (NormalSums), and of the whole for the parameters' priors. A point θ is a vector of coordinates
+// that the model alone understands: a parameter may live on a manifold, as an attitude does, whose
+// four quaternion components move along three directions. What the estimator adds to a point is a
+// step, in the order of Parameters, through stepped().
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@
 
 namespace photorque::inference {
 
-// What is wanted of a run.
+// Request for the evaluation of one run.
 struct Request {
   bool derivatives = true;  // false: χ² and the number of samples suffice
   double window = 1.0;      // only the first part of the run, as a fraction in (0, 1]

@@ -1,4 +1,4 @@
-// What a fit estimates, what is known about it before the data, and the way back to its bounds.
+// Parameters of a fit with their priors and bounds.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,8 +9,6 @@
 #include "inference/estimator/arrow_matrix.h"
 
 namespace photorque::inference {
-
-// What a fit estimates, and what is known about it before the data.
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 

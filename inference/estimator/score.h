@@ -24,7 +24,7 @@ struct Score {
 
 // From the information S about some parameters and their gradient s, in the space that the data
 // determine at all. `before`: the diagonal of the information before anything was projected out;
-// what is left below 1e-8 of it is rounding.
+// a remainder below 1e-8 of it is rounding.
 Score solve_score(const Eigen::MatrixXd& S, const Eigen::VectorXd& s,
                   const Eigen::VectorXd& before);
 
@@ -32,7 +32,7 @@ Score solve_score(const Eigen::MatrixXd& S, const Eigen::VectorXd& s,
 struct Projected {
   Eigen::MatrixXd information;
   Eigen::VectorXd gradient;
-  Eigen::VectorXd before;  // as solve_score() wants it
+  Eigen::VectorXd before;  // argument of solve_score()
 
   // Of the parameters `which` together.
   Score score(const std::vector<Eigen::Index>& which) const;
@@ -40,7 +40,8 @@ struct Projected {
   Score score(Eigen::Index first, Eigen::Index count) const;
 };
 Projected project_out(const NormalSums& sums, Eigen::Index fitted);
-// The same for several runs: the first `fitted`, all that are the runs' own among them.
+// Projects out the first `fitted` parameters of several runs; all parameters of single runs are
+// among them.
 Projected project_out(const SumsOfRuns& sums, Eigen::Index fitted);
 
 }  // namespace photorque::inference

@@ -1,9 +1,9 @@
-// By what search and decision judge: every number that decides what is fitted, what goes on, what
-// is named and what is called noise, once each.
+// Thresholds of search and decision: every number that decides about fits, their end, names and
+// noise, once each.
 //
 // Unless a number says otherwise, it was set by hand and stands as long as the cases of
 // docs/proof.md (twelve of another maker, 203 of our own, with nothing missing among them) come out
-// as that page says: whoever changes one renews the page. Where a number follows from statistics,
+// as that page says: a change needs a new page. Where a number follows from statistics,
 // the law is given. χ² and log evidence (natural logarithms) have no unit; sigmas are standard
 // errors.
 #pragma once
@@ -15,7 +15,7 @@
 namespace photorque {
 
 struct Thresholds {
-  // Noise of the readings, and what is left of a fit beside it.
+  // Noise of the readings, and the residual of a fit beside it.
   struct Noise {
     // Neighbours that make a mean: structure longer than this shows in the means, white noise does
     // not.
@@ -28,14 +28,15 @@ struct Thresholds {
     // Twice the logarithm of the likelihood that a correlated noise must gain over white noise of
     // the best level, to be used: by chance one parameter gains 25 once in 2 million.
     double min_colour_gain = 25.0;
-    // The same for a white part beside the correlated one.
+    // Twice the gain in log likelihood of a white part beside the correlated one, to be used.
     double min_mixture_gain = 16.0;
     // Frequencies of a spectrum whose median measures the gyro's noise, at the least.
     size_t min_frequencies = 16;
-    // Standard deviations of noise from what its neighbours say, for a reading to be dropped. White
-    // noise reaches it in one of five million readings (drawn).
+    // Standard deviations from the value expected by its neighbours, for a reading to be dropped.
+    // White noise reaches it in one of five million readings (drawn).
     double outlier_sigma = 9.0;
-    // By how much the median reading of white noise differs from what its neighbours say (drawn).
+    // By how much the median reading of white noise differs from its neighbours' prediction
+    // (drawn).
     double usual_surprise = 0.93;
     // Readings of a channel, to have neighbours on both sides.
     size_t min_neighbourhood = 5;
@@ -54,15 +55,15 @@ struct Thresholds {
     double excess_unknown = 1e9;
   } noise;
 
-  // Of a fit: χ² per sample beyond which its derivatives say little, because the prediction is
-  // elsewhere. Score tests are trusted below it, and starts are made anew above it. Their forecast
+  // Of a fit: χ² per sample beyond which its derivatives are useless, because the prediction is
+  // elsewhere. Score tests are trusted below it, and starts are recomputed above it. Their forecast
   // of a gain is within 5 % where it is near 1 (tests/diagnosis, Score).
   double diverged_chi2_per_sample = 20.0;
 
   // How patiently is fitted.
   struct Fitting {
     // Fractions of each recording that are fitted in turn, so that a start that is off grows into
-    // the whole instead of diverging: of the nominal model and of what was held out; of an
+    // the whole instead of diverging: of the nominal model and of the held-out data; of an
     // explanation whose parent diverged; of one recording more beside some that are fitted.
     std::vector<double> first_windows = {0.05, 0.2, 1.0};
     std::vector<double> diverged_windows = {0.06, 0.25, 1.0};
@@ -70,12 +71,12 @@ struct Thresholds {
     // Iterations of a fit: of a first try; of a second chance, enough to see whether it falls into
     // another local minimum; of a leader, which is to converge.
     int trial_iterations = 12, brief_iterations = 10, patient_iterations = 60;
-    // Fall of χ² in a step, as a fraction, that is too slow for what fits badly: the differences
+    // Fall of χ² in a step, as a fraction, that is too slow for a bad fit: the differences
     // between such leaders are thousands, and this is some tens.
     double creep = 5e-4;
     // χ² at a predicted start over that of the trial from which it was predicted.
     double max_start_growth = 10.0;
-    // Blocks into which recordings are averaged for what changes slowly: several times faster than
+    // Blocks into which recordings are averaged for slow changes: several times faster than
     // all, and fine enough for every slow law of the catalogue.
     size_t slow_blocks = 1000;
   } fitting;
@@ -92,9 +93,9 @@ struct Thresholds {
     double min_scan_gain = 14.0;
     // Of a candidate scored on all recordings, those held out among them, beyond one a parameter.
     double min_joint_gain = 14.0;
-    // To rank subsets, what each parameter costs: χ² of 95 % for one is 3.8.
+    // To rank subsets, the cost of each parameter: χ² of 95 % for one is 3.8.
     double cost_per_parameter = 4.0;
-    // Power of a line in the spectrum of what is left, noise having 1 in each of nine channels: a
+    // Power of a line in the spectrum of the residuals, noise having 1 in each of nine channels: a
     // sum of nine exponentials exceeds it once in 600,000 frequencies.
     double min_line_power = 30.0;
     // Of the best frequency's gain, for another to be worth a start.
@@ -110,7 +111,7 @@ struct Thresholds {
     // makes two explanations distinguishable: odds of 20 to 1.
     double min_log_evidence_gain = 3.0;
     // Pieces into which diverged recordings are cut, in turn; and complete readings that a piece
-    // needs to have a start of its own.
+    // needs for its own initial conditions.
     std::array<size_t, 4> pieces = {6, 20, 60, 180};
     size_t min_readings_of_piece = 10;
     // Fits to averages or pieces that are repeated on all readings.
@@ -123,12 +124,12 @@ struct Thresholds {
     // the best forecast within which a set is worth that.
     int max_rounds = 6;
     size_t max_fits_of_round = 6;
-    // Of sets without an empirical law, whatever is predicted of them, where the best has one.
+    // Of sets without an empirical law, with any predicted gain, where the best has one.
     size_t max_known_fits_of_round = 3;
     double forecast_within = 12.0;
   } search;
 
-  // The best of many, which are fitted with more patience.
+  // The best of many, which are fitted with more iterations.
   struct Leaders {
     size_t max_leaders = 6;
     // χ² of a near explanation is below this fraction of the best one's and so much more.
@@ -137,7 +138,7 @@ struct Thresholds {
     double worth_a_fit = 10.0;
   } leaders;
 
-  // Weighing with what was held out.
+  // Weighing with the held-out data.
   struct HeldOut {
     size_t max_leaders = 12;
     // Log evidence below the best, within which an explanation is a leader: odds of 3e6 to 1, which
@@ -155,23 +156,24 @@ struct Thresholds {
     // Logarithm of the prior odds: of one effect of the catalogue among some thirty, and of one
     // empirical law (1 : 150).
     double log_prior_effect = -3.4, log_prior_empirical = -5.0;
-    // Widths of the fit's own prior over those expected: keeps what the data do not determine from
+    // Widths of the fit's own prior over those expected: keeps undetermined parameters from
     // running away, no more.
     double fit_prior_widths = 300.0;
     // The width of the prior of an effect's strengths, over the expected one, is uniform in its
     // logarithm: so many steps of half a decade from 10^−6.
     int strength_widths = 19;
     double first_log10_width = -6.0, step_log10_width = 0.5;
-    // Standard deviation of the start of a candidate's own state in its unit (an appendage begins
+    // Standard deviation of the start of a candidate's own state in its unit (an appendage starts
     // near rest against the body).
     double own_state_sigma = 0.01;
   } evidence;
 
-  // What physics forbids.
+  // Limits beyond which physics forbids a trial.
   struct Objection {
     // Beyond a bound of physics: more than its standard error explains.
     double bound_sigma = 2.0;
-    // Change of a principal moment of inertia, as a fraction: nobody weighs a platform that badly.
+    // Largest change of a principal moment of inertia, as a fraction: platforms are weighed more
+    // accurately.
     double max_inertia_change = 0.4;
     // Periods of a tone within the longest recording: one that is slower stands in for any torque
     // that changes slowly.
@@ -180,7 +182,7 @@ struct Thresholds {
 
   // The verdict.
   struct Decision {
-    // Log evidence by which something must beat the nominal model before it is said: odds of 90 to
+    // Log evidence over the nominal model that an explanation needs to be reported: odds of 90 to
     // 1, on top of the prior odds against each name. An empirical law must beat the best physics by
     // as much.
     double min_log_odds = 4.5;
@@ -191,20 +193,20 @@ struct Thresholds {
     // Log evidence that a name may cost in predicting them: an effect that shows in the train runs
     // alone predicts nothing.
     double max_predictive_loss = 2.0;
-    // χ² of what was held out, as the fitted parameters alone predict it, over that without a name
-    // (or over noise), beyond which it is no name.
+    // χ² of the held-out data, as the fitted parameters alone predict them, over that without a
+    // name (or over noise), beyond which it is no name.
     double max_held_out_growth = 1.5;
     // Log evidence by which a law without a name needs the help of a known effect before that is
     // named: where the law is not quite right, an effect may take up what it leaves, and what it
     // can leave without being seen as structure is some tens.
     double min_log_odds_beside_law = 100.0;
-    // χ² of what was held out over that of the nominal model, for a law without a name to describe
+    // χ² of the held-out data over that of the nominal model, for a law without a name to describe
     // it.
     double max_held_out_fraction = 0.5;
-    // Distance of a nominal value from what was stated of it [sigma], to be doubted and to be
+    // Distance of a nominal value from its stated value [sigma], to be doubted and to be
     // contradicted.
     double doubtful_belief_sigma = 3.0, contradicted_belief_sigma = 5.0;
-    // Probability of the names, or of what is not told from them, to be said.
+    // Probability of the names, or of effects not distinguished from them, to be reported.
     double min_probability = 0.7;
     // Residual structure [sigma], before the best physics is called insufficient; and the
     // confidence, at least, that something unknown acts then.
@@ -213,20 +215,20 @@ struct Thresholds {
 
   // Names beside something that stays unexplained, which counts as noise.
   struct Discrepancy {
-    // Number of stretches into which all recordings are cut, about; standard errors by which each
+    // Number of segments into which all recordings are cut, about; standard errors by which each
     // name must predict them better than its absence; and those by which two explanations differ
     // (95 %).
     size_t stretches = 16;
     double min_sigma = 3.0, min_rival_sigma = 1.645;
-    // χ² of what was held out over that without the name, beyond which it is no name.
+    // χ² of the held-out data over that without the name, beyond which it is no name.
     double max_held_growth = 1.1;
-    // Explanations that are held against each other on the stretches: the likeliest, and those that
-    // predict best what was held out.
+    // Explanations that are compared on the segments: the most likely, and those that
+    // predict the held-out data best.
     size_t max_likeliest = 4, max_predicting = 3;
     // χ² per sample of a law without a name over that of known physics, below which the law is the
     // better description, however known physics stands out.
     double max_fraction_of_law = 0.25;
-    // Rounds in which what is left is counted as noise, and what stands out of it is looked for.
+    // Rounds in which the residual counts as noise, and effects that exceed it are searched for.
     int max_rounds = 4;
   } discrepancy;
 

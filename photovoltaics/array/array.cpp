@@ -17,7 +17,7 @@ namespace {
 
 constexpr int curve_intervals = 200;
 
-// What the cells get.
+// Light and photocurrent of the cells.
 struct CellLight {
   std::vector<double> incident_W;  // per cell
   std::vector<double> entering_W;  // counted as perpendicular light
@@ -50,8 +50,8 @@ struct PreparedArray {
   CellLight light(const LightBins& bins) const;
 };
 
-// Per cell and band, the fraction of the light that enters; of the whole array where the rays that
-// tell it missed a cell.
+// Per cell and band, the fraction of the light that enters; of the whole array where no sampled ray
+// met the cell.
 std::vector<double> entering_fraction(const CellCover& cover, size_t bands,
                                       std::span<const double> entry_W) {
   std::vector<double> fraction(cover.cells() * bands, 1.0);
@@ -181,7 +181,7 @@ double sum_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-// What gets a standard error.
+// Results with a standard error.
 struct Headline {
   enum Item {
     power,
@@ -379,7 +379,7 @@ CellCurrents cell_currents(const ArrayDesign& design, const ArrayLight& light,
     if (light.entry.bins > 0) others.entry_W = mean_without(r, light.entry, mean.entry_W);
     without.push_back(array.light(others));
   }
-  // Tukey's error, with what all replicates have in common.
+  // Tukey's error, with the part that all replicates share.
   const double count = replicates;
   const auto error = [&](const std::function<double(const CellLight&)>& of, double value) {
     double average = 0.0, squares = 0.0;

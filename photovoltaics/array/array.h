@@ -11,20 +11,20 @@
 
 namespace photorque {
 
-// What the array does in the light of a trace. Standard errors come from leaving out one replicate
+// Result of the array in the light of a trace. Standard errors come from leaving out one replicate
 // of the light after the other (Quenouille, Tukey), not from the powers of single replicates: a
 // single replicate's map is √R times noisier than their mean, and noise between cells in series
-// lowers the power, so single replicates are biased.
+// lowers the power, so that single replicates are biased.
 struct ArrayResult {
   Estimate power_W;  // at the maximum power point
   Estimate voltage_V;
   Estimate current_A;
   Estimate power_on_cells_W;  // light
-  // The light on the cells, weighed by what their front lets in at its angle over what it lets in
-  // at normal incidence.
+  // The light on the cells, weighted by the fraction that enters at its angle over the fraction
+  // that enters at normal incidence.
   Estimate power_entering_W;
   bool entry_known = false;      // false: all light counts as perpendicular, nothing is subtracted
-  Estimate sum_of_cells_W;       // every cell at its own maximum
+  Estimate sum_of_cells_W;       // sum of the cells' maximum powers
   Estimate efficiency;           // power_W / power_on_cells_W
   Estimate efficiency_of_cells;  // sum_of_cells_W / power_on_cells_W
   Estimate mismatch_loss;        // 1 − power_W / sum_of_cells_W: uneven light, and diodes
@@ -63,11 +63,11 @@ CellCurrents cell_currents(const ArrayDesign& design, const ArrayLight& light,
 // "pv"; maps of irradiance, photocurrent, operating voltage and operating power per cell.
 Product array_product(const ArrayResult& result);
 
-// Photocurrents of cells at `from_K`, at `to_K`: each by the slope of its own model.
+// Photocurrents of cells at `from_K`, at `to_K`: each by the slope of its model.
 std::vector<double> warmed(const ArrayDesign& design, std::vector<double> photocurrent_A,
                            double from_K, double to_K);
 
-// Photocurrents to curve: what evaluate_array() does in between. Cells of equal area share a table.
+// Photocurrents to curve, a step of evaluate_array(). Cells of equal area share a table.
 CellTables cell_tables(const ArrayDesign& design, std::span<const double> cell_area_m2,
                        double largest_photocurrent_A);
 

@@ -82,7 +82,7 @@ class PowerSurface {
   std::array<std::array<double, lights>, temperatures> power_W_{};
 };
 
-// One step of the battery; returns what of the load was served.
+// One step of the battery; returns the served part of the load.
 double step_battery(const Battery& battery, double surplus_W, double step_s, double* charge_J) {
   if (surplus_W >= 0.0) {
     *charge_J =
@@ -114,7 +114,7 @@ DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const Day
   if (design.heat) {
     plate.emplace(*design.heat, array.area_of_cells_m2);
     temperature_K = design.heat->start_K;
-    // Between the start and what the least and the most light could lead to.
+    // Between the start and the steady states of the least and the most light.
     const double absorptance = design.heat->absorptance;
     const double least =
         s.droop.min_light() * std::max(0.0, absorptance - 1.5 * array.efficiency.value);

@@ -42,7 +42,7 @@ struct DaySettings {
   bool lamps_on = true;
 };
 
-// The history, one entry per step and one for the start, and what it sums to.
+// The history, one entry per step and one for the start, and its sums.
 struct DayResult {
   std::vector<double> time_s, temperature_K, array_W, charge_J;
   double final_temperature_K = 0.0;

@@ -280,7 +280,7 @@ CellModel read_cell(const Settings& array) {
   return replaced(model, s, s.has(cell_key::reference_area));
 }
 
-// The same cell with its numbers stated for another area.
+// The model with its parameters stated for another area.
 CellModel stated_for(double area_m2, CellModel model) {
   model.reference = parameters_at(model, area_m2, model.reference.temperature_K);
   model.reference_area_m2 = area_m2;

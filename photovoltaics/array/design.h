@@ -1,4 +1,4 @@
-// What an experiment says about its solar array.
+// The solar array of an experiment.
 #pragma once
 
 #include <optional>
@@ -21,10 +21,10 @@ inline constexpr Range series_ohm_range{0.0, 1e6, false, false};
 struct CellOverride {
   int index = 0;
   CellModel model;
-  double photocurrent_factor = 1.0;  // of what its light would give
+  double photocurrent_factor = 1.0;  // of the photocurrent of its light
 };
 
-// The array on one receiver: where its cells lie, how they are wired, and what they are.
+// The array on one receiver: places, wiring and models of its cells.
 struct ArrayDesign {
   int columns = 0;                   // cells along u of the receiver's grid
   int rows = 0;                      // and along v; cell = row · columns + column
@@ -43,7 +43,7 @@ struct ArrayDesign {
   std::optional<CellFront> front;  // over the surface's own optics
 
   int cells() const { return columns * rows; }
-  // What differs of a cell; null where nothing does.
+  // The override of a cell; null where it has none.
   const CellOverride* override_of(size_t cell_index) const;
 };
 

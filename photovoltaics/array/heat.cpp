@@ -142,7 +142,7 @@ CellPlate::Step CellPlate::step(double from_K, double heating_W_m2, double step_
   Step step{from_K, 0.0};
   double left_s = step_s;
   for (int part = 1; left_s > 0.0; ++part) {
-    // Linear about where the part begins: exact for a linear loss.
+    // Linear about the start of the part: exact for a linear loss.
     const double loss = loss_W_m2(step.end_K), slope = loss_slope_W_m2_K(step.end_K);
     const double rest_W_m2 = heating_W_m2 - loss;
     const double longest_s = std::min(most_decay * heat_.capacity_J_m2_K / slope,

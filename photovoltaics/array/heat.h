@@ -35,7 +35,7 @@ struct CellHeat {
   double absorptance = 0.93;                     // α of the light that falls on the cells
   int faces = 2;                                 // n
   double capacity_J_m2_K = 2000.0;               // C: a cell with 1 mm of glass has about 2 kJ/m²K
-  double start_K = 293.15;                       // where a run over time begins
+  double start_K = 293.15;                       // at the start of a run over time
 
   // "both faces in still air of 293.15 K, emissivity 0.84"
   std::string in_words() const;

@@ -22,7 +22,7 @@ namespace photorque {
 // absorbed(θ)/ absorbed(0) of these; no second front may be laid over it.
 class IncidenceReceiver final : public Receiver {
  public:
-  // With `front`, every surface of the grid has it; without, each what its own optics say.
+  // With `front`, every surface of the grid has it; without, each has its own optics.
   // `wavelength_m` is the mean one of each band. InputError, under `where`, for a front over a
   // surface that has its own.
   IncidenceReceiver(const Scene& scene, const SurfaceGrid& grid,
@@ -31,7 +31,7 @@ class IncidenceReceiver final : public Receiver {
 
   size_t bins() const override { return 2 * half_; }
   void score(const Hits& hits, std::span<double> sums) const override;
-  // Nothing: what it is for is ArrayLight::entry.
+  // Nothing: its result is ArrayLight::entry.
   Product product(const BinSums&) const override { return {}; }
 
  private:

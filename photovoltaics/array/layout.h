@@ -29,9 +29,9 @@ struct LayoutResult {
 LayoutResult search_layout(const ArrayWiring& start, const CellTables& tables,
                            const AttitudeLights& lights, int64_t max_tried);
 
-// What no assignment of cells to strings can exceed: a power that no wiring of the shape of `shape`
-// reaches under a light (photocurrents of the cells): the sum of the cells' maxima or, for S ≥
-// 1 strings of n cells of one table each, a lower one:
+// Upper bound of the power of every wiring with the shape of `shape` under a light (photocurrents
+// of the cells): the sum of the cells' maxima or, for S ≥ 1 strings of n cells of one table each, a
+// lower one:
 //
 // At a current I a cell has a voltage v(I) that rises with its light, and a substring has Σv or
 // what its diode leaves, an increasing convex function of Σv. Of all ways to cut some cells into

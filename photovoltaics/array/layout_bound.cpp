@@ -152,7 +152,8 @@ double sorted_bound_W(const ArrayWiring& shape, const CellTables& tables,
                       const std::vector<double>& light_A) {
   const PieceShape piece = pieces_of(shape);
   std::vector<ArrayCurve> curves = brightest_in_series(shape, tables, light_A);
-  // What the drop that stands for none takes from the voltage.
+  // A drop of min_drop_V stands for diodes without drop. Its voltage is added again, so that the
+  // bound holds.
   const size_t count = all_cells(shape).size() / piece.size;
   const auto pieces = static_cast<double>(count);
   const double missing_V = piece.bypass.drop_V == min_drop_V ? pieces * min_drop_V : 0.0;

@@ -23,7 +23,7 @@ struct ArrayLight {
   BinSums entry = {};
 };
 
-// What a flux map received; and how the light enters.
+// The light that a flux map received; `entry`: the fraction that enters the cells.
 ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums,
                        const BinSums& entry = {});
 

@@ -9,7 +9,7 @@ namespace photorque {
 
 namespace {
 
-// What differs by the rounding of sums alone is no loss.
+// Differences within the rounding of sums are no loss.
 double without_rounding(double power_W, double next_W) {
   constexpr double rounding = 1e-12;
   return std::abs(power_W - next_W) < rounding * std::abs(next_W) ? next_W : power_W;

@@ -10,7 +10,7 @@
 
 namespace photorque {
 
-// What the trace and the devices around the array say.
+// Results of the trace and efficiencies of the devices around the array.
 struct LossInputs {
   double emitted_W = 0.0;                      // light that leaves the lamps' optics
   double on_receiver_W = 0.0;                  // of it on the whole receiver
@@ -23,9 +23,9 @@ struct LossInputs {
 };
 
 struct LossStage {
-  std::string name;      // what the power is
+  std::string name;      // of the power
   double power_W = 0.0;  // that is left
-  std::string loss;      // what took the difference to the stage before
+  std::string loss;      // cause of the difference to the previous stage
 };
 
 // From the plug, or from the light where the lamps' efficiency is not known, to the load. Powers
@@ -59,7 +59,7 @@ struct ArraySensitivity {
 };
 std::vector<ArraySensitivity> sensitivities(const ArrayDesign& design, const ArrayResult& array);
 
-// What a known cell makes of monochromatic light of an irradiance: EQE V_oc FF over photon_V.
+// Efficiency of a known cell in monochromatic light of an irradiance: EQE V_oc FF over photon_V.
 struct CellFigures {
   std::string name;
   double open_circuit_V = 0.0, fill_factor = 0.0;

@@ -168,7 +168,7 @@ void PowerSupply::step(double time_s, double step_s, const Light& light, bool ju
   warm(step_s);
 }
 
-// What converter, load and battery take of the power that the array can give.
+// Distributes the array's power to converter, load and battery.
 void PowerSupply::take(double time_s, double step_s, double potential_W) {
   const double efficiency = design_.converter_efficiency;
   if (!design_.battery) {

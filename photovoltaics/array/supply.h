@@ -3,7 +3,7 @@
 //
 //   light on the cells = reflected + electric + heat given off + stored in the cells
 //   electric           = lost in the converter + load + into the battery − out of the battery
-//   into · η − out / η' = change of what the battery holds
+//   into · η − out / η' = change of the battery's energy
 #pragma once
 
 #include <map>
@@ -47,12 +47,12 @@ class LampOutput {
   std::vector<Stage> stages_;
 };
 
-// What the power system is made of. The temperature of the cells follows array.heat.
+// Parts of the power system. The temperature of the cells follows array.heat.
 struct SupplyDesign {
   ArrayDesign array;
   std::vector<double> cell_area_m2;  // per cell of the wiring
   double max_photocurrent_A = 0.0;   // of any cell that will be asked for, at array.temperature_K
-  std::optional<Battery> battery = {};  // none: whatever the array can give is taken
+  std::optional<Battery> battery = {};  // none: all power of the array is taken
   double converter_efficiency = 1.0;    // between the array and battery and load, in (0, 1]
   double load_W = 0.0;                  // at the battery's terminals
   std::optional<Tracker> tracker = {};  // none: the best point at every step
@@ -73,21 +73,21 @@ class EnergySum {
   double sum_ = 0.0, lost_ = 0.0;
 };
 
-// Energies since the start [J], each added up by itself.
+// Energies since the start [J], each added up separately.
 struct SupplyEnergies {
   EnergySum on_cells;   // light
   EnergySum reflected;  // of it, by CellHeat::absorptance; 0 where the cells' temperature is stated
   EnergySum given_off;  // heat, by convection and radiation
   EnergySum array;      // electric, from the array
-  EnergySum best;       // what the array could have given at its best point
+  EnergySum best;       // the array's available energy at its best point
   EnergySum converter;  // lost there
   EnergySum load;       // served
-  EnergySum unserved;   // asked for by the load in vain
+  EnergySum unserved;   // of the load, without supply
   EnergySum into_battery, out_of_battery;  // at its terminals
   EnergySum battery_loss;
 };
 
-// The relative closure of each balance: what does not add up over what went through.
+// The relative closure of each balance: its error over the throughput.
 struct SupplyClosure {
   double cells = 0.0;  // 0 where the cells' temperature is stated
   double bus = 0.0;
@@ -121,7 +121,7 @@ class PowerSupply {
     double best_W = 0.0;     // at the best point of the array
     double voltage_V = 0.0;  // of the array, as the tracker has it
     double load_W = 0.0;     // served
-    double battery_W = 0.0;  // d/dt of what the battery holds
+    double battery_W = 0.0;  // d/dt of the battery's energy
     double light_W = 0.0;    // on the cells
   };
   const State& state() const { return state_; }

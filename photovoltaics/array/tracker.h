@@ -17,8 +17,8 @@ struct LightHistory {
   std::vector<double> at(double time_s) const;
 };
 
-// A tracker sees voltage and current of the array at one instant after the other and says which
-// voltage comes next. It knows nothing of the light.
+// A tracker measures voltage and current of the array at successive instants and sets the next
+// voltage.
 struct Tracker {
   enum class Kind {
     // Keep stepping while the power rises, else turn round.
@@ -35,7 +35,7 @@ struct Tracker {
   Kind kind = Kind::perturb_and_observe;
   double period_s = 0.1;        // between two decisions, > 0
   double step_fraction = 0.01;  // of the range of voltages
-  double start_fraction = 0.8;  // of the range, where all but the scanning kinds begin
+  double start_fraction = 0.8;  // of the range, the start of all but the scanning kinds
   int sweep_points = 40;        // of one sweep, one period each
   double sweep_every_s = 60.0;
   double rescan_fraction = 0.05;

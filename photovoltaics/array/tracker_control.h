@@ -25,7 +25,7 @@ class TrackerControl {
 
   double voltage_V() const { return voltage_V_; }
 
-  // What was measured at voltage_V(); decides the next one.
+  // Takes the measurement at voltage_V() and decides the next voltage.
   void observe(const ArrayPoint& now) {
     since_sweep_s_ += tracker_.period_s;
     if (sweep_point_ > 0) {
@@ -72,13 +72,13 @@ class TrackerControl {
       return;
     }
     if (change_W < 0.0) direction_ = -direction_;
-    // No current: beyond the open circuit, or in the dark. The light is found again from below.
+    // No current: beyond the open circuit, or in the dark. The search continues from below.
     if (now.current_A <= 0.0) direction_ = -1.0;
     move(direction_);
   }
 
   // The largest of three powers in a row is that at the maximum, wherever the steps around it fall.
-  // It is compared with what it was just after the last sweep.
+  // It is compared with its value just after the last sweep.
   bool light_changed(double power_W) {
     recent_W_[settled_ % 3] = power_W;
     const double max_W = *std::ranges::max_element(recent_W_);

@@ -67,7 +67,7 @@ class OmegaTable {
 
   static Piece piece(const End& a, const End& b) {
     const double h = b.L - a.L, a1 = h * a.slope, a2 = 0.5 * h * h * a.bend;
-    // What the parabola of one end leaves at the other.
+    // Differences of value, slope and curvature at b from the parabola of end a.
     const double p = b.y - a.y - a1 - a2, q = h * b.slope - a1 - 2.0 * a2,
                  r = 0.5 * h * h * b.bend - a2;
     return {a.L,

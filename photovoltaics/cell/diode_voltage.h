@@ -20,7 +20,7 @@ struct DiodeVoltage {
   double third_V_A3 = 0.0;      // d³V_d/dj³, good to 1e-3 of itself: for the speed of solutions
 };
 
-// What bounds over an interval need to know of one junction at each end.
+// State of one junction at an end of an interval, for bounds over the interval.
 struct JunctionState {
   double slope_ohm = 0.0;
   double curvature_V_A2 = 0.0;
@@ -83,7 +83,7 @@ double wright_log_omega(double L);
 // so that y is one function of one number, whatever the cell and its temperature: Wright's omega
 // function is e^y (R. Corless, D. Jeffrey, Lecture Notes in Computer Science 2385, 76 (2002)). Its
 // derivatives follow, y′ = 1/(1 + e^y), y″ = −e^y y′³, y‴ = e^y (2 e^y − 1) y′⁵. One table serves
-// all cells, so that a recording in which every row has a temperature of its own needs no other.
+// all cells, so that a recording in which every row has its own temperature needs no other.
 class OneDiode final : public DiodeVoltageLaw {
  public:
   explicit OneDiode(const CellCurve& curve);

@@ -25,7 +25,7 @@ constexpr NumbersKey transmittance("transmittance", Range::fraction(),
 constexpr FlagKey cosine_twice(
     "cosine_twice", false,
     "instead of all these, T = cos θ: the light on the cells, which holds the cosine already, "
-    "counts with it once more; for the paper's figures ([paper.md](paper.md)), not for cells");
+    "counts with it again; for the paper's figures ([paper.md](paper.md)), not for cells");
 }  // namespace cover_key
 
 // Amplitudes reflected on the way from a medium of index n and cosine c into another.
@@ -72,7 +72,7 @@ void read_front_table(const Settings& cover, CellFront& front) {
                       std::to_string(front.transmittance.size()) + " numbers",
                       std::to_string(front.angle_rad.size()) + ", one per angle");
   }
-  // Everything is measured by what goes straight in.
+  // Everything is relative to normal incidence.
   constexpr double least = 1e-3;
   if (front.transmittance[0] < least) {
     throw cover.error(cover_key::transmittance,

@@ -1,7 +1,9 @@
-// What the front of a cell lets in, by the angle of incidence.
+// Fraction of light that enters the front of a cell, by the angle of incidence.
 //
-// A cell's external quantum efficiency is measured in perpendicular light and holds the reflection
-// of that. What depends on the angle is a factor beside it, the incidence angle modifier
+// A cell's external quantum efficiency is measured in perpendicular light and includes the
+// reflection at normal incidence. The dependence on the angle is a separate factor, the incidence
+// angle modifier
+//   K(θ) = T(θ)/T(0),  T the fraction of the light that enters.
 //   K(θ) = T(θ)/T(0),  T the fraction of the light that enters.
 #pragma once
 

@@ -19,7 +19,7 @@ struct ConditionsFit {
   SingleDiode diode;  // of the first curve
   ShuntLaw shunt_law = ShuntLaw::constant;
   CellModel model;  // of the whole device, reference_area_m2 = 1, at the first temperature
-  double gap_error_eV = 0.0;  // 0: one temperature, which tells nothing of the gap
+  double gap_error_eV = 0.0;  // 0: one temperature, which does not determine the gap
   std::vector<BoundReached> bounds;
   std::vector<OutlierReading> outliers;  // left out
   struct Curve {

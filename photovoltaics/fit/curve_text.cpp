@@ -165,7 +165,7 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
   return words_of(line, " \t");
 }
 
-// Marks of a reading that is none: also what SCPI instruments write for overflow and no number.
+// Marks of a missing reading, also those of SCPI instruments for overflow and no number.
 bool is_missing(std::string_view cell) {
   const std::string text = lower(cell);
   for (const std::string_view mark : {"", "nan", "na", "n/a", "inf", "+inf", "-inf", "ol", "-ol",

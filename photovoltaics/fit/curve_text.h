@@ -29,7 +29,7 @@ struct MeasuredCurve {
 // begin with #, are skipped. The header names a voltage ("voltage_V", "Voltage (V)", "Volts", "V",
 // "U [mV]", "Spannung / V") and a current ("current_A", "Current (mA)", "Amps", "I"); it may name
 // an irradiance ("irradiance_W_m2", "G (W/m2)"), a temperature with its unit ("temperature_K",
-// "cell_temperature_K", "T (°C)"), and a column "sweep" or "curve" whose number tells the curves of
+// "cell_temperature_K", "T (°C)"), and a column "sweep" or "curve" that numbers the curves of
 // one file apart. Voltages and currents without a unit are V and A; a row below the header may
 // state the units instead. Currents that are negative in light are counted the other way round.
 //
@@ -42,7 +42,7 @@ std::vector<MeasuredCurve> curves_in(std::string_view text, const std::string& f
 // of points may stand beside), or names come from `columns`.
 bool is_curve_header(std::string_view line, const CurveColumns& columns = {});
 
-// What was left out of a curve because no cell gives it.
+// Points of a curve that are left out because no cell produces them.
 struct CurveCleaning {
   size_t clipped = 0;  // points beyond open circuit where the meter shows no current
   double clipped_from_V = 0.0, clipped_A = 0.0;  // their first voltage and their usual current

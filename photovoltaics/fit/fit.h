@@ -1,4 +1,4 @@
-// The parameters of a cell, module or shaded string from what was measured on it.
+// The parameters of a cell, module or shaded string from measurements.
 //
 // All fits are of one diode with the whole device as one cell: n V_t stands for n N_s kT/q of N_s
 // cells in series, resistances and voltages are the device's. Standard errors are those of least
@@ -36,15 +36,15 @@ struct SingleDiode {
   Estimate scale_V;  // n V_t
   Estimate series_ohm;
   Estimate shunt_ohm;
-  // Where the data do not tell the shunt from none at all, or the series resistance from zero:
-  // what they leave of it at 95 % (one-sided). The estimate above is then no measurement.
+  // Where the data do not exclude an infinite shunt, or a series resistance of zero: the one-sided
+  // limit at 95 %. The estimate above is then no measurement.
   std::optional<double> shunt_above_ohm = {};
   std::optional<double> series_below_ohm = {};
 
   CellParameters parameters(double temperature_K) const;
 };
 
-// A bound on which a fit ended: which figure, where the bound lies, and what it means.
+// A bound on which a fit ended: its figure, value and meaning.
 struct BoundReached {
   std::string key;
   double value = 0.0;
@@ -110,7 +110,7 @@ struct RatedTolerance {
 };
 
 // The steps in which figures are written: the last decimal that any current, or any voltage, has,
-// since figures of one kind are printed alike (22.0 is not to be told from 22).
+// since figures of one kind are printed alike (22.0 may be printed as 22).
 RatedTolerance written_steps(std::span<const RatedPoint> points);
 
 // How the shunt resistance changes with the light.
@@ -131,7 +131,7 @@ struct RatedFit {
   double other_rms = 0.0;       // under the other law of the shunt; 0 where it was not tried
   double rms_over_known = 0.0;  // root mean square of the same over how well each is known
 
-  // What the device gives under other conditions.
+  // Figures of the device under other conditions.
   RatedPoint predict(double irradiance_W_m2, double temperature_K) const;
 };
 

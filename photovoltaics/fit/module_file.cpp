@@ -28,7 +28,7 @@ class Listing {
   void set(const std::string& key, std::string_view text) { texts_.emplace(key, text); }
   bool has(const std::string& key) const { return texts_.contains(key); }
   std::string text(const std::string& key) const { return has(key) ? texts_.at(key) : ""; }
-  // Within the range of what a module can have.
+  // Within the range of real modules.
   double number(const std::string& key, double above, double below) const {
     if (!has(key)) {
       throw InputError(where_, key, "nothing",
@@ -78,7 +78,7 @@ std::string underscored(std::string_view name) {
   return result;
 }
 
-// A row of the library, and how well it is what was asked for.
+// A row of the library, and how well it matches the requested name.
 struct Row {
   std::vector<std::string> cells;
   int line = 0;

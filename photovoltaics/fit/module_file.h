@@ -8,7 +8,7 @@
 
 namespace photorque {
 
-// A module, the circuit of one of its cells, and what it is rated at.
+// A module, the circuit of one of its cells, and its ratings.
 struct ListedModule {
   std::string name;
   int cells_in_series = 1;
@@ -18,7 +18,7 @@ struct ListedModule {
   double photocurrent_A = 0.0;  // of a cell in the light of `rated`
   RatedPoint rated;
 
-  // What the circuit of all cells gives; the photocurrent is proportional to the light.
+  // Figures of the circuit of all cells; the photocurrent is proportional to the light.
   RatedPoint predict(double irradiance_W_m2, double temperature_K) const;
 };
 

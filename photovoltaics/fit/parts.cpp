@@ -154,7 +154,7 @@ std::optional<double> upper_limit(const inference::Fit& best,
   start << best.at.head(k), best.at.tail(best.at.size() - k - 1);
   VectorXd rest = start;
   const double at_lowest = held_chi2(all, residuals, k, lowest, rest);
-  // What is held there may fit better than what the fit found with all free.
+  // With the parameter at its lower bound, χ² may be lower than in the free fit.
   const double least = std::min(best.chi2, at_lowest);
   const double allowed = least + one_sided_95 * variance;
   if (!(at_lowest <= allowed)) return std::nullopt;
@@ -212,9 +212,9 @@ std::vector<BoundReached> bounds_reached(const inference::Fit& best,
 }
 
 std::vector<NamedBound> resistance_bounds(Index series, Index shunt) {
-  return {{series, "series_ohm", 1.0, "the fit wants no series resistance at all",
+  return {{series, "series_ohm", 1.0, "the fit has no series resistance",
            "the series resistance explains all of the curve: this is no lit cell"},
-          {shunt, "shunt_ohm", -1.0, "the fit wants no leak at all",
+          {shunt, "shunt_ohm", -1.0, "the fit has no leak",
            "the leak explains all of the curve: this is no lit cell"}};
 }
 

@@ -1,5 +1,5 @@
-// What the fits of fit.h share; and what data say of a number that they do not determine: how
-// large, or how small, it is at most.
+// Functions of the fits of fit.h: bounds and regression, and one-sided limits of parameters that
+// the data do not determine.
 #pragma once
 
 #include <Eigen/Core>
@@ -55,7 +55,7 @@ constexpr double most_resistance_part = 1e9;
 // Parameters of a fit that are logarithms of what vanishes in an ideal device: a series resistance,
 // or the conductance of a leak. Where the data exclude the lower bound of parameter `k` at 95 %
 // (one-sided), it is determined, and there is no limit. Otherwise the limit is where the profile of
-// χ² (all others fitted anew) has risen by 2.706 times the variance, the point that 5 % of a normal
+// χ² (all others refitted) has risen by 2.706 times the variance, the point that 5 % of a normal
 // distribution exceed (S. S. Wilks, Annals of Mathematical Statistics 9 (1938) 60); never past the
 // upper bound. `best`: the fit, whose parameters have finite bounds at k; `residuals`: what it
 // fitted; `variance` > 0: of a residual, 1 where residuals are over their noise.
@@ -67,20 +67,20 @@ std::optional<double> upper_limit(const inference::Fit& best,
 // `ohm`, V_oc/I_sc of the device.
 void bound_resistances(double ohm, inference::Parameter& series, inference::Parameter& shunt);
 
-// Sets the limits of `diode` where the fit determines its resistances not.
+// Sets the limits of `diode` where the fit does not determine its resistances.
 void limit_resistances(const inference::Fit& best, const inference::ResidualFunction& residuals,
                        Eigen::Index series, Eigen::Index shunt, double variance,
                        SingleDiode& diode);
 
-// A parameter's figure at a bound, and what it means that a fit ended there.
+// A parameter's figure at a bound, and the meaning of a fit that ended there.
 struct NamedBound {
   Eigen::Index parameter;
   std::string key;       // of the figure, which is e^(sign · parameter)
   double sign;           // 1 or −1
-  std::string at_least;  // what the parameter's lower bound means
+  std::string at_least;  // meaning of the parameter's lower bound
   std::string at_most;   // its upper one
 };
-// `first`: where the parameters begin in a point, after those of single runs.
+// `first`: index of the first parameter in a point, after those of single runs.
 std::vector<BoundReached> bounds_reached(const inference::Fit& best,
                                          std::span<const NamedBound> named, Eigen::Index first = 0);
 

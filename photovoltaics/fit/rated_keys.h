@@ -1,4 +1,4 @@
-// A maker's figures as an experiment has them, for whoever fits a cell or module to them.
+// Keys of a maker's figures, for fits of cells and modules.
 #pragma once
 
 #include <vector>

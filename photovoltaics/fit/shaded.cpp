@@ -18,7 +18,7 @@ using Eigen::Index, Eigen::VectorXd;
 // Logarithms of I₀, n V_t, R_s, 1/R_sh and the bypass diodes' drop; then of each photocurrent.
 enum Parameter { saturation, scale, series, shunt, drop, first_light };
 
-// Cells in series, each with a bypass diode of its own.
+// Cells in series, each with its own bypass diode.
 ArrayCurve string_curve(const CellParameters& cell, double bypass_drop_V,
                         const std::vector<double>& light_A) {
   ArrayWiring wiring{{{}}};

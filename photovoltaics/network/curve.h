@@ -1,6 +1,6 @@
 // The current–voltage curve of an array under given light, exactly.
 //
-// Between breakpoints (where an ideal bypass or blocking diode begins to conduct) the curve is a
+// Between breakpoints (where an ideal bypass or blocking diode starts to conduct) the curve is a
 // smooth function: one string is V(I), explicit through the cells' tables; several strings are
 // I(V), each string solved for its current. `x` is that independent variable, `y` the other one.
 //
@@ -111,7 +111,7 @@ class ArrayCurve {
   class Search;
   class Probe;
 
-  // Where a string's ideal diodes begin to conduct or block, in terms of x.
+  // Where a string's ideal diodes start to conduct or block, in terms of x.
   struct Switches {
     std::vector<double> clamp_x;  // per substring; ∞ without a clamp
     double blocked_x = 0.0;       // ∞ without one
@@ -123,7 +123,7 @@ class ArrayCurve {
   // piece at either side of x.
   void evaluate(double x, const std::vector<StringRegime>& regimes, Node& node, double tolerance,
                 const Node* low = nullptr, const Node* high = nullptr) const;
-  // Between which currents a string's lies; where the search begins goes to the node's state.
+  // Between which currents a string's lies; the start of the search goes to the node's state.
   struct CurrentGuess {
     double low_A, high_A;
   };
@@ -157,7 +157,7 @@ class ArrayCurve {
   Piece piece(double low_x, double high_x) const;
   ArrayPoint point(double x, double y) const;
 
-  CellTables tables_;  // keeps alive what the strings point to
+  CellTables tables_;  // the strings point into it
   std::vector<StringCurve> strings_;
   std::vector<FourStrings> fours_;  // of several strings, those that are alike
   std::vector<size_t> singles_;     // the others

@@ -42,7 +42,7 @@ double DiodeJunction::junction_V(double forward_V) const {
     const double step =
         (u + through_A * series_ohm - forward_V) / (1.0 + conductance_S(through_A) * series_ohm);
     u -= step;
-    // What is left is of second order in the step over n V_t.
+    // The remaining error is of second order in the step over n V_t.
     if (std::abs(step) <= 1e-9 * scale_V) break;
   }
   return u;

@@ -131,9 +131,8 @@ FourStrings::Point FourStrings::rows_at(const Quad& rows_A, const CellTargets& t
   return {value - rows_A * series_ohm_, {slope + series_ohm_, curvature, -third}};
 }
 
-// What flows backwards through the bypass diodes beside lit rows joins the current, in place of the
-// leak that was assumed: Newton's method as in DiodeJunction::junction_V(), as many rounds as small
-// diodes need.
+// Adds the reverse current of the bypass diodes beside lit rows, in place of the assumed leak:
+// Newton's method as in DiodeJunction::junction_V(), with as many rounds as small diodes need.
 bool FourStrings::add_bypass(Point& at, Quad& current_A, Quad& leak_A) const {
   constexpr int rounds = 2;
   const Quad& scale_V = bypass_scale_V_;
@@ -200,7 +199,7 @@ bool FourStrings::solve(double voltage_V, const Quad& low_A, const Quad& high_A,
   constexpr int max_rounds = 30;
   const QuadBits idle = open_circuit_V_ <= voltage_V;
   const Quad none{};
-  // What idle lanes had may be no number.
+  // Values of idle lanes may be NaN.
   Quad low = select(idle, none, low_A), high = select(idle, none, high_A);
   Quad current = select(idle, none, min(max(state.current_A, low), high));
   Quad leak = bypass_junctions_ ? -bypass_saturation_A_ : none;

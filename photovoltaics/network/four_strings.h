@@ -1,7 +1,7 @@
 // Four parallel strings at a time in vector registers: I of each at one voltage.
 //
-// The same equations as StringCurve::at_voltage() for strings that are cells of one table in series
-// with one bypass diode at most, between short and open circuit.
+// Solves the equations of StringCurve::at_voltage() for strings that are cells of one table in
+// series with one bypass diode at most, between short and open circuit.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// The maxima of ArrayCurve: isolation of the zeros of P′ by bounds, as curve.h tells.
+// The maxima of ArrayCurve: isolation of the zeros of P′ by bounds (curve.h).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -78,7 +78,7 @@ class ArrayCurve::Search {
       return;
     }
     if (!power_slope(low, high, range, second).hold_zero()) return;
-    // Two zeros closer than this cannot be told apart in double precision.
+    // Two zeros closer than this are not resolved in double precision.
     if (high.x - low.x <= 1e-12 * curve_.end_x_) {
       if (falls) refine(low, high, piece, depth);
       return;

@@ -93,7 +93,7 @@ std::vector<ArrayCurve::SlopedPoint> ArrayCurve::at_voltages(
         points.push_back({V, probe.at(V).y, probe.slope_S()});
         continue;
       }
-      // What the resistance takes lies between nothing and all.
+      // The voltage over the resistance lies between zero and the whole.
       const double other_x = V + series_ohm_ * probe.at(V).y;
       points.push_back(probe.at_voltage(V, std::min(V, other_x), std::max(V, other_x), V));
     }

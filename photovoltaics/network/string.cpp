@@ -103,8 +103,7 @@ void StringCurve::add_blocking(StringState& state) const {
   state.third_V_A3 -= 2.0 * bend * junction_ohm * blocking_.per_scale_1_V;
 }
 
-// Backwards through a blocking junction the current is below I_s; its voltage z is what is left
-// over.
+// Backwards through a blocking junction the current is below I_s; its voltage z is the remainder.
 void StringCurve::reverse_at_voltage(double voltage_V, const StringRegime& regime,
                                      StringState& state) const {
   ElementPoint sum;

@@ -78,16 +78,16 @@ class StringCurve {
 
   // The regime at a current ≥ 0.
   StringRegime regime_at(double current_A) const;
-  // Per part, the string's current at which an ideal bypass diode beside it begins to conduct; ∞
+  // Per part, the string's current at which an ideal bypass diode beside it starts to conduct; ∞
   // without one, and where the current never gets there.
   std::vector<double> clamp_currents_A() const;
   // The largest photocurrent: V ≤ 0 from this current on.
   double largest_photocurrent_A() const { return largest_photocurrent_A_; }
-  // Where a search for a current may begin when nothing is known.
+  // Start of a search for a current when nothing is known.
   double first_guess_A() const;
   // The voltage at no current behind the blocking diode's drop: above it a clamping diode blocks.
   double open_circuit_V() const { return open_circuit_V_; }
-  // What V does not fall below at any current; −∞ unless clamping diodes bypass all cells.
+  // Lower bound of V at any current; −∞ unless clamping diodes bypass all cells.
   double lowest_V() const;
   bool has_blocking_clamp() const { return blocking_.kind == Diode::Kind::clamp; }
   // Nothing for other strings. Points into this.
@@ -145,10 +145,10 @@ class StringCurve {
     double largest_A = 0.0;              // V ≤ 0 from this current on
     double light_A = 0.0;                // about the short-circuit current
     double open_circuit_V = 0.0;         // without the bypass diode
-    // Currents of this part: where its ideal diode begins to conduct; about where its junction
+    // Currents of this part: where its ideal diode starts to conduct; about where its junction
     // does.
     double own_clamp_A = unlimited, turn_on_A = unlimited;
-    double clamp_A = unlimited;  // of the string, where this part's ideal diode begins to conduct
+    double clamp_A = unlimited;  // of the string, where this part's ideal diode starts to conduct
     // Which voltage no current goes below, and the current that gets there.
     double lowest_V = -unlimited, lowest_A = unlimited;
     bool has_clamps = false;  // inside it
@@ -193,8 +193,8 @@ class StringCurve {
   static double bypass_guess_V(const Part& part, const StringState::Part& last, double current_A);
   ElementPoint substrings_at(double current_A, const StringRegime& regime, double tolerance,
                              StringState& state) const;
-  // At a voltage from 0 to open circuit of a string that is one substring beside a junction: what
-  // is left of the voltage at a current through its cells, whose point goes to `rows`; and the
+  // At a voltage from 0 to open circuit of a string that is one substring beside a junction: the
+  // remainder of the voltage at a current through its cells, whose point goes to `rows`; and the
   // whole.
   FunctionAt beside_junction(double rows_A, double voltage_V, const StringRegime& regime,
                              ElementPoint& rows, StringState& state) const;

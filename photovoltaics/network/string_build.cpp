@@ -1,4 +1,4 @@
-// A StringCurve from its wiring: cells in runs, and where its diodes begin to conduct.
+// A StringCurve from its wiring: cells in runs, and where its diodes start to conduct.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -136,7 +136,7 @@ void StringCurve::fill_part(uint32_t index, const std::vector<CellGroup>& member
   inner_.insert(inner_.end(), inside.begin(), inside.end());
 }
 
-// What a part needs to know of itself; the parts inside it are prepared.
+// Prepares the limits and clamps of a part. The parts inside it must be prepared already.
 void StringCurve::prepare_part(uint32_t index, StringState& state) {
   Part& part = parts_[index];
   for (const uint32_t p : inner(part)) {
@@ -195,7 +195,7 @@ void StringCurve::prepare_part(uint32_t index, StringState& state) {
   }
 }
 
-// From the current of the part at which its diode begins to conduct to that of the string, from one
+// From the current of the part at which its diode starts to conduct to that of the string, from one
 // part to the one that it lies in.
 void StringCurve::find_clamp(uint32_t index, StringState& state) {
   double current_A = parts_[index].own_clamp_A;

@@ -110,7 +110,7 @@ ElementPoint StringCurve::bypassed_at(uint32_t index, double current_A, const St
   const double highest_V = d.scale_V * std::log1p(std::max(current_A, 0.0) / d.saturation_A);
   const double u = falling_root(lowest_V, highest_V, bypass_guess_V(part, last, current_A),
                                 std::min(tolerance, 1e-2), shortfall_V);
-  // What was evaluated last lies a small step away.
+  // The last evaluation is one small step away from the root: a Taylor step corrects it.
   const double step_A = through_A - d.saturation_A * std::expm1(u * d.per_scale_1_V);
   through_A -= step_A;
   g = (through_A + d.saturation_A) * d.per_scale_1_V;
@@ -155,7 +155,7 @@ ElementPoint StringCurve::tied_at(uint32_t index, double current_A, const String
     return tied_nested_at(index, current_A, nullptr, state);
   }
   if (const uint32_t p = regime != nullptr ? holding_part(index, *regime) : nothing; p != nothing) {
-    // The part takes what the others leave.
+    // The part takes the remainder.
     const double voltage_V = part_at(p, parts_[p].light_A, regime, 1e-9, state).voltage_V;
     const double others_A = tied_A(index, voltage_V, regime, p, nullptr, state);
     return part_at(p, current_A - others_A, regime, 1e-9, state);
@@ -205,7 +205,7 @@ std::optional<ElementPoint> StringCurve::tied_together_at(uint32_t index, double
       branch_A[i] += apart_V / points[i].slope_ohm;
       spread_V = std::max(spread_V, std::abs(apart_V));
     }
-    // What is left is of second order in the spread over n V_t.
+    // The remaining error is of second order in the spread over n V_t.
     if (spread_V <= same_V) return tied_point(voltage_V, current);
   }
   return std::nullopt;

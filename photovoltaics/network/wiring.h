@@ -76,7 +76,7 @@ struct ArrayWiring {
 // and what lies in series in a string are its substrings.
 ArrayWiring wiring_of(const CellGroup& circuit, const Diode& blocking);
 
-// What differs from an array as it is wired.
+// Changes to an array as it is wired.
 struct ArrayChanges {
   double series_ohm = 0.0;     // ≥ 0, in series with the whole array
   double cell_offset_V = 0.0;  // added to the voltage of every cell

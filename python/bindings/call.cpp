@@ -23,13 +23,13 @@ struct Call::State {
   }
 
   // With the lock held: signals, then one call; what is raised ends the run.
-  template <class Told>
-  void tell(const Told& told) {
+  template <class Report>
+  void call_report(const Report& report) {
     try {
       if (raised || PyErr_CheckSignals() != 0) {
         if (!raised) raised.emplace();
       } else {
-        told();
+        report();
       }
     } catch (py::error_already_set& error) {
       raised.emplace(std::move(error));
@@ -62,7 +62,7 @@ Console Call::console() const {
     state->last = now;
     state->task = fraction < 1.0 ? what : std::string();
     const py::gil_scoped_acquire lock;
-    state->tell([&] {
+    state->call_report([&] {
       if (!state->progress.is_none()) state->progress(what, fraction);
     });
   };
@@ -76,7 +76,7 @@ Console Call::console() const {
   sinks.line = [state = state_.get(), is_caller](const std::string& text) {
     if (!is_caller()) return state->go_on();
     const py::gil_scoped_acquire lock;
-    state->tell([&] {
+    state->call_report([&] {
       if (!state->log.is_none()) state->log(text);
     });
   };

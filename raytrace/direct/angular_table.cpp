@@ -97,7 +97,7 @@ void AngularTable::normalise() {
   }
 }
 
-// Sums the table from the edge inwards: what lies outside an angle is then small and exact.
+// Sums the table from the edge inwards: the flux outside an angle is then small and exact.
 void AngularTable::find_angles(const std::vector<double>& edges_rad) {
   constexpr double negligible = 1e-9;
   double outside = 0.0, brightest = 0.0, steepest = 0.0;

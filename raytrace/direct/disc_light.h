@@ -82,9 +82,9 @@ class DiscLight {
   // height and a distance from it, such that E = −n_z A − n·p̂ B. Not for parallel light.
   Eigen::Array2d factors_W_m2(double distance_m, double height_m) const;
 
-  // Power through a flat polygon in the emitter's frame, whatever its inclination, nothing in
-  // between, every ray through the same side; ≥ 0 but for the error, which is estimated and aimed
-  // to be below `tolerance_W` (> 0). Not for parallel light.
+  // Power through a flat polygon in the emitter's frame at any inclination, nothing in between,
+  // every ray through the same side; ≥ 0 but for the error, which is estimated and aimed to be
+  // below `tolerance_W` (> 0). Not for parallel light.
   Integral<double> power_through_W(std::span<const Vec3> polygon_m, double tolerance_W) const;
 
   // The contribution of a side from one corner to the next to such a power, both in front of the

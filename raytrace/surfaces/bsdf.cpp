@@ -34,8 +34,8 @@ HitFrame plane_of_incidence(const Incidence& incidence) {
   return {x, z.cross(x), z};
 }
 
-// Any frame about the normal, for what is the same all round it. No square root.
-// Source: T. Duff et al., "Building an Orthonormal Basis, Revisited" (JCGT 6(1), 2017).
+// Any frame about the normal, for isotropic surfaces. No square root. Source: T. Duff et al.,
+// "Building an Orthonormal Basis, Revisited" (JCGT 6(1), 2017).
 HitFrame any_frame(const Vec3& n) {
   const double sign = std::copysign(1.0, n.z());
   const double a = -1.0 / (sign + n.z());
@@ -57,7 +57,8 @@ Vec3 mirrored(const Incidence& incidence) {
   return incidence.direction - 2.0 * incidence.direction.dot(n) * n;
 }
 
-// The component's own lobe; null for a mirror, Lambert's law and what goes straight on or back.
+// The component's own lobe; null for a mirror, Lambert's law and light that goes straight on or
+// back.
 const Lobe* lobe_of(const OpticalSurface& surface, Component component) {
   if (!surface.bsdf) return nullptr;
   if (component == Component::specular) return surface.bsdf->specular.get();

@@ -1,13 +1,13 @@
 // How a surface scatters light: its bidirectional scattering distribution function.
 //
-// An AlbedoLaw says how much of the power goes where, a Lobe in which directions. Both see a hit in
+// An AlbedoLaw divides the power between components, a Lobe between directions. Both see a hit in
 // its own frame: z is the normal on the lit side and x lies in the plane of incidence, so that
 // light comes from (sin θ, 0, cos θ) =: i and leaves along o. The scattering function is then
 //   f(i, o) = Σ fraction(cos θ_i) · density(cos θ_i, o) / o_z        [1/sr]
 // over the components that are not delta functions. A passive surface has f(i, o) = f(o, i).
 //
 // Every surface takes this way. A plain one has a constant albedo, a mirror as its specular and
-// Lambert's law as its diffuse component, and needs no Bsdf to say so.
+// Lambert's law as its diffuse component, and needs no Bsdf for it.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ struct Bsdf;
 //   diffuse     leaves on the side it came from, by Lambert's law
 //   transmitted goes straight on (a thin sheet, no refraction)
 // They are in [0, 1] and sum to 1 in every band. Rough, glazed, retroreflecting and re-emitting
-// surfaces have a BSDF, which says more; their fractions here are those at normal incidence.
+// surfaces have a BSDF, which is complete; their fractions here are those at normal incidence.
 struct OpticalSurface {
   std::string name;
   BandValues absorbed{};

@@ -27,7 +27,7 @@ struct Ggx {
   // G2/G1: the chance that light from i, reflected to o by a facet seen from i, gets away. Zero
   // below the horizon.
   double leaves(double cosine_in, double cosine_out) const;
-  // D G2/(4 cos θ_i): the density of o after one reflection, times what the facets reflect.
+  // D G2/(4 cos θ_i): the density of o after one reflection, times the reflectance of the facets.
   double once_reflected_1_sr(const Vec3& towards_light, const Vec3& out) const;
 
   // Of light from `cosine`, reflected once by facets that reflect `of_facet`(cosine at the facet):

@@ -1,5 +1,5 @@
-// Clear glass in front of a surface: reflection by Fresnel's law, and what the light behind it
-// does.
+// Clear glass in front of a surface: reflection by Fresnel's law, and the path that the light
+// behind it does.
 //
 // With R(θ) the unpolarised reflectance of the glass's front, which depends on the angle and on the
 // refractive index, the fractions of an OpticalSurface describe the base behind the glass:

@@ -67,7 +67,7 @@ struct MeasuredSurface {
   double asymmetry = 0.0;  // of the table, see ReciprocalBrdf
 };
 
-// The table times `scale` (> 0) per band; what is not reflected is absorbed.
+// The table times `scale` (> 0) per band; the rest of the light is absorbed.
 MeasuredSurface measured_surface(std::string name, const BrdfTable& table, const BandValues& scale);
 
 }  // namespace photorque

@@ -50,7 +50,7 @@ class RoughMirror final : public Lobe {
  private:
   double lost(double cosine) const { return std::max(0.0, 1.0 - once_(cosine)[0]); }
 
-  // The cumulated distribution of the cosine of what needs several reflections.
+  // The cumulated distribution of the cosine of light that needs several reflections.
   void tabulate_rest() {
     constexpr size_t steps = 512;
     double sum = 0.0, along = 0.0, before = 0.0;

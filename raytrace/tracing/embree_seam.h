@@ -1,4 +1,4 @@
-// The only source that knows which major version of Embree is installed: 3 (contexts) or 4
+// The only source that depends on the installed major version of Embree: 3 (contexts) or 4
 // (arguments). PHOTORQUE_EMBREE_MAJOR comes from CMake.
 #pragma once
 

@@ -10,7 +10,7 @@
 
 namespace photorque {
 
-// Hits under way to the receivers, with what the receivers need not know.
+// Hits on their way to the receivers, with data that the receivers do not need.
 struct HitBuffer {
   Hits hits;
   Hits::Column<uint32_t> sample;

@@ -16,7 +16,7 @@ namespace {
 using ComponentPowers = std::array<double, components.size()>;
 
 // The fractions of one hit: the surface's own where they are the same at every angle, which costs
-// no copy, else what its law says.
+// no copy, else the result of its law.
 class HitAlbedo {
  public:
   HitAlbedo(const OpticalSurface& surface, double cosine, int bands) {

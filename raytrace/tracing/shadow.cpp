@@ -114,9 +114,9 @@ Shaft::Shaft(const Ball& from, const Ball& to) : start_m_(from.centre_m) {
   // The cone about both balls; where one holds the other, the larger ball's cylinder.
   const double slope = length > 0.0 ? (to.radius_m - from.radius_m) / length : 1.0;
   if (std::abs(slope) < 0.7) {
-    const double stretch = 1.0 / std::sqrt(1.0 - slope * slope);
-    radius_m_ = from.radius_m * stretch;
-    widening_ = slope * stretch;
+    const double slant = 1.0 / std::sqrt(1.0 - slope * slope);
+    radius_m_ = from.radius_m * slant;
+    widening_ = slope * slant;
   } else {
     radius_m_ = std::max(from.radius_m, to.radius_m);
     widening_ = 0.0;

@@ -26,7 +26,7 @@ class Targets {
   static std::optional<Targets> of(const Emitter& emitter, const RigidTransform& body_from_emitter,
                                    const TraceableScene::Data& scene, uint64_t rays);
 
-  // Of the emitter's power: what is sent; the rest would meet nothing. In (0, 1).
+  // Fraction of the emitter's power that is sent; the rest would meet nothing. In (0, 1).
   double fraction() const { return fraction_; }
 
   // As Emitter::emit(), onto the cells alone. Changes dimension 2 of the samples.

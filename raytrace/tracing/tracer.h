@@ -63,7 +63,7 @@ struct TraceOptions {
 };
 
 // Where the power went. Sums over bands; emitted − absorbed − escaped − truncated is zero to 1e-12
-// of emitted, and `closure` says how well.
+// of emitted; `closure` is the deviation.
 struct PowerBalance {
   double emitted_W = 0.0;
   Estimate absorbed_W;

@@ -13,7 +13,7 @@
 namespace photorque {
 namespace {
 
-// Power as what a shadow ray brings.
+// Power as the quantity of a shadow ray.
 class SampledFlux {
  public:
   using Value = double;

@@ -64,7 +64,7 @@ Gathered gather_direct(const TraceableScene& scene, const RigidTransform& lab_fr
                        const GatherOptions& options);
 
 // With the force f per area of FirstContact (lamp.h), torques per bin are integrals of (r − p) × f
-// by the same rules as irradiance; what bounces is for rays.
+// by the same rules as irradiance; later bounces come from rays.
 
 // Whether gather_torque() applies: as can_gather(), for both sides, and surfaces whose fractions
 // are the same for every angle and that send light nowhere else.

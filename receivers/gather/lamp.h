@@ -14,8 +14,8 @@ namespace photorque {
 // The momentum that light of one spectrum leaves with one side of a surface where it first meets
 // it.
 //
-// Light brings the momentum of its directions and takes away that of what is reflected and passed
-// on (Lambert's law leaves 2/3 of E/c along the normal): with the irradiance E and the flow of
+// Light brings the momentum of its directions and takes away that of light reflected and passed on
+// (Lambert's law leaves 2/3 of E/c along the normal): with the irradiance E and the flow of
 // momentum V of raytrace/direct/disc_light.h, a plain surface takes up
 //
 //   c f = (1 − t) V − s (V − 2 (n·V) n) − ⅔ d E n,

@@ -19,7 +19,7 @@ class FluxEntries {
  public:
   FluxEntries(const GatherPlane& plane, const FluxMapReceiver& map) : plane_(plane), map_(map) {}
 
-  // Adds a power of a lamp, band by band, and what an instance's surface absorbs of it.
+  // Adds a power of a lamp, band by band, and the part that an instance's surface absorbs.
   void add(double power_W, const GatherLamp& lamp, size_t bin, uint32_t instance,
            std::span<double> entries) const;
 

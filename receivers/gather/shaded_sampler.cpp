@@ -24,7 +24,7 @@ Gathering::Gathering(const TraceableScene& scene, const RigidTransform& lab_from
   for (const auto& [emitter, light] : lights) {
     if (tables) make_table(*light, threads);
   }
-  // Of every lamp, what may shade any bin.
+  // The bodies that may shade any bin, for every lamp.
   std::vector<uint32_t> all(triangles_.size());
   std::iota(all.begin(), all.end(), 0u);
   std::vector<std::vector<uint32_t>> occluders(lamps_.size());

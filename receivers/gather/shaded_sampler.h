@@ -38,7 +38,7 @@ struct TileSight {
   std::vector<ShadedPair> shaded;  // likewise
 };
 
-// The surface, the lamps and what is between them, at one attitude.
+// The surface, the lamps and the bodies between them, at one attitude.
 class Gathering {
  public:
   static constexpr int tile_side = 16;  // bins
@@ -83,7 +83,7 @@ struct PlacedPatch {
   double fraction;  // of the bin's area
 };
 
-// Samples the light of one lamp on bins. A Quantity says what is wanted of it:
+// Samples the light of one lamp on bins. A Quantity states the result:
 //   using Value = …;  // a sum of rays' contributions
 //   Value of(const CandidateRay&, const GatherLamp&) const;
 //   void add(const Value&, const GatherLamp&, size_t bin, uint32_t instance,

@@ -28,7 +28,7 @@ Eigen::MatrixXd values_of(std::span<const TwofoldWrench> wrenches, size_t nodes)
   return values;
 }
 
-// Mean over the sphere of the product of what both halves have beyond the series.
+// Mean over the sphere of the product of both halves' remainders beyond the series.
 double unresolved(const Eigen::MatrixXd& rest, std::span<const double> elevation_rad,
                   Eigen::Index k) {
   double sum = 0.0, weights = 0.0;

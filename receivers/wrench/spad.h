@@ -14,7 +14,7 @@ namespace photorque {
 
 // The content of a file.
 struct SpadFile {
-  std::string system;  // what the table is of
+  std::string system;  // content of the table
   // Force and torque under light of 1 Pa pressure (so that 1 m² is 1 N): scale by the irradiance
   // over the speed of light. About the file's centre of mass, taken as metres: the format does not
   // name its unit.

@@ -32,7 +32,7 @@ class WrenchReceiver final : public Receiver {
   // On all chosen instances together, and on each of them.
   WrenchEstimate total(const BinSums& sums) const;
   std::vector<WrenchEstimate> by_part(const BinSums& sums) const;
-  // On all of them by direct light alone, and by what bounced.
+  // On all of them by direct light alone, and by bounced light.
   WrenchEstimate direct(const BinSums& sums) const;
   WrenchEstimate bounced(const BinSums& sums) const;
 

@@ -20,13 +20,13 @@ struct CadConventions {
   bool y_is_up = false;          // (x, y, z) is body (x, −z, y), as in glTF; else the body's own
 };
 
-// Units that `[scene] unit` takes, and what they are in metres; 0 for any other word.
+// Units that `[scene] unit` takes, in metres; 0 for any other word.
 double metres_of_unit(const std::string& unit);
 std::vector<std::string> cad_units();
 
 // Each part (part.h) is a node of its name. Its material is called as in the file; where the file
 // names none, as the file without folder and ending. Materials that the experiment does not
-// describe absorb half of the light and scatter the other half, and a notice says so. Throws
+// describe absorb half of the light and scatter the other half, with a notice. Throws
 // InputError as read_stl(), read_obj() and read_gltf() do.
 GltfModel read_cad(const std::filesystem::path& path, const CadConventions& conventions,
                    const GltfOptions& options = {});

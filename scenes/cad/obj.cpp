@@ -79,7 +79,7 @@ class ObjReader {
     return text;
   }
 
-  // x, y, z, then a weight or a colour, which say nothing here.
+  // x, y, z, then a weight or a colour, which are ignored.
   void read_vertex() {
     if (words_.size() < 4 || words_.size() > 8) {
       throw wrong("v", std::to_string(words_.size() - 1) + " values", "three");

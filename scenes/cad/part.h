@@ -19,7 +19,7 @@ struct Part {
   Mesh mesh;  // lengths in the file's unit, its axes
 };
 
-// Most that one file may hold, whatever its size says.
+// Most triangles of one file, independent of its size in bytes.
 inline constexpr size_t most_triangles = 50'000'000;
 
 // STL, as text or binary. Text: every `solid` is a part; binary: the whole is one. Corners at the

@@ -12,7 +12,7 @@
 namespace photorque {
 namespace {
 
-// Of light at 45°, by Fresnel, beyond what is lost at normal incidence.
+// Of light at 45°, by Fresnel, beyond the loss at normal incidence.
 double slant_loss(double index) {
   CellFront front;
   front.index = index;

@@ -34,14 +34,14 @@ struct EffectParameter {
   // False: no strength. It means nothing without the others and is looked for over `starts`.
   bool is_strength = true;
   std::vector<double> starts = {};
-  bool is_fitted = true;  // false: what a scan of the recording finds stays as it is
+  bool is_fitted = true;  // false: the value of a scan of the recording is kept
   double step = 0.0;      // of the differences that give derivatives; 0: a fiftieth of the scale
 };
 
 struct LightEffectKind {
   std::string name;
   std::string explanation;  // a sentence of physics without a full stop
-  // `frame`: 0 what is fixed in the lab, 1 what is fixed on the body.
+  // `frame`: 0 fixed in the lab, 1 fixed on the body.
   enum class Index { none, lamp, cell, string, bypass, wall, frame };
   Index index = Index::none;
   std::vector<EffectParameter> parameters;
@@ -51,7 +51,7 @@ struct LightEffectKind {
   bool in_circuit = false;
   // Whether a trace of the experiment shows it.
   bool is_traced = false;
-  // How the recordings say where to start what is not linear.
+  // How starts of nonlinear parameters follow from the recordings.
   enum class Scan { none, shadow, trapped, wave };
   Scan scan = Scan::none;
   // Writes x into the state; `x` holds all parameters' numbers in order.

@@ -12,7 +12,7 @@
 
 namespace photorque {
 
-// An opaque box. It dims what passes by `opacity`, 1 where it is really opaque.
+// An opaque box. It dims passing light by `opacity`, 1 where it is fully opaque.
 struct ShadowBox {
   bool on_body = false;  // its axes and corners are those of the body; otherwise of the lab
   Vec3 low_m = Vec3::Zero(), high_m = Vec3::Zero();

@@ -65,7 +65,7 @@ void require_traceable(const Settings& source, const Beam& beam) {
 // A sun sends its rays over a disc about the body's origin that holds the scene at any attitude.
 void require_sunlight_to_land(const ExperimentFile& file, const Scene& scene,
                               const std::vector<Beam>& beams) {
-  constexpr double most = 100.0;  // one ray of 10,000 lands, and errors are still what they say
+  constexpr double most = 100.0;  // one ray of 10,000 lands, and errors are still correct
   if (std::ranges::none_of(beams, [](const Beam& beam) {
         return beam.aperture && std::isinf(beam.aperture->radius_m);
       })) {

@@ -64,7 +64,7 @@ struct Camera {
   int width = 1280;                // pixels
   int height = 960;
   bool lamps = true;    // lamps and some of their rays are drawn
-  bool placed = false;  // the experiment says where it stands
+  bool placed = false;  // the experiment states its place
 };
 
 // The camera that shows a whole scene of `radius_m` about the lab origin: from the south-east and
@@ -119,7 +119,7 @@ ExperimentFile read_experiment_file(const std::filesystem::path& path,
 ExperimentFile read_experiment_text(const std::filesystem::path& path, const std::string& text,
                                     std::span<const std::string> overrides = {});
 
-// A receiver and what the experiment calls it.
+// A receiver and its name in the experiment.
 struct NamedReceiver : MadeReceiver {
   std::string name;  // the key `name`, else the node, else the kind
   std::string kind;
@@ -133,7 +133,7 @@ struct Experiment {
   std::vector<NamedReceiver> receivers;
   RigidTransform lab_from_body;  // from [attitude]
   Camera camera;
-  std::vector<std::string> notices;  // what the scene's reader had to assume, one line each
+  std::vector<std::string> notices;  // assumptions of the scene's reader, one line each
   // Doubts about results, one line each: see doubts_about().
   std::vector<std::string> warnings = {};
   std::vector<std::pair<std::string, std::string>> inputs;  // experiment, overrides, scene files
@@ -141,9 +141,9 @@ struct Experiment {
   std::vector<const Receiver*> receiver_pointers() const;
 };
 
-// Loads what the file names. Throws InputError for: no [scene], a scene without triangles, no
-// source, a source whose spectrum leaves the bands, a receiver on a node that does not exist, and
-// every key that was not read; for textures without a `picture` reader too.
+// Loads the parts that the file names. Throws InputError for: no [scene], a scene without
+// triangles, no source, a source whose spectrum leaves the bands, a receiver on a node that does
+// not exist, and every key that was not read; for textures without a `picture` reader too.
 Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture = {});
 
 // read_experiment_file() and resolve_experiment().

@@ -167,7 +167,7 @@ std::optional<DirectionGrid> read_light_directions(const Settings& root) {
 void require_model(const Settings& scene, const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) {
-    if (!scene.has("unit") && !scene.has(scene_key::up)) return;  // its reader says so
+    if (!scene.has("unit") && !scene.has(scene_key::up)) return;  // its reader reports it
     throw scene.error(scene_key::file, "no file " + file.string(),
                       "a model (glTF, GLB, STL or OBJ)");
   }
@@ -178,7 +178,7 @@ void require_model(const Settings& scene, const std::filesystem::path& file) {
                     "a model that ends in .gltf, .glb, .stl or .obj");
 }
 
-// Of an STL or OBJ file, which says neither; a glTF file does.
+// Of an STL or OBJ file, which states neither; a glTF file does.
 std::optional<CadConventions> read_cad_conventions(const Settings& scene,
                                                    const std::filesystem::path& file) {
   if (!cad_format(file)) {

@@ -40,7 +40,8 @@ class GeometryReader {
   std::vector<uint32_t> corners(const tinygltf::Primitive& primitive, size_t vertex_count,
                                 const std::string& where);
 
-  // Appends what is not degenerate to `result`, renumbering vertices; returns the vertices used.
+  // Appends triangles that are not degenerate to `result`, renumbering vertices; returns the
+  // vertices used.
   std::vector<uint32_t> add_triangles(const std::vector<Triangle>& triangles,
                                       const Vertices& vertices, PrimitiveMesh* result);
 

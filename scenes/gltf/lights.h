@@ -2,7 +2,7 @@
 // the photometric file of their shape (EXT_lights_ies).
 //
 // Their intensity is for pictures (candela, lux) and is not read: what a lamp radiates, and at
-// which wavelength, the experiment says.
+// which wavelength, the experiment states.
 #pragma once
 
 #include <filesystem>

@@ -65,7 +65,7 @@ OpticalSurface derived_surface(nlohmann::json material, const std::array<double,
 using UvTransform = Eigen::Affine2d;
 std::optional<UvTransform> uv_transform(const Document& document, int material);
 
-// Whether a texture would change what derived_surface() takes from the factors alone.
+// Whether a texture would change the result of derived_surface() from the factors alone.
 bool has_ignored_texture(const nlohmann::json& material);
 
 // The tree that core/settings reads, from JSON. InputError for null, which settings do not know.

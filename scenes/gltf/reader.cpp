@@ -291,7 +291,7 @@ class Assembly {
 
   // Materials of the same name and values are common; one line names them all.
   void add_notice(const std::string& line) {
-    if (told_.insert(line).second) model_.notices.push_back(line);
+    if (reported_.insert(line).second) model_.notices.push_back(line);
   }
 
   bool has_texture(int material) const {
@@ -332,7 +332,7 @@ class Assembly {
   const GltfOptions& options_;
   MemoryBudget* budget_;
   gltf::GeometryReader geometry_;
-  GltfModel model_;  // before what reads files into it
+  GltfModel model_;  // before the members that read files into it
   const GltfOpen& open_;
   SurfaceFiles beside_model_;
   gltf::MaterialOverrides overrides_;
@@ -340,7 +340,7 @@ class Assembly {
   std::vector<double> radii_;          // of each mesh about its own origin
   std::map<int, size_t> materials_;    // index in the file → in model_.materials
   std::vector<int> material_indices_;  // of each instance, in the file
-  std::set<std::string> told_;
+  std::set<std::string> reported_;
   size_t degenerate_ = 0;
   size_t without_triangles_ = 0;
 };

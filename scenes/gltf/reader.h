@@ -58,7 +58,7 @@ struct GltfOptions {
   Vec3 origin_m = Vec3::Zero();
   // Links and paths out of the model's folder are followed.
   bool may_leave_folder = false;
-  // Most memory that the files, and what is made of them, may take.
+  // Most memory that the files, and the data made of them, may take.
   uint64_t largest_bytes = 4ull << 30;
 };
 
@@ -70,7 +70,7 @@ struct GltfMaterial {
   std::string name;  // empty: primitives without a material, or a material without a name
   uint32_t front_surface = 0;
   uint32_t back_surface = 0;
-  bool double_sided = false;  // as the file says; recorded, without effect
+  bool double_sided = false;  // as in the file; recorded, without effect
   OpticsOrigin origin = OpticsOrigin::derived;
 };
 

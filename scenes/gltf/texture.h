@@ -2,7 +2,7 @@
 //
 // The tracer knows surfaces by the triangle. The picture's mean over each triangle takes the place
 // of one colour for all, in 32 steps of luminance; within a step every triangle has the mean of
-// the step, weighed by area, so that what a model absorbs in even light is kept.
+// the step, weighted by area, so that the absorbed fraction of even light is unchanged.
 #pragma once
 
 #include <string>

@@ -11,7 +11,7 @@
 
 namespace photorque {
 
-// How a material looks (glTF's metallic-roughness model) and what it does with light.
+// The appearance of a material (glTF's metallic-roughness model) and its optical properties.
 struct GltfWriterMaterial {
   std::string name;
   Vec3 base_colour = Vec3::Constant(0.5);  // linear RGB in [0, 1]

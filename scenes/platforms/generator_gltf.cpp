@@ -8,7 +8,7 @@ namespace photorque {
 namespace {
 
 SettingsNode node_of(double number) {
-  // Six digits say all that is known of a mass, and do not depend on the mathematical library.
+  // Six digits suffice for a mass, and do not depend on the mathematical library.
   std::ostringstream text;
   text.precision(6);
   text << number;

@@ -1,4 +1,4 @@
-// Triangle meshes of simple solids, and what they weigh.
+// Triangle meshes of simple solids, and their masses.
 //
 // Every solid is watertight with shared vertices (each edge belongs to exactly two triangles, once
 // in each direction) and its normals point outwards. Circles become polygons of the same area, so

@@ -26,7 +26,7 @@ using SurfaceFiles = std::function<std::optional<std::string>(const std::string&
 // each a fraction in [0, 1], one number for all bands or an array with one per band (`bands` of
 // them, at most max_bands). They sum to 1 in every band, the last being 0 when left out:
 //   all of the first four given   the sum is checked to 1e-9;
-//   one left out                  it is what remains;
+//   one left out                  it is the remainder;
 //   more left out                 they are zero, if the others sum to 1; else an error.
 // The fractions returned sum to 1 to rounding. Further keys, all optional:
 //   roughness            (0, 1], as in glTF: the specular fraction leaves by rough_mirror() of

@@ -29,7 +29,7 @@ class DiscLamp : public Emitter {
 // The emitting area inside a lamp.
 struct Die {
   double area_m2 = 0.0;
-  double index = 1.0;  // refractive index of what surrounds it: 1 bare, 1.4–1.5 in a dome
+  double index = 1.0;  // refractive index around it: 1 bare, 1.4–1.5 in a dome
 };
 
 // No lossless optics makes light brighter than its source: a Lambertian die in a medium of index n

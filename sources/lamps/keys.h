@@ -17,7 +17,7 @@ inline constexpr double usual_led_width_m = 20e-9;  // spectral_fwhm_nm of LEDs
 namespace source_key {
 inline constexpr TextKey name("name", "name in results and messages");  // the kind by default
 inline constexpr NumberKey power("power_W", Range::positive(), "radiant power");
-// Each kind says of what.
+// Each kind states its quantity.
 inline constexpr Vec3Key position("position_m", "of the lamp, lab axes");
 inline constexpr Vec3Key direction("direction",
                                    "direction of the beam, lab axes, any length; or `aim_m`",

@@ -32,7 +32,7 @@ struct SourceContext {
 struct SourceKind {
   std::string name;
   std::string summary;  // one sentence, no full stop
-  // Beams in the lab frame, at least one. Reads every key it knows; throws InputError.
+  // Beams in the lab frame, at least one. Reads all of its keys; throws InputError.
   std::function<std::vector<Beam>(const Settings&, const SourceContext&)> make;
   // Keys of a typical source of this kind. The laws that every source obeys are tested on it.
   SettingsNode::Table example;

@@ -111,7 +111,7 @@ std::vector<Vec3> hexagonal(int64_t count, double pitch_m) {
   for (int q = -rings; q <= rings; ++q) {
     for (int r = std::max(-rings, -q - rings); r <= std::min(rings, rings - q); ++r) {
       const Vec3 at_m(pitch_m * (q + 0.5 * r), pitch_m * (0.5 * std::sqrt(3.0)) * r, 0.0);
-      // From +x on, as rings are counted; what is +x but for rounding comes first.
+      // From +x on, as rings are counted; +x with rounding errors comes first.
       constexpr double rounding = 1e-9;
       const double azimuth = std::atan2(at_m.y(), at_m.x());
       sites.push_back({std::max({std::abs(q), std::abs(r), std::abs(q + r)}), q * q + q * r + r * r,
@@ -247,7 +247,7 @@ class ScaledEmitter final : public Emitter {
   double factor_;
 };
 
-// How the LEDs of one panel differ from what they are said to be. Normal draws, by Box and Muller,
+// Deviations of the LEDs of one panel from their stated values. Normal draws, by Box and Muller,
 // that belong to seed and LED: panels of different layouts are built from the same LEDs.
 class Spread {
  public:

@@ -11,7 +11,7 @@
 //   turn_deg = 0                 # about the beam, right-handed about its direction
 //
 // The fluxes of the rays are scaled to the power: their sum is often of another scale than the flux
-// that the file states, which is said.
+// that the file states, which is reported.
 #include "sources/lamps/ray_file.h"
 
 #include <algorithm>

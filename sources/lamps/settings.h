@@ -1,4 +1,4 @@
-// The keys that several kinds of source share, and what those that are read from a file do.
+// The keys that several kinds of source share, and the effect of those read from a file.
 #pragma once
 
 #include <memory>

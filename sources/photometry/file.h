@@ -32,16 +32,16 @@ struct PhotometricFile {
   std::optional<double> stated_flux_lm;  // nothing: absolute photometry
   double input_power_W = 0.0;            // electrical; 0: not stated
   Opening opening;
-  std::vector<std::string> notices;  // what was passed over or repaired, one line each
+  std::vector<std::string> notices;  // parts that were ignored or repaired, one line each
 };
 
 // LM-63 of 1986, 1991, 1995, 2002 and 2019. Types A, B and C; symmetric tables are unfolded to all
 // planes. TILT factors say how a lamp dims in a tilted luminaire, not how it shines: they are
 // checked and passed over with a notice. `name` is how messages call the file. InputError with the
-// line of what is wrong.
+// line of the error.
 PhotometricFile read_ies(const std::string& bytes, const std::string& name);
 
-// Whether these are the lines of such a file: its first says so, or there is a line "TILT=".
+// Whether these are the lines of such a file, by its first line or by a line "TILT=".
 bool looks_like_ies(const std::vector<std::string_view>& lines);
 
 // EULUMDAT (.ldt); symmetries 0 to 4 are unfolded, cd/klm become cd with the stated lamp flux.
@@ -49,7 +49,7 @@ PhotometricFile read_eulumdat(const std::string& bytes, const std::string& name)
 
 // IES TM-33 (ATLA S001): radiant, photon or luminous intensity of one emitter on a grid of
 // directions, types A, B and C; the first of these that the file has. TiltAngles are passed over
-// with a notice. InputError with the line of what is wrong.
+// with a notice. InputError with the line of the error.
 PhotometricFile read_tm33(const std::string& bytes, const std::string& name);
 
 // Whichever of them the text is.

@@ -1,4 +1,4 @@
-// Numbers in binary files, little-endian whatever the machine.
+// Numbers in binary files, little-endian on any machine.
 #pragma once
 
 #include <bit>

@@ -20,7 +20,7 @@ struct RaySet {
   enum class FluxUnit { watt, lumen };
 
   std::string format;  // "TM-25-13", "Zemax", "LightTools"
-  std::string name;    // what the file calls the lamp, may be empty
+  std::string name;    // name of the lamp in the file, may be empty
   FluxUnit flux_unit = FluxUnit::watt;
   std::optional<double> stated_radiant_flux_W;
   std::optional<double> stated_luminous_flux_lm;
@@ -31,8 +31,8 @@ struct RaySet {
 };
 
 // Each reader takes the bytes of a file and how messages call it. Sizes are checked against the
-// bytes before anything is allocated. InputError for what is not such a file, truncated, or holds a
-// ray without direction, with a negative flux or with a number that is not finite.
+// bytes before anything is allocated. InputError for a file that is of another type, truncated, or
+// holds a ray without direction, with a negative flux or with a number that is not finite.
 
 // IES TM-25-13 (.tm25ray). Polarisation and colour of single rays are passed over.
 RaySet read_tm25(const std::string& bytes, const std::string& name);
@@ -47,7 +47,7 @@ RaySet read_lighttools_rays(const std::string& bytes, const std::string& name);
 RaySet read_rays(const std::string& bytes, const std::string& name);
 
 // The bytes of a TM-25-13 file. Numbers are rounded to single precision, as the format has them;
-// what read_tm25() gave comes back the same.
+// the result of read_tm25() comes back unchanged.
 std::string write_tm25(const RaySet& set);
 
 // Checks that the readers share:

@@ -58,7 +58,7 @@ double child_number_or(const XmlText& text, const pugi::xml_node& node, const ch
   return child ? number_of(text, child, key, child.child_value()) : other;
 }
 
-// The kinds of intensity that the standard knows, the one nearest to watts first.
+// The kinds of intensity in the standard, the one nearest to watts first.
 struct IntensityKind {
   const char *data, *intensity, *words;
 };

@@ -81,7 +81,7 @@ PlaneSampler::PlaneSampler(const std::vector<RadialPiece>& pieces) {
   if (flux_ > 0.0) index_cells();
 }
 
-// From cells that hold their own flux in place of what lies before them.
+// From cells that hold their own flux in place of the flux before them.
 void PlaneSampler::index_cells() {
   double before = 0.0;
   for (Cell& cell : cells_) {
@@ -101,7 +101,7 @@ void PlaneSampler::index_cells() {
   }
 }
 
-// Leaves the cell's own flux in place of what lies before it.
+// Leaves the cell's own flux in place of the flux before it.
 template <typename Intensity>
 void PlaneSampler::add(const Intensity& curve, double low_rad, double high_rad, double plane_flux,
                        int depth) {

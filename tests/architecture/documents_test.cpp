@@ -27,7 +27,7 @@ std::vector<std::string> matches(const std::string& text, const std::regex& patt
   return all;
 }
 
-// Every file and folder of the tree from the top, without what builds and runs leave there.
+// Every file and folder of the tree from the top, without files of builds and runs.
 const std::set<std::string>& tree() {
   static const std::set<std::string> all = [] {
     std::set<std::string> paths;
@@ -141,9 +141,9 @@ TEST(Documents, CommandsExistAndEachHasARow) {
     }
   }
   const std::vector<std::string> rows = matches(text_of(root / "docs/verbs.md"), row, 1);
-  const std::set<std::string> told(rows.begin(), rows.end());
+  const std::set<std::string> listed(rows.begin(), rows.end());
   for (const std::string& verb : verbs)
-    EXPECT_TRUE(told.contains(verb)) << "docs/verbs.md: " << verb;
+    EXPECT_TRUE(listed.contains(verb)) << "docs/verbs.md: " << verb;
 }
 
 TEST(Documents, EveryKindIsInItsTable) {
@@ -341,7 +341,7 @@ TEST(Words, PhrasesAreFoundInCommentsStringsAndDocuments) {
             (std::vector<std::string>{" One", " Three"}));
 }
 
-// Prose of a document: paragraphs and items of lists, without tables, code and what commands write.
+// Prose of a document: paragraphs and items of lists, without tables, code and generated text.
 std::vector<std::string> paragraphs_of(const std::string& document) {
   static const std::regex item(R"(^\s*([-*]|\d+\.) )");
   std::istringstream lines(prose_of_document(document));

@@ -1,4 +1,4 @@
-// Only its own file names a kind of disturbance: others ask for what is known of it.
+// Only its own file names a kind of disturbance: others use its properties.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -78,7 +78,7 @@ TEST(KindNames, StandInTheKindsOwnFileAlone) {
     for (const auto& entry : fs::recursive_directory_iterator(source_root / folder)) {
       const std::string file = fs::relative(entry.path(), source_root).generic_string();
       const fs::path extension = entry.path().extension();
-      // A benchmark runs what it always ran.
+      // A benchmark keeps its cases.
       if ((extension != ".h" && extension != ".cpp") || file.starts_with("tools/benchmarks/")) {
         continue;
       }

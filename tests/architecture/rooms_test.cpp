@@ -331,10 +331,10 @@ std::map<std::string, Interface> interfaces_of_the_page() {
   const std::string page = text_of(root / "ARCHITECTURE.md");
   for (std::sregex_iterator it(page.begin(), page.end(), row), end; it != end; ++it) {
     const std::string cell = (*it)[2];
-    Interface& told = interfaces[(*it)[1]];
-    told.header = (*it)[3];
+    Interface& listed = interfaces[(*it)[1]];
+    listed.header = (*it)[3];
     for (std::sregex_iterator f(cell.begin(), cell.end(), name); f != end; ++f) {
-      told.functions.push_back((*f)[1]);
+      listed.functions.push_back((*f)[1]);
     }
   }
   return interfaces;
@@ -349,7 +349,7 @@ TEST(Rooms, InterfacesAreThoseOfThePageWithAtMostThreeVirtualFunctions) {
     EXPECT_EQ(page.at(name).header, found.header) << name;
     EXPECT_EQ(page.at(name).functions, found.functions) << name;
   }
-  for (const auto& [name, told] : page) {
+  for (const auto& [name, listed] : page) {
     EXPECT_TRUE(sources.contains(name)) << name << " of ARCHITECTURE.md has no virtual function";
   }
 }

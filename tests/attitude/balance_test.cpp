@@ -94,7 +94,7 @@ TEST(Balance, ACameraAloneSuffices) {
   }
 }
 
-// A dipole that the experiment lacks bends the fit: the offset comes out wrong, and says so. The
+// A dipole that the experiment lacks biases the fit: the offset is wrong, with a warning. The
 // errors come near to holding the truth; by noise alone it would be fifty of them away.
 TEST(Balance, WhatTheModelLacksIsSaidAndWidensTheErrors) {
   BalanceRun run = unbalanced(true, 7);
@@ -135,7 +135,7 @@ TEST(Balance, AGapCutsTheRecording) {
     for (Channel& c : run.recording.channels) c.values[i] = NAN;
   }
   const BalanceResult result = balance(run);
-  EXPECT_EQ(result.stretches, 2u);
+  EXPECT_EQ(result.segments, 2u);
   for (int k = 0; k < 3; ++k) {
     EXPECT_LT(std::abs(result.offset_body_m[k] - true_offset_m[k]), 4 * result.sigma_m[k]);
     EXPECT_LT(result.sigma_m[k], 1e-8);
@@ -191,7 +191,7 @@ TEST(Balance, AttitudesOfNoLengthAreNone) {
   }
 }
 
-// Standard errors mean what they say: over many recordings the estimates scatter by them.
+// Standard errors are correct: over many recordings the estimates scatter by them.
 TEST(Balance, StandardErrorsAreTheScatterOfTheEstimates) {
   constexpr int runs = 24;
   double squares = 0.0;

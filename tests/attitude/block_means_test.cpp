@@ -1,4 +1,4 @@
-// Means over blocks of readings against what a model predicts of them, for motions that turn far
+// Means over blocks of readings compared with a model's predictions, for motions that turn far
 // within a block. The readings are noiseless and the model is the true one: the remaining error is
 // that of comparing a mean with instants.
 #include <gtest/gtest.h>
@@ -80,7 +80,7 @@ TEST(BlockMeans, OfABodyThatTumblesArePredictedAsMeans) {
   EXPECT_GT(middle.gyro_rad_s, 1e-3);
 }
 
-// Two instants leave what three do not, and one far more.
+// Two instants leave a larger error than three, and one a far larger one.
 TEST(BlockMeans, AreLookedAtNoMoreOftenThanTheirNoiseIsWorth) {
   const Tumbling body(160.0);
   Observation seen = body.observed(200);

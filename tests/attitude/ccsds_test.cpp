@@ -198,7 +198,7 @@ TEST(Aem, XmlSaysTheSameAsKeywords) {
   const auto attitudes = aem_attitudes(xml.path());
   ASSERT_EQ(attitudes.size(), 1u);
   EXPECT_LT(attitudes[0].lab_from_body.angularDistance(Quat(0.8, 0, 0.6, 0)), 1e-15);
-  EXPECT_EQ(attitudes[0].line, 5);
+  EXPECT_EQ(attitudes[0].line, 6);
   const TemporaryFile torn("<?xml version=\"1.0\"?>\n<aem version=\"1.0\">\n<header>\n");
   EXPECT_THROW(read_aem(torn.path()), InputError);
   const TemporaryFile other("<?xml version=\"1.0\"?>\n<opm version=\"1.0\"/>\n");

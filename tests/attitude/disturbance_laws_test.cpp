@@ -134,7 +134,7 @@ AttitudeModel model_with(const std::string& kind) {
                               .led_current_A = 0.3,
                               .lamps_as_stated = 0.0,
                               .wheel = {0.0, {20.0, -10.0, 30.0}, {0.3, 0.2, -0.1}}});
-  // Forces act on what slides.
+  // Forces act on sliding bodies.
   const DisturbanceKind* known = find_kind(kind);
   if (known != nullptr && is_force(known->screening.needs)) {
     model.platform.topology = Topology::planar;

@@ -6,7 +6,6 @@
 
 #include "attitude/disturbances/unknown/shape.h"
 #include "core/errors.h"
-#include "core/old_names.h"
 #include "tests/attitude/disturbance_bench.h"
 
 namespace photorque {
@@ -255,22 +254,14 @@ std::string complaint(const Entries& entries) {
   return "";
 }
 
-TEST(EmpiricalTorque, TakesTheOldNameOfTheYawWithANotice) {
-  const auto law = [](const char* key) {
-    return make(bench_model(), "empirical_torque",
-                {{"axes", words({"vertical"})},
-                 {key, numbers({3})},
-                 {"coefficients_N_m", numbers({1e-6, 2e-6})}});
+TEST(EmpiricalTorque, TakesTheOldNameOfTheYaw) {
+  const auto torque_by = [](const char* key) {
+    return torque({{"axes", words({"vertical"})},
+                   {key, numbers({3})},
+                   {"coefficients_N_m", numbers({1e-6, 2e-6})}},
+                  attitude);
   };
-  const auto has_notice = [] {
-    return std::ranges::any_of(old_name_notices(), [](const std::string& notice) {
-      return notice.find("heading_orders") != std::string::npos &&
-             notice.find("yaw_orders") != std::string::npos;
-    });
-  };
-  EXPECT_FALSE(has_notice());
-  law("heading_orders");
-  EXPECT_TRUE(has_notice());
+  EXPECT_EQ(torque_by("heading_orders"), torque_by("yaw_orders"));
 }
 
 TEST(EmpiricalTorque, SaysWhatIsWrongWithItsKeys) {

@@ -309,7 +309,7 @@ TEST(Estimates, TakeTheHeadingOfAnEncoder) {
 }
 
 // Turning about all three axes the scale of the gyro is found; about an axis that does not turn it
-// is not, and the estimate says so.
+// is not, and the estimate reports it.
 TEST(Estimates, FindTheScaleOfAGyroThatTurns) {
   PropagationRun run;
   run.model.platform.inertia_kg_m2 = 0.1 * Mat3::Identity();

@@ -11,7 +11,6 @@
 #include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/old_names.h"
 #include "tests/attitude/settings_bench.h"
 #include "tests/outside.h"
 
@@ -102,7 +101,7 @@ TEST(Recording, RealFilesAreMendedAndEverythingIsCounted) {
       "t_s;\"gyro_x_rad_s\"; battery_current_A \r\n"
       "0.0;1;5\r\n"
       "0.1;;5\r\n"       // an empty cell
-      "0.1;2;5\r\n"      // the same time again
+      "0.1;2;5\r\n"      // a repeated time
       "0.2;abc;nan\r\n"  // no number; empty by its word
       "\r\n# another comment\r\n"
       "0.15;3;5\r\n"       // earlier than before
@@ -153,7 +152,7 @@ TEST(Recording, OldNameOfTheYawIsReadWithANotice) {
   const Recording old = read("t_s,heading_deg\n0,90\n1,91\n");
   ASSERT_NE(old.find("yaw_rad"), nullptr);
   EXPECT_DOUBLE_EQ(old.find("yaw_rad")->values[0], pi / 2);
-  EXPECT_THAT(old_name_notices(), testing::Contains(testing::HasSubstr("read as yaw")));
+  EXPECT_THAT(old.report.text(), testing::HasSubstr("read as yaw"));
   // Beside a yaw it is the direction of the lean.
   const Recording both = read("t_s,heading_deg,yaw_deg\n0,90,10\n1,91,11\n");
   EXPECT_DOUBLE_EQ(both.find("yaw_rad")->values[0], 10 * degree_rad);

@@ -354,7 +354,7 @@ TEST(Wheels, FrictionLeavesTheErrorThatItsTorqueNeeds) {
 }
 
 TEST(Wheels, SaturateInTorqueAndRate) {
-  // A large error: the motors give what they can.
+  // A large error: the motors saturate.
   const AttitudeModel model =
       wheeled({{"target_axis", numbers({0, 0, 1})}, {"target_angle_deg", node(179.0)}});
   const PlatformState start = state_of(model, Quat::Identity());

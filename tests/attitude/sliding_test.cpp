@@ -113,7 +113,7 @@ TEST(Sliding, AirFadesItByTheSquare) {
   EXPECT_NEAR(end.y, -0.2 + 0.8 * way, 1e-9);
 }
 
-// It stops after v₀²/(2 μ g), whatever its mass, and stays there but for the creep.
+// It stops after v₀²/(2 μ g) for any mass, and stays there except for the creep.
 TEST(Sliding, DryFrictionStopsIt) {
   const double friction = 0.02, way = 0.25 / (2.0 * friction * g);
   const Place end = end_of("kind = \"sliding_friction\"\ncoefficient = 0.02\n");

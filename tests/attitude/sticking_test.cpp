@@ -103,9 +103,9 @@ TEST(Sticking, DerivativesThatDiedAwayCostNoSteps) {
   EXPECT_LT(t.statistics.steps, 2000);
 }
 
-// Between spring and friction every half swing ends 2 τ/k nearer, whatever the amplitude. The sign
-// of the friction changes within nanoseconds, anywhere within a step: 40 swings, at the tolerance
-// that a user has by default.
+// Between spring and friction every half swing ends 2 τ/k nearer, at any amplitude. The sign of the
+// friction changes within nanoseconds, anywhere within a step: 40 swings, at the tolerance that a
+// user has by default.
 TEST(Sticking, EveryReversalIsSeen) {
   constexpr double k = 2e-4, friction_N_m = 1e-6;
   const AttitudeModel model =

@@ -1,4 +1,4 @@
-// Files in and out: what is no file is refused, what is written appears whole, what killed
+// Files in and out: other objects are rejected, written files appear complete, the files of killed
 // processes left is distinguished from the work of living ones.
 #include "core/files.h"
 

@@ -62,7 +62,7 @@ Fitted fitted(unsigned seed, const Extra& extra, const std::string& label) {
 }
 
 // A diagnosis of a trial, as far as improved.toml needs it.
-Diagnosis told(const Fitted& f) {
+Diagnosis reported(const Fitted& f) {
   Diagnosis d;
   d.verdict = Verdict::unexplained;
   d.empirical = empirical_torques(f.trial, f.all, f.runs);
@@ -107,7 +107,7 @@ TEST(EmpiricalLaw, CoggingFliesAgainAndHasAFormula) {
         return Vec3(1e-5 * std::cos(3.0 * std::atan2(nose.y(), nose.x()) - 1.0) * up);
       },
       "unknown in heading: 3 periods a turn");
-  const Diagnosis d = told(f);
+  const Diagnosis d = reported(f);
   expect_same_flight(f, d);
   EXPECT_THAT(d.empirical.at(0).formula, HasSubstr("cos(3 ψ − (5"));  // 57 degrees
   EXPECT_THAT(d.empirical[0].looks_like, HasSubstr("three pads"));
@@ -119,7 +119,7 @@ TEST(EmpiricalLaw, FadingFliesAgainWithItsTimeConstant) {
   const Fitted f = fitted(
       2, [&](const State& s) { return Vec3(std::exp(-s.time_s / 25.0) * torque_N_m); },
       "unknown in time: fading");
-  const Diagnosis d = told(f);
+  const Diagnosis d = reported(f);
   expect_same_flight(f, d);
   const FittedParameter& tau = d.empirical.at(0).parameters.at(0);
   ASSERT_EQ(tau.key, "time_constant_s");
@@ -139,7 +139,7 @@ TEST(EmpiricalLaw, PowerOfTheTiltFliesAgainWithItsExponent) {
         return Vec3(2e-4 * std::pow(tilt / 0.1, 2.6) * lean.normalized());
       },
       "unknown in tilt: a power");
-  const Diagnosis d = told(f);
+  const Diagnosis d = reported(f);
   expect_same_flight(f, d);
   const FittedParameter& exponent = d.empirical.at(0).parameters.at(0);
   ASSERT_EQ(exponent.key, "tilt_exponent");

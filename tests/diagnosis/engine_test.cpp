@@ -58,7 +58,7 @@ TEST(Diagnose, NamesADipoleAndMeasuresIt) {
   ASSERT_TRUE(d.holdout.has_value());
   EXPECT_LT(d.holdout->chi2_per_sample_after, 1.15);
   EXPECT_GT(d.holdout->chi2_per_sample_before, 1.5);
-  // The best explanation flew what was held out.
+  // The best explanation predicted the held-out data.
   ASSERT_TRUE(d.alternatives.front().holdout_chi2_per_sample.has_value());
   EXPECT_NEAR(*d.alternatives.front().holdout_chi2_per_sample, 1.0, 0.15);
 }
@@ -85,25 +85,25 @@ TEST(Score, PredictsWhatTwoEffectsGainTogether) {
       before, all, {{dipole, {all[dipole].start}}, {draught, {all[draught].start}}}, runs);
   const std::vector<Score> alone =
       score(nominal, runs, {{{all[dipole].start}}, {{all[draught].start}}});
-  std::map<std::vector<size_t>, inference::Subset> foretold;
+  std::map<std::vector<size_t>, inference::Subset> predicted;
   for (const inference::Subset& s : inference::best_subsets(problem, 2, {})) {
-    foretold[s.groups] = s;
+    predicted[s.groups] = s;
   }
-  EXPECT_NEAR(foretold[{0}].gain, alone[0].gain, 1e-6 * alone[0].gain);
-  EXPECT_NEAR(foretold[{1}].gain, alone[1].gain, 1e-6 * alone[1].gain);
-  EXPECT_NEAR(foretold[{}].gain, 0.0, 1e-9);
+  EXPECT_NEAR(predicted[{0}].gain, alone[0].gain, 1e-6 * alone[0].gain);
+  EXPECT_NEAR(predicted[{1}].gain, alone[1].gain, 1e-6 * alone[1].gain);
+  EXPECT_NEAR(predicted[{}].gain, 0.0, 1e-9);
 
   const Trial one = extend(nominal_trial(nominal, all), all, dipole, all[dipole].start, runs);
   const Trial both = extend(one, all, draught, all[draught].start, runs);
   const double gained = nominal.chi2 - both.fit.chi2;
-  EXPECT_NEAR((foretold[{0, 1}].gain), gained, 0.05 * gained);
+  EXPECT_NEAR((predicted[{0, 1}].gain), gained, 0.05 * gained);
   EXPECT_GT(gained, nominal.chi2 - one.fit.chi2 + 20.0);
   // Its evidence beside that of the fits.
-  EXPECT_NEAR((foretold[{0, 1}].log_evidence - foretold[{0}].log_evidence),
+  EXPECT_NEAR((predicted[{0, 1}].log_evidence - predicted[{0}].log_evidence),
               both.log_evidence - one.log_evidence,
               0.05 * (both.log_evidence - one.log_evidence) + 1.0);
 
-  // About the fit of both the same form says what one of them taken away would cost.
+  // About the fit of both, this form predicts the cost of removing one of them.
   const inference::LinearProblem about = linear_problem(both, all, terms_of(both), runs);
   for (const inference::Subset& s : inference::best_subsets(about, 2, {})) {
     if (s.groups.size() == 2) {

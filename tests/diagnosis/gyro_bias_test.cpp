@@ -173,7 +173,7 @@ NominalModel model_with_bias() {
   return nominal;
 }
 
-// Three standard deviations of what is stated lie between the two.
+// Three standard deviations of the stated value lie between the two.
 TEST(GyroBias, IsAnotherAfterEverySwitchingOnWithoutANameForIt) {
   Session session;
   session.duration_s = 250.0;

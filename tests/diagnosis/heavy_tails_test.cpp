@@ -110,7 +110,7 @@ TEST(HeavyTails, RingingIsNoNoise) {
   }
 }
 
-// The error of a mean of tamed readings is the Cramér-Rao bound √((ν + 3)/(ν + 1)/n) of the scale;
+// The error of a mean of robust readings is the Cramér-Rao bound √((ν + 3)/(ν + 1)/n) of the scale;
 // that of raw ones is √(ν/(ν − 2)/n), for ν = 3 by 41 % more.
 TEST(HeavyTails, TamedReadingsHaveTheBoundOfTheMeanAndTheirStatedLevel) {
   constexpr double degrees = 3.0;
@@ -120,7 +120,7 @@ TEST(HeavyTails, TamedReadingsHaveTheBoundOfTheMeanAndTheirStatedLevel) {
   tails[tailed] = HeavyTail{degrees, 0.1, 1.0};
   std::mt19937_64 random(7);
   std::student_t_distribution<double> noise(degrees);
-  double tamed_square = 0.0, raw_square = 0.0, level = 0.0;
+  double robust_square = 0.0, raw_square = 0.0, level = 0.0;
   for (int draw = 0; draw < draws; ++draw) {
     LeftRun run = left_run(count, [&](double) { return noise(random); });
     const auto mean_of = [&] {
@@ -130,7 +130,7 @@ TEST(HeavyTails, TamedReadingsHaveTheBoundOfTheMeanAndTheirStatedLevel) {
     };
     raw_square += std::pow(mean_of(), 2) / draws;
     robustify(tails, run.residuals, run.seen);
-    tamed_square += std::pow(mean_of(), 2) / draws;
+    robust_square += std::pow(mean_of(), 2) / draws;
     for (size_t i = 0; i < count; ++i)
       run.residuals[0].off[i][tailed] = run.seen[0].gyro_rad_s[i][2];
     level += deviation_level(run.residuals, run.seen, tailed) / draws;
@@ -138,7 +138,7 @@ TEST(HeavyTails, TamedReadingsHaveTheBoundOfTheMeanAndTheirStatedLevel) {
   const double bound = (degrees + 3.0) / (degrees + 1.0) / count;
   // A mean square of n draws scatters by √(2/n) of itself, here 6 %. The curve through neighbours
   // is not known without error, which costs a little.
-  EXPECT_NEAR(tamed_square / bound, 1.0, 0.2);
+  EXPECT_NEAR(robust_square / bound, 1.0, 0.2);
   EXPECT_GT(raw_square / bound, 1.6);
   EXPECT_NEAR(level, std::sqrt((degrees + 3.0) / (degrees + 1.0)), 0.07);
 }

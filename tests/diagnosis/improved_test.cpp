@@ -57,7 +57,7 @@ TEST(Improved, KeepsTheUsersValuesAndComments) {
   }
 }
 
-// Names come from files of others: whatever they hold, they stay values of their keys.
+// Names come from files of others: with any content they stay values of their keys.
 TEST(Improved, HostileNamesAddNoTable) {
   for (const std::string name : {"wall\"\n[evil]\nx = \"1", "a'''\"\"\"\r\n[[evil]]",
                                  "\x1b[2J\x07\\", "# comment", "x\u0085\u2028y"}) {

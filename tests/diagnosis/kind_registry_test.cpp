@@ -119,7 +119,7 @@ TEST(KindRegistry, ThePageHasTheRegistrysOwnTable) {
   EXPECT_THAT(page(), testing::HasSubstr(table));
 }
 
-// Beside it each kind has rows of keys, with every key that a fit knows.
+// Beside it each kind has rows of keys, with every key of a fit.
 TEST(KindRegistry, ThePageListsEveryKey) {
   const std::string text = page();
   for (const DisturbanceKind& kind : disturbance_kinds()) {

@@ -83,11 +83,11 @@ TEST(Machines, NamesBesideTheRestPassEveryGate) {
   EXPECT_EQ(d.verdict, Verdict::unexplained);
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("dry_friction", "air_pressure_drag"));
   EXPECT_THAT(d.warnings, Contains(HasSubstr("predicted better with it than without it")));
-  DiagnoseOptions stretches, held_out, errors;
-  stretches.limits.discrepancy.min_sigma = 1e9;
+  DiagnoseOptions segments, held_out, errors;
+  segments.limits.discrepancy.min_sigma = 1e9;
   held_out.limits.discrepancy.max_held_growth = -1e9;
   errors.limits.decision.min_significance = 1e9;
-  for (const DiagnoseOptions& mutant : {stretches, held_out, errors}) {
+  for (const DiagnoseOptions& mutant : {segments, held_out, errors}) {
     EXPECT_THAT(kinds_of(named(mutant)), testing::IsEmpty());
   }
 }
@@ -116,7 +116,7 @@ noise_rad_s = 0.002
   EXPECT_NEAR(d.chi2_per_sample_after, 1.0, 5.0 * std::sqrt(2.0 / (3.0 * 450.0)));
 }
 
-// Angular momentum in the frame of the stars is kept whatever a wheel on board does.
+// Angular momentum in the inertial frame is conserved at any speed of a wheel on board.
 TEST(Machines, AWheelExchangesMomentumWithItsBody) {
   NominalModel nominal = machine(R"([platform]
 topology = "free"
@@ -456,7 +456,7 @@ TEST(Machines, ATwistedLineIsFoundByTheRateAlone) {
   expect_near_truth(d, "bearing_drag", "coefficient_N_m_s", c, 0.0);
 }
 
-// The scatter of what moves, not of what rests, and no less than the step.
+// The scatter of moving channels, not of resting ones, and no less than the step.
 TEST(Machines, AnEncoderAtRestSaysNothingOfItsNoise) {
   Platform axle;
   axle.topology = Topology::one_axis;

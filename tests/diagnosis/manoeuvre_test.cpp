@@ -1,4 +1,4 @@
-// A manoeuvre that is proposed, done: it separates what it should, by as much as was predicted.
+// A proposed manoeuvre, carried out: it separates the effects by the predicted amount.
 #include <gmock/gmock.h>
 
 #include "tests/diagnosis/rigid_body_recording.h"

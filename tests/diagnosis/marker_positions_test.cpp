@@ -147,7 +147,7 @@ TEST(MarkerPositions, TurnTheCamerasOwnPoseAsTheLawSays) {
   }
 }
 
-// Images with noise, read and solved: their mean is off by what the law says.
+// Images with noise, read and solved: the deviation of their mean is that of the law.
 TEST(MarkerPositions, TurnTheMeanOfNoisyImages) {
   TrackingCamera camera = bench_camera();
   camera.marker_error_body_m = one_off_m(2, {0, 0, 4e-4});

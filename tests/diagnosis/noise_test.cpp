@@ -1,4 +1,4 @@
-// The noise of the instruments is found from the readings, whatever torque acts.
+// The noise of the instruments is found from the readings, under any torque.
 #include <gtest/gtest.h>
 
 #include "attitude/estimation/fit.h"
@@ -105,7 +105,7 @@ TEST(NoiseSearch, LeavesNoiseThatIsAsStatedAlone) {
   }
 }
 
-// Within a fifth, and within four standard errors; whatever acts.
+// Within a fifth, and within four standard errors, under any torque.
 TEST(NoiseSearch, MeasuresTheCorrelationTime) {
   for (const double time_s : {0.3, 1.0, 4.0}) {
     for (const bool acts : {false, true}) {

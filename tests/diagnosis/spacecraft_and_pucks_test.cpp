@@ -1,5 +1,5 @@
-// Machines off the bearing: one angle of a spacecraft that the Sun presses on, and what slides on a
-// table. Recordings by closed forms and by a small independent integration.
+// Machines off the bearing: one angle of a spacecraft that the Sun presses on, and a body that
+// slides on a table. Recordings by closed forms and by a small independent integration.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

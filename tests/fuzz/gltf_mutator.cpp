@@ -38,7 +38,7 @@ constexpr std::array<double, 18> numbers = {0,    1,    -1,   2,    3,     4,   
 constexpr std::array<const char*, 10> words = {"VEC3",       "VEC2", "SCALAR", "MAT4", "TRIANGLES",
                                                "OCTAHEDRAL", "",     "data:,", "../x", "POSITION"};
 
-// A file as its JSON and what follows it.
+// A file as its JSON and the following bytes.
 struct Parts {
   json document;
   std::string chunk;

@@ -289,7 +289,7 @@ TEST(MapPicture, SignedZeroIsTheNeutralMiddle) {
   EXPECT_GT(positive[0], positive[2]) << "positive is red";
 }
 
-// Red and blue mean a sign that is known: what is within two standard errors of zero has none.
+// Red and blue mean a significant sign: values within two standard errors of zero have none.
 TEST(MapPicture, SignedValuesThatAreNotSignificantAreGrey) {
   Map map = sample_map();
   map.signed_values = true;
@@ -309,7 +309,7 @@ TEST(MapPicture, SignedValuesThatAreNotSignificantAreGrey) {
 TEST(MapPicture, KeepsTheRatioOfTheSides) {
   Map map = sample_map();  // 0.7 m by 0.5 m
   EXPECT_NEAR(map_picture(map, {}).grid_width, map_picture(map, {}).grid_height * 1.4, 2.0);
-  map.x_high = 100.0;  // beyond what stays readable
+  map.x_high = 100.0;  // beyond the readable range
   EXPECT_NEAR(map_picture(map, {}).grid_width, map_picture(map, {}).grid_height * 8.0, 8.0);
 }
 

@@ -23,7 +23,7 @@ std::vector<PagePoint> noisy_line(size_t count, unsigned seed) {
   return line;
 }
 
-// A waterfall: what is lost hangs between what was there before it and the remainder.
+// A waterfall: a loss hangs between the previous power and the remainder.
 TEST(Plot, BarsHangBetweenTwoValuesWithTheirNamesUnderThem) {
   Plot plot{"falls", "Falls", "", "power [W]", {}, false, false, {}};
   const auto bar = [&](const std::string& name, double x, double from, double to) {

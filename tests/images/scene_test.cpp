@@ -20,7 +20,7 @@ struct Sample {
   float irradiance_W_m2 = not_a_receiver;
 };
 
-// A view whose sample at (column, row) is what `look` says.
+// A view whose sample at (column, row) is that of `look`.
 template <class Look>
 SceneView view_of(int width, int height, int oversampling, const Look& look) {
   SceneView view;
@@ -126,7 +126,7 @@ TEST(EdgeStrength, MarksCreasesStepsAndBorders) {
   EXPECT_GT(with(base, Sample{1.0F, 1}), 0.0F) << "border";
 }
 
-// Nothing in a view of 101 × 101 pixels but what is drawn into it.
+// A view of 101 × 101 pixels contains only the drawn parts.
 SceneView empty_view() {
   SceneView view = view_of(101, 101, 1, [](int, int) { return Sample{}; });
   view.part_colour.clear();

@@ -58,7 +58,7 @@ TEST(Decide, WhatWasNeverAskedToPredictIsNotSaid) {
   EXPECT_EQ(decided(trials).chosen, 2u);
 }
 
-// 3 of log evidence are odds of 20 to 1 for the second name, and too few to say it.
+// 3 of log evidence are odds of 20 to 1 for the second name, and too few to report it.
 TEST(Decide, ANameThatIsHardlyMissedIsNotSaid) {
   const std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
                                            explanation({0, 1}, 103.0, 1.0)};
@@ -70,8 +70,7 @@ TEST(Decide, ANameThatIsHardlyMissedIsNotSaid) {
   EXPECT_EQ(decided(trials, mutant).chosen, 2u);
 }
 
-// Evidence enough, all of it from the recordings that were fitted: what was held out it predicts
-// worse.
+// Enough evidence, all of it from the fitted recordings: it predicts the held-out data worse.
 TEST(Decide, ANameThatPredictsWorseIsNotSaid) {
   const std::vector<Explanation> trials = {explanation({}, 0.0, 40.0, -90.0),
                                            explanation({0}, 100.0, 1.0, -50.0),
@@ -133,7 +132,7 @@ TEST(Decide, NoConfidenceIsMoreThanOne) {
   }
 }
 
-// A law without a name is the finding; beside it only what it cannot do without is named.
+// A law without a name is the finding; beside it only effects that it needs are named.
 TEST(Decide, AKnownEffectIsNamedBesideALawThatNeedsIt) {
   const std::vector<CandidateTraits> all = {
       {.name = "first"}, {.name = "second"}, {.name = "law", .is_empirical = true}};
@@ -158,13 +157,13 @@ TEST(Decide, AKnownEffectIsNamedBesideALawThatNeedsIt) {
   // Where the law leaves structure, the names may make up for it.
   EXPECT_TRUE(judged(20.0, limits).beside_law.empty());
   Thresholds::Decision mutant = limits;
-  // Two that the law needs may together be what it leaves.
+  // Two that the law needs may together be its residual.
   mutant.min_log_odds_beside_law = 3.0;
   EXPECT_TRUE(judged(0.0, mutant).beside_law.empty());
 }
 
-// Two explanations as likely as one another, each weak without what was held out: where nothing at
-// all is as likely, nothing is said to be missing; where nothing predicts nothing, something is.
+// Two explanations as likely as one another, each weak without the held-out data. If the nominal
+// model is as likely, nothing is reported as missing; if it does not predict, something is.
 TEST(Decide, WhatCannotBeToldApartIsNotNothing) {
   const std::vector<CandidateTraits> all = {{.name = "sure"}, {.name = "one"}, {.name = "other"}};
   const auto judged = [&](double nominal_sigma) {
@@ -211,7 +210,7 @@ TEST(Gates, ANameThatLeftOutSegmentsDoNotNeedIsNotSaid) {
   EXPECT_EQ(judged(8.0, 2.9, limits).chosen, 1u);
   EXPECT_EQ(judged(8.0, 2.9, mutant).chosen, 2u);
   EXPECT_EQ(judged(2.9, 2.9, limits).finding, Finding::nothing_missing);
-  // Only "second" is needed, and no trial has it alone: nothing that was fitted can be said.
+  // Only "second" is needed, and no trial has it alone: no fit can be reported.
   EXPECT_EQ(judged(2.9, 8.0, limits).finding, Finding::nothing_missing);
   EXPECT_EQ(judged(2.9, 8.0, mutant).finding, Finding::named);
 }

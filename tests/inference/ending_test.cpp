@@ -1,4 +1,4 @@
-// Where a fit ends before it converges: what is not worth its time.
+// Fits that end before they converge, because they are not worth their time.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,21 +20,21 @@ TEST(Fit, EndsWhereItFallsTooSlowlyToBeWorthIt) {
                             });
   Options options;
   options.max_iterations = 60;
-  const Fit patient = fit(model, model.start(), options);
-  EXPECT_EQ(patient.termination, Termination::converged);  // far from the minimum of 100
-  options.worth_chi2 = 50.0;                               // below any that the model has
+  const Fit converging = fit(model, model.start(), options);
+  EXPECT_EQ(converging.termination, Termination::converged);  // far from the minimum of 100
+  options.worth_chi2 = 50.0;                                  // below any that the model has
   const Fit lost = fit(model, model.start(), options);
   EXPECT_EQ(lost.termination, Termination::out_of_reach);
-  EXPECT_LT(lost.iterations, patient.iterations);
+  EXPECT_LT(lost.iterations, converging.iterations);
   EXPECT_GT(lost.iterations, 6);
-  options.worth_chi2 = 1.1 * patient.chi2;  // what more steps reach
+  options.worth_chi2 = 1.1 * converging.chi2;  // χ² that more steps reach
   const Fit worth = fit(model, model.start(), options);
-  EXPECT_EQ(worth.iterations, patient.iterations);
-  EXPECT_EQ(worth.chi2, patient.chi2);
+  EXPECT_EQ(worth.iterations, converging.iterations);
+  EXPECT_EQ(worth.chi2, converging.chi2);
 }
 
-// χ² = 1e6 + x²: every step is too short, as above, and what it gains is less than a thousandth.
-// Where as much is left of a million samples, it fits, and goes on.
+// χ² = 1e6 + x²: every step is too short, as above, and its gain is less than a thousandth. Where
+// as much is left of a million samples, it fits, and goes on.
 TEST(Fit, EndsWhereItFitsBadlyAndCreeps) {
   const auto model = [](Eigen::Index samples) {
     return ResidualModel({{"x", "", 100.0}},

@@ -1,4 +1,4 @@
-// Which explanations are weighed against what was held out.
+// Selection of the explanations that are weighed against the held-out data.
 #include <gtest/gtest.h>
 
 #include "inference/weigh.h"

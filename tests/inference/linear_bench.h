@@ -1,4 +1,4 @@
-// Linear models, for which everything that the estimator says has a closed form.
+// Linear models, for which every result of the estimator has a closed form.
 #pragma once
 
 #include <Eigen/Dense>

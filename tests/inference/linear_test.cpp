@@ -116,11 +116,11 @@ TEST(Bounds, TheOtherParametersAreFittedWithTheOneOnItsBound) {
 TEST(Undetermined, IsFlaggedAndNeverGetsAnErrorOfZero) {
   std::mt19937_64 random(4);
   const LinearRun run{random_matrix(random, 50, 4), random_matrix(random, 50, 1)};
-  LinearRun twin = run;
-  twin.design.col(2) = 3e6 * twin.design.col(1);  // only b + 3e6 c is known
-  twin.design.col(3).setZero();                   // d does nothing
+  LinearRun duplicate = run;
+  duplicate.design.col(2) = 3e6 * duplicate.design.col(1);  // only b + 3e6 c is known
+  duplicate.design.col(3).setZero();                        // d does nothing
   const Parameters parameters{{{}}, {{"a", "", 0}, {"b", "", 0}, {"c", "", 0}, {"d", "", 7}}};
-  const ResidualModel model = linear_model(parameters, {twin});
+  const ResidualModel model = linear_model(parameters, {duplicate});
   const Fit found = fit(model, model.start(), Options::to_rounding());
   const Covariance known = found.covariance();
   EXPECT_EQ(known.undetermined, (std::vector<Eigen::Index>{1, 2, 3}));
@@ -128,16 +128,17 @@ TEST(Undetermined, IsFlaggedAndNeverGetsAnErrorOfZero) {
   EXPECT_TRUE(std::isinf(found.scatter_errors()[3]));
   EXPECT_EQ(found.at[3], 7.0);  // where the fit began
   // The result is as if c and d were no parameters.
-  const Eigen::MatrixXd two = twin.design.leftCols(2);
+  const Eigen::MatrixXd two = duplicate.design.leftCols(2);
   const Eigen::MatrixXd covariance = (two.transpose() * two).inverse();
   EXPECT_NEAR(known.matrix(0, 0) / covariance(0, 0), 1.0, 1e-9);
   EXPECT_NE(found.report().find("undetermined"), std::string::npos);
-  // A prior determines what the data do not; the report says that it was the prior alone.
+  // A prior determines a parameter that the data do not; the report states that it was the prior
+  // alone.
   Parameters with_prior = parameters;
   with_prior.shared[2].sigma = 1e-6;
   with_prior.shared[3].sigma = 0.5;
-  const ResidualModel believed = linear_model(with_prior, {twin});
-  const Fit again = fit(believed, believed.start(), Options::to_rounding());
+  const ResidualModel constrained = linear_model(with_prior, {duplicate});
+  const Fit again = fit(constrained, constrained.start(), Options::to_rounding());
   EXPECT_TRUE(again.covariance().undetermined.empty());
   EXPECT_NEAR(again.covariance().standard_error(3), 0.5, 1e-12);
   EXPECT_NE(again.report().find("by its prior alone"), std::string::npos);

@@ -1,4 +1,4 @@
-// Against certified values (tools/benchmarks/nist_strd.h says where they come from).
+// Against certified values (their source is in tools/benchmarks/nist_strd.h).
 #include <gtest/gtest.h>
 
 #include "inference/estimator/fit.h"
@@ -49,7 +49,7 @@ TEST(Nist, CertifiedParametersAndErrors) {
 }
 
 // From the far start of MGH17 the two exponentials become one, which sums of squares in double
-// precision cannot take apart again. The answer is wrong, and says so.
+// precision cannot separate again. The answer is wrong, and is reported as such.
 TEST(Nist, WhereItFailsItSaysSo) {
   const NistProblem problem = mgh17();
   const Eigen::VectorXd& start = problem.starts.front();

@@ -86,24 +86,24 @@ TEST(Subsets, KnowWhatRoundingIs) {
   Bench bench(7);
   LinearProblem problem = bench.about({0, 3});
   const double lost = 1e-7;
-  const Eigen::VectorXd twin = lost * (3.0 * bench.J.col(0) - 2.0 * bench.J.col(5));
+  const Eigen::VectorXd duplicate = lost * (3.0 * bench.J.col(0) - 2.0 * bench.J.col(5));
   Eigen::MatrixXd J(rows, columns + 1);
-  J << bench.J, twin;
+  J << bench.J, duplicate;
   problem.information = J.transpose() * J;
   problem.gradient.conservativeResize(columns + 1);
   problem.gradient[columns] = 0.0;
-  problem.groups.push_back({groups, "twin", false, columns, {0.0}, {1.0}, {-1e300}, {1e300}});
-  const auto gain_of_twin = [&] {
+  problem.groups.push_back({groups, "duplicate", false, columns, {0.0}, {1.0}, {-1e300}, {1e300}});
+  const auto gain_of_duplicate = [&] {
     for (const Subset& s : best_subsets(problem, 4, {})) {
       if (s.groups == std::vector<size_t>{groups}) return s.gain;
     }
     return -1e300;
   };
   const double all = bench.chi2({0, 3}) - bench.chi2({});
-  EXPECT_NEAR(gain_of_twin(), 0.0, -0.1 * all);  // as if nothing had been lost
+  EXPECT_NEAR(gain_of_duplicate(), 0.0, -0.1 * all);  // as if nothing had been lost
   problem.before = problem.information.diagonal();
   problem.before[columns] /= lost * lost;
-  EXPECT_NEAR(gain_of_twin(), all, -0.1 * all);
+  EXPECT_NEAR(gain_of_duplicate(), all, -0.1 * all);
 }
 
 TEST(Subsets, LeaveOutWhatPhysicsForbids) {

@@ -1,4 +1,4 @@
-// Noise and what stands out of it, from residuals whose statistics are known.
+// Noise and outliers, from residuals whose statistics are known.
 #include "inference/whiteness.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(Whiteness, OutliersAreWhatNeighboursDoNotExpect) {
   // A residual that runs away steadily is none, however large.
   for (size_t i = 0; i < r.size(); ++i) r[i] += 3.0 * static_cast<double>(i);
   EXPECT_TRUE(outliers(r, {}).empty());
-  // A neighbour is off by half of what stands out, which is no outlier here.
+  // A neighbour is off by half of the outlier, which is no outlier here.
   for (size_t i = 0; i < r.size(); ++i) r[i] = 3.0 * static_cast<double>(i);
   for (const size_t i : {0u, 100u}) r[i] += 15.0;
   r[499] -= 15.0;

@@ -213,7 +213,7 @@ class Trace(PageTest):
         self.open(self.page)
         self.every_control_is_reached()
 
-    def test_colours_are_told_apart_without_red_or_green(self):
+    def test_colours_differ_without_red_or_green(self):
         """The ramp of the bar as eyes without red or green cones see it: G. M. Machado et al., "A Physiologically-based
         Model for Simulation of Color Vision Deficiency", IEEE TVCG 15 (2009), severity 1, in linear light."""
         self.open(self.page)
@@ -407,10 +407,10 @@ class Diagnose(PageTest):
         write_square(self.folder)
         lab = self.folder / "scanned.toml"
         lab.write_text(LAB + "[sensors.irradiance]\nnoise_W_m2 = 0.2\n")
-        run("trace", lab, "--out", self.folder / "believed", "--quiet")
+        run("trace", lab, "--out", self.folder / "nominal", "--quiet")
         # The lamp gives a fifth less than stated; noise by a rule in Python.
         scan, state = [], 1
-        for row in rows(self.folder / "believed/irradiance_board.csv"):
+        for row in rows(self.folder / "nominal/irradiance_board.csv"):
             total = 0.0
             for _ in range(12):  # the sum of twelve even draws: a variance of 1
                 state = (1103515245 * state + 12345) % 2**31

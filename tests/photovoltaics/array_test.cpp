@@ -247,7 +247,7 @@ TEST(PhotovoltaicArray, DarkArrayGivesNothingAndDoesNotFail) {
   EXPECT_TRUE(result.maxima.empty());
 }
 
-// The spread of results over many independent data sets is what the standard error predicts.
+// The spread of results over many independent data sets equals the standard error.
 TEST(PhotovoltaicArray, StandardErrorIsTheSpreadOverIndependentRuns) {
   constexpr int runs = 50, replicates = 8;
   const ArrayDesign array = design();

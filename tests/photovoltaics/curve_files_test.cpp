@@ -131,7 +131,7 @@ TEST(PhotovoltaicFit, FilesOfInstrumentsAreRead) {
   EXPECT_NEAR(named[0].sweep.voltage_V[1], 0.2, 1e-15);
   EXPECT_TRUE(is_curve_header("ch2;ch1", columns));
   EXPECT_FALSE(is_curve_header("ch2;ch1"));
-  // Curves have nothing but what belongs to them.
+  // Curves have only their own readings.
   EXPECT_TRUE(is_curve_header("Index;Spannung [V];Strom [A];Leistung [W];Zeit"));
   EXPECT_FALSE(is_curve_header("t,angle,voltage,current"));
   // The current counted into the device.

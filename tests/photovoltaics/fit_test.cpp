@@ -168,11 +168,11 @@ TEST(PhotovoltaicFit, ABoundThatIsReachedIsNamed) {
     sweep.voltage_V.push_back(v);
     sweep.current_A.push_back(2.0 - 2e-10 * std::expm1(v / 0.0285) + 2e-3 * v);
   }
-  // Current that rises with the voltage: what would be a negative leak.
+  // Current that rises with the voltage, as of a negative leak.
   const SweepFit fit = fit_sweeps(std::array{sweep}, {});
   ASSERT_FALSE(fit.bounds.empty());
   EXPECT_EQ(fit.bounds.back().key, "shunt_ohm");
-  EXPECT_EQ(fit.bounds.back().meaning, "the fit wants no leak at all");
+  EXPECT_EQ(fit.bounds.back().meaning, "the fit has no leak");
   EXPECT_GT(fit.bounds.back().value, 1e7);
   EXPECT_TRUE(fit.diode.shunt_above_ohm);
 }

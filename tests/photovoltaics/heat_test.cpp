@@ -50,7 +50,7 @@ TEST(CellPlate, SteadyStateOfALinearPlate) {
   EXPECT_NEAR(steady_K, 290.0 + (0.93 * 500.0 - 150.0) / (8.0 - 0.7), 1e-6);
 }
 
-// Both faces radiate what is left: 2 ε σ (T⁴ − T_s⁴) = α E − p.
+// Both faces radiate the remaining heat: 2 ε σ (T⁴ − T_s⁴) = α E − p.
 TEST(CellPlate, SteadyStateInAVacuum) {
   const CellPlate plate({.surroundings_K = 200.0, .convection_W_m2_K = 0.0, .emissivity = 0.8},
                         0.1);
@@ -118,7 +118,7 @@ ArrayLight even_light(double irradiance_W_m2) {
 
 constexpr std::array responsivity_A_W{0.55};
 
-// Made by tests/data/heat/steady.py: SciPy, with a cell and a plate of their own.
+// Made by tests/data/heat/steady.py: SciPy, with a separate cell and plate.
 TEST(WarmArray, IsAtTheTemperatureThatSciPyFinds) {
   struct Case {
     const char* name;
@@ -158,7 +158,7 @@ TEST(WarmArray, IsAtTheTemperatureThatSciPyFinds) {
   }
 }
 
-// A stated temperature is that of the cells, whatever the light; its slope is given as well.
+// A stated temperature is that of the cells in any light; its slope is given as well.
 TEST(WarmArray, AStatedTemperatureHolds) {
   ArrayDesign design = twelve_cells({});
   const ArrayResult steady = evaluate_array(design, even_light(1000.0), responsivity_A_W);
@@ -190,7 +190,7 @@ TEST(WarmArray, InTheDarkIsAtTheTemperatureAround) {
 }
 
 // Replicates that differ in all of their light: power and temperature follow from one light at a
-// time, which is evaluated here with a temperature of its own.
+// time, which is evaluated here with a separate temperature.
 TEST(WarmArray, ErrorsIncludeTheTemperature) {
   constexpr int replicates = 8;
   const ArrayDesign design = twelve_cells({.faces = 1});

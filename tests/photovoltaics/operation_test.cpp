@@ -259,7 +259,7 @@ TEST(PhotovoltaicLayout, ExactSearchFindsThePlantedAnswer) {
   EXPECT_NEAR(found.power_W, sorted.maximum_power().power_W(), 1e-12);
   EXPECT_GT(found.power_W, 1.2 * found.start_power_W);
   EXPECT_LE(found.power_W, found.bound_W);
-  // One string under one light reaches its bound, and the search knows it.
+  // One string under one light reaches its bound, and the search stops there.
   EXPECT_NEAR(found.bound_W, found.power_W, 1e-10 * found.power_W);
   const LayoutResult quick = search_layout(start, six, light, 3);
   EXPECT_TRUE(quick.exact);

@@ -32,22 +32,22 @@ TEST(BandResponsivity, LineOnAnEdgeGivesItsCurrentInBothBands) {
 // ends of a table that falls to zero there is not.
 TEST(LightOutside, OfTheTableIsTold) {
   const QuantumEfficiency silicon = silicon_quantum_efficiency();
-  const auto told = [](const QuantumEfficiency& efficiency, const Spectrum& spectrum) {
+  const auto reported = [](const QuantumEfficiency& efficiency, const Spectrum& spectrum) {
     const WeighedSpectrum two[] = {{spectrum, 1.0}, {spectrum, 2.0}};
     return light_outside(efficiency, two);
   };
   const auto line_at = [](double nm) {
     return Spectrum{.shape = Spectrum::Shape::gaussian, .centre_m = 1e-9 * nm, .fwhm_m = 20e-9};
   };
-  EXPECT_THAT(told(silicon, line_at(730)), testing::IsEmpty());
-  EXPECT_THAT(told(silicon, Spectrum{.shape = Spectrum::Shape::am0}), testing::IsEmpty());
-  EXPECT_THAT(told(silicon, line_at(1500)),
+  EXPECT_THAT(reported(silicon, line_at(730)), testing::IsEmpty());
+  EXPECT_THAT(reported(silicon, Spectrum{.shape = Spectrum::Shape::am0}), testing::IsEmpty());
+  EXPECT_THAT(reported(silicon, line_at(1500)),
               testing::ElementsAre(testing::HasSubstr("100 % of the light at 1500 nm")));
   // Half of a line is beyond a table that ends at its middle.
   const QuantumEfficiency cut{{600e-9, 730e-9}, {0.9, 0.9}};
-  EXPECT_THAT(told(cut, line_at(730)),
+  EXPECT_THAT(reported(cut, line_at(730)),
               testing::ElementsAre(testing::HasSubstr("50.0 % of the light at 730.0 nm")));
-  EXPECT_THAT(told(cut, line_at(660)), testing::IsEmpty());
+  EXPECT_THAT(reported(cut, line_at(660)), testing::IsEmpty());
 }
 
 TEST(BandResponsivity, LineInsideABandGivesNothingElsewhere) {

@@ -49,7 +49,7 @@ TEST(PowerSupply, BatteryIsFullWhenTheSurplusHasFilledIt) {
   ASSERT_EQ(supply.events().size(), 1u);
   EXPECT_EQ(supply.events()[0].name, "battery_full");
   EXPECT_NEAR(supply.events()[0].time_s, 600.0 / (0.8 * surplus_W), 1e-6);
-  // From then on the array gives what the load takes, no more.
+  // From then on the array gives exactly the power of the load.
   EXPECT_NEAR(supply.state().array_W, design.load_W / 0.9, 1e-12);
   EXPECT_EQ(supply.stored_J(), 1000.0);
   EXPECT_EQ(supply.energies().unserved.value(), 0.0);
@@ -135,7 +135,7 @@ TEST(PowerSupply, ATrackerStaysBelowTheBestPoint) {
   EXPECT_GT(e.array.value(), 0.97 * e.best.value());
 }
 
-// Fades while on, recovers while off; what LampDroop says where it is never switched.
+// Fades while on, recovers while off; equals LampDroop where it is never switched.
 TEST(LampOutput, FollowsItsLags) {
   LampDroop droop;
   droop.depth = 0.2;

@@ -98,7 +98,7 @@ TEST(PhotovoltaicWirings, TwinModuleIsTwiceItsGroup) {
   EXPECT_NEAR(power_W(levels), 2.0 * power_W(one), 1e-9);
 }
 
-// Regular keys, levels and lists say the same.
+// Regular keys, levels and lists give equal wirings.
 TEST(PhotovoltaicWirings, LevelsAreTheRegularKeysInOtherWords) {
   std::vector<double> suns;
   for (int i = 0; i < 12; ++i) suns.push_back(0.6 + 0.35 * std::sin(2.3 * i));

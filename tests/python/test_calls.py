@@ -14,10 +14,10 @@ class Calls(unittest.TestCase):
     experiment = photorque.Experiment(nominal, keys={"trace.rays": 2**20})
 
     def test_progress_rises_to_one(self):
-        told = []
-        photorque.trace(self.experiment, progress=lambda task, fraction: told.append((task, fraction)))
-        fractions = [fraction for _, fraction in told]
-        self.assertEqual({task for task, _ in told}, {"tracing"})
+        reports = []
+        photorque.trace(self.experiment, progress=lambda task, fraction: reports.append((task, fraction)))
+        fractions = [fraction for _, fraction in reports]
+        self.assertEqual({task for task, _ in reports}, {"tracing"})
         self.assertEqual(fractions, sorted(fractions))
         self.assertEqual(fractions[-1], 1.0)
 

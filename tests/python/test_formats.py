@@ -86,10 +86,10 @@ class Formats(FolderTest):
 class Sweeps(unittest.TestCase):
     def test_a_grid_is_its_runs(self):
         experiment = photorque.Experiment(nominal, keys={"trace.rays": 25088})
-        told = []
+        reports = []
         axes = {"source[0].total_power_W": [88, 44], "attitude.tilt_deg": [0, 15, 30]}
         swept = photorque.sweep(experiment, axes, photorque.trace, ["power_on_solar_array_W", "emitted_W"],
-                                progress=lambda task, done: told.append(done))
+                                progress=lambda task, done: reports.append(done))
         light = swept.figures["power_on_solar_array_W"]
         self.assertEqual(light.shape, (2, 3))
         alone = photorque.trace(experiment.with_keys({"source[0].total_power_W": 44, "attitude.tilt_deg": 15}))
@@ -99,7 +99,7 @@ class Sweeps(unittest.TestCase):
         np.testing.assert_allclose(swept.figures["emitted_W"], [[88] * 3, [44] * 3], rtol=1e-12)
         self.assertEqual(swept.best("power_on_solar_array_W"),
                          {"source[0].total_power_W": 88, "attitude.tilt_deg": 0})
-        self.assertEqual((len(told), told[-1]), (6, 1.0))
+        self.assertEqual((len(reports), reports[-1]), (6, 1.0))
         with self.assertRaises(photorque.InputError):
             photorque.sweep(experiment, {"source[0].colour": [1]}, photorque.trace)
 

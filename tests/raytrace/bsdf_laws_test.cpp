@@ -1,4 +1,4 @@
-// Laws that every surface obeys, whatever it is made of.
+// Laws that every surface obeys.
 #include <gtest/gtest.h>
 
 #include "core/constants.h"
@@ -126,7 +126,7 @@ TEST(SurfaceLaws, ScatteringIsReciprocal) {
 }
 
 // ∫ f cos do over the hemisphere, the directional reflectance, and the first moment, by a
-// quadrature that knows nothing of the surface.
+// quadrature that is independent of the surface.
 TEST(SurfaceLaws, ScatteringSumsToTheFractionsAndTheFirstMoment) {
   for (const SurfaceKind& kind : surface_kinds(0.6)) {
     if (!kind.smooth) continue;

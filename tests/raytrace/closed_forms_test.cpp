@@ -39,7 +39,7 @@ Outcome illuminate(Scene scene, const Vec3& direction, uint64_t rays = 1 << 20, 
   for (size_t k = 0; k < 3; ++k) {
     outcome.force[k] = result.sums[0].estimate(k);
     outcome.torque[k] = result.sums[0].estimate(3 + k);
-    // The momentum by another route: what the rays lost.
+    // The momentum by another route: the loss of the rays.
     const Estimate& by_rays = result.power_balance.force_N[k];
     EXPECT_NEAR(outcome.force[k].value, by_rays.value,
                 4 * std::hypot(by_rays.standard_error, outcome.force[k].standard_error) +
@@ -130,7 +130,7 @@ TEST(Dihedral, ReturnsAllMomentum) {
 }
 
 // Corner cube of three unit mirrors: inside the aperture that sees all three, F = 2 P A along the
-// light whatever the direction (here 5 deg off the diagonal).
+// light in any direction (here 5 deg off the diagonal).
 TEST(CornerCube, ReturnsLightAlongItself) {
   Scene scene;
   const auto mirror = grey_surface("mirror", 1, 0);

@@ -1,4 +1,4 @@
-// Measured scattering: what the table says is what light does.
+// Measured scattering: light follows the table.
 #include "raytrace/surfaces/measured_brdf.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Whether gathered light is as exact as it says for any profile, aperture, distance, tilt and bins.
+// Gathered light keeps its stated error for any profile, aperture, distance, tilt and bins.
 #include <gtest/gtest.h>
 
 #include "core/constants.h"

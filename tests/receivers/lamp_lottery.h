@@ -115,13 +115,13 @@ inline double light_radius_m(const Draw& d) {
 
 // A plate about the draw's centre that all of the lamp's light falls on; nothing where it would cut
 // through the aperture.
-inline std::optional<Scene> wide_plate(const Draw& d, double stretch) {
+inline std::optional<Scene> wide_plate(const Draw& d, double aspect) {
   const double lean = -d.along.cross(d.across).z();
   const double slant = std::sqrt(1.0 - lean * lean) / lean;
   if (light_radius_m(d) * slant > d.height_m) return std::nullopt;
   const double reach = d.foot_m / d.height_m;  // as if from a point: wider than the beam
   const double side_m = 2.2 * d.foot_m / lean / std::max(0.1, 1.0 - reach * slant);
-  return plate_of(d, side_m, side_m * stretch);
+  return plate_of(d, side_m, side_m * aspect);
 }
 
 }  // namespace photorque::testing

@@ -1,4 +1,4 @@
-// Sunlight and what a textbook says of its pressure, for tests of receivers.
+// Sunlight and a textbook's law of its pressure, for tests of receivers.
 #pragma once
 
 #include "core/constants.h"

@@ -145,7 +145,7 @@ TEST(SurfaceGrid, RingHasAHoleWithoutSurface) {
   }
 }
 
-// A quarter of a square metre above a square metre: what bins have no room for.
+// A quarter of a square metre above a square metre: more area than the bins have.
 TEST(SurfaceGrid, SaysHowMuchLiesInLayers) {
   Mesh mesh = plate(-0.5, 0.5, -0.5, 0.5);
   EXPECT_NEAR(grid_over(scene_of(mesh), 20, 20).overlapping_m2, 0.0, 1e-12);

@@ -1,4 +1,4 @@
-// TOML documents that the program writes: what is written reads back as the same values.
+// TOML documents that the program writes read back as equal values.
 #include "scenes/experiment/document.h"
 
 #include <gmock/gmock.h>

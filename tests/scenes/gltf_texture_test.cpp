@@ -142,9 +142,9 @@ TEST(GltfTexture, OtherCoordinatesThanTheFirstLeaveTheColourAsItIs) {
 }
 
 TEST(GltfTexture, AMeshWithoutCoordinatesIsTold) {
-  const std::string told = "'paint': its picture is left out";
+  const std::string reported = "'paint': its picture is left out";
   TestModel model = pictured_model();
-  EXPECT_THAT(model.read(with_pictures()).notices, testing::Not(Contains(HasSubstr(told))));
+  EXPECT_THAT(model.read(with_pictures()).notices, testing::Not(Contains(HasSubstr(reported))));
   TestModel other = pictured_model();
   other.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]
             ["KHR_texture_transform"]["texCoord"] = 1;
@@ -152,7 +152,7 @@ TEST(GltfTexture, AMeshWithoutCoordinatesIsTold) {
   model.json["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0");
   const GltfModel bare = model.read(with_pictures());
   EXPECT_EQ(bare.scene.instances.size(), 1u);
-  EXPECT_THAT(bare.notices, Contains(HasSubstr(told)));
+  EXPECT_THAT(bare.notices, Contains(HasSubstr(reported)));
 }
 
 TEST(GltfTexture, WrongReferencesAreRefusedWhenPicturesAreAsked) {

@@ -48,7 +48,7 @@ coefficient = { value = 1, sigma = 2 }
   EXPECT_TRUE(find_setting(root, "disturbance[0].coefficient")->is_table());
 }
 
-// A misspelt half of a pair left the other without a word to say why.
+// A misspelt half of a pair is reported.
 TEST(Uncertain, PairsWithAMisspeltOrMissingKeyAreNamed) {
   const auto message = [](const char* power) {
     SettingsNode root = parse_toml(std::string("[[source]]\npower_W = ") + power, "lamps.toml");

@@ -1,4 +1,4 @@
-// `fit-cell`, and what `power` says beyond the maximum power point, as a user meets them.
+// `fit-cell`, and the further results of `power`, as a user meets them.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -43,7 +43,7 @@ double json_value(const std::string& text, const std::string& name) {
   return std::stod(text.substr(value + 8));
 }
 
-// Half-cut module under uneven light: twice what one of its two groups gives.
+// Half-cut module under uneven light: twice the power of one of its two groups.
 TEST_F(ArrayCommand, TwinModulesAreOneCircuit) {
   write("plate.obj",
         "o plate\nv -0.4 -0.1 0\nv 0.4 -0.1 0\nv 0.4 0.1 0\nv -0.4 0.1 0\nusemtl m\nf 1 2 3 4\n");

@@ -87,7 +87,7 @@ TEST_F(Boundaries, LittleMemoryIsOneLineAndStatusThree) {
   }
 }
 
-// The last resort: whatever would end the program by a signal.
+// The last resort: faults that would end the program by a signal.
 TEST_F(Boundaries, FaultsAreOneLineAndStatusThree) {
   const std::string command = std::string(PHOTORQUE_BINARY_DIR) + "/photorque serve " +
                               std::string(PHOTORQUE_SOURCE_DIR) +

@@ -1,4 +1,4 @@
-// photorque check: planted mistakes are found with one line each, and what is shipped has none.
+// photorque check: planted mistakes are found with one line each, and shipped files have none.
 #include <regex>
 #include <set>
 
@@ -53,7 +53,7 @@ TEST_F(CheckCommand, SaysWhatEachCommandWouldDo) {
   }
 }
 
-// Every command that reads experiments: what it would do, or what it lacks.
+// Every command that reads experiments: its effect, or the missing tables.
 TEST_F(CheckCommand, LeavesNoCommandOut) {
   const std::string help = run("--help").out;
   static const std::regex verb(R"(\n  ([a-z][a-z-]*)  )");
@@ -66,8 +66,8 @@ TEST_F(CheckCommand, LeavesNoCommandOut) {
       const std::string name = (*it)[1];
       if (others.contains(name)) continue;
       // Beside a sweep no search is said, as both read the same tables.
-      const std::regex told("(^|\n)(" + name + "  |not ([a-z-]+, )*" + name + "[,:])");
-      EXPECT_TRUE(std::regex_search(said, told)) << file << ": " << name;
+      const std::regex reported("(^|\n)(" + name + "  |not ([a-z-]+, )*" + name + "[,:])");
+      EXPECT_TRUE(std::regex_search(said, reported)) << file << ": " << name;
       ++asked;
     }
     EXPECT_GE(asked, 15u);

@@ -188,9 +188,9 @@ TEST_F(CoupledCommand, ATableThatMissesItsToleranceIsAWarning) {
     const Outcome got = run("propagate " + experiment(sun) + " --set platform.tilt_limit_deg=120 " +
                             further + " --out " + at("o"));
     EXPECT_EQ(got.status, 0) << got.err;
-    const std::string told = summary("o").at("warnings").dump();
-    EXPECT_EQ(got.out.find("warning: ") != std::string::npos, told != "[]") << got.out;
-    return told;
+    const std::string reported = summary("o").at("warnings").dump();
+    EXPECT_EQ(got.out.find("warning: ") != std::string::npos, reported != "[]") << got.out;
+    return reported;
   };
   EXPECT_THAT(warned("--set light.tolerance=1e-6 --set light.max_traces=100"),
               HasSubstr("misses light.tolerance = 1e-06 of the largest: torque by up to "));

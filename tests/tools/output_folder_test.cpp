@@ -33,7 +33,7 @@ class OutputFolders : public CommandTest {
                                 lit_platform + arguments + " >/dev/null 2>&1";
     const pid_t child = ::fork();
     if (child == 0) {
-      ::signal(SIGINT, SIG_DFL);  // what a shell starts in the background ignores it
+      ::signal(SIGINT, SIG_DFL);  // background processes of a shell ignore it
       ::signal(SIGHUP, SIG_DFL);
       ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
       ::_exit(127);

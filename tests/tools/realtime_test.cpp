@@ -1,4 +1,4 @@
-// The parts of `serve`: what is let in, what a link does, how deadlines are counted.
+// The parts of `serve`: accepted packets, links, deadlines.
 #include <algorithm>
 #include <cmath>
 #include <cstring>

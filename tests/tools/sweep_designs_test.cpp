@@ -205,7 +205,7 @@ TEST_F(SweepDesigns, ThatFailAreNamedWithTheirError) {
   EXPECT_THAT(file_text(at("out/sweep.csv")), HasSubstr("source[0].irradiance_W_m2: found -3"));
   EXPECT_THAT(std::string(summary()["warnings"][0]), HasSubstr("design 2: source[0]"));
   EXPECT_EQ(figure("best_design"), 3.0);
-  // It may have been a full disk: the next run tries again what failed, and nothing else.
+  // It may have been a full disk: the next run repeats only the failed runs.
   EXPECT_THAT(sweep().out, HasSubstr("1 run now, 3 kept from before"));
 }
 

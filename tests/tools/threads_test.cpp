@@ -102,7 +102,7 @@ class Threads : public CommandTest, public ::testing::WithParamInterface<Command
     return std::regex_replace(text, std::regex("HERE"), folder_.string());
   }
 
-  // Every file by its path, but for what a clock says.
+  // Every file by its path, without values of the clock.
   std::map<std::string, std::string> results() const {
     static const std::regex wall_time("\"wall_time_s\": [^\n]*");
     std::map<std::string, std::string> all;

@@ -67,7 +67,7 @@ TEST_F(TrackingCommands, EstimatesAreRecordingsThatOthersRead) {
   const json summary = json::parse(got.out);
   EXPECT_LT(figure(summary, "smoother_error_arcsec"), figure(summary, "filter_error_arcsec"));
   EXPECT_LT(figure(summary, "filter_error_arcsec"), 40.0);
-  // A truth of another time has nothing to say of these rows.
+  // A truth of another time contains no row of these.
   const std::string later = write("later.csv",
                                   "t_s,q_w,q_x,q_y,q_z\n1e9,1,0,0,0\n1000000001,1,0,0,0\n"
                                   "1000000002,1,0,0,0\n");

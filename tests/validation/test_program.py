@@ -147,7 +147,7 @@ class AgainstTheProgram(unittest.TestCase):
         self.assertEqual(prove.main(words), 0)
         self.assertEqual(stamp.stat().st_mtime_ns, before)
 
-    def test_wrong_input_is_told_in_one_line(self):
+    def test_wrong_input_is_reported_in_one_line(self):
         wrong = (["nosuch.toml"], ["docs/proof.toml", "--set", "prove.seed=-1"], ["docs/proof.toml", "--cases", "nosuch"],
                  ["docs/proof.toml", "--program", "nosuch", "--cases", "tests/data/cases"])  # fmt: skip
         for words in wrong:

@@ -339,7 +339,7 @@ void case_b_sorted_embree(benchmark::State& state) {
   bare_embree(state, case_b(), true);
 }
 
-// Threads, points per replicate in what may be shaded.
+// Threads, points per replicate in bins that may be shaded.
 BENCHMARK(case_a_gather)
     ->Args({1, 16})
     ->Args({2, 16})

@@ -32,7 +32,7 @@ class CheckpointFile {
 
   // Whether the time between two states has passed.
   bool due() const { return std::chrono::steady_clock::now() >= next_; }
-  // InputError when it cannot be written; what was there stays.
+  // InputError when it cannot be written; the previous file stays.
   void write(const std::string& identity, double table_tilt_rad, const std::string& state);
 
   const std::filesystem::path& path() const { return path_; }
@@ -45,7 +45,7 @@ class CheckpointFile {
   std::chrono::steady_clock::time_point next_;
 };
 
-// A run and what ran beside it.
+// A run and its coupled simulations.
 struct CoupledResult {
   PropagationResult motion;  // with the events of lamps, light and battery among its own
   // Null where the file has no light or [light] mode is "off".
@@ -61,10 +61,10 @@ struct CoupledResult {
 // direction of the sun of [[source]]. InputError where both name a direction and differ.
 std::vector<std::string> orbit_overrides(const ExperimentFile& file);
 
-// InputError for what an experiment says of light and power twice: as a disturbance beside a scene.
+// InputError for light or power that an experiment states twice: as a disturbance beside a scene.
 void require_light_once(const ExperimentFile& file);
 
-// Names and hashes of inputs, line by line: part of what a run follows from.
+// Names and hashes of inputs, line by line: part of the identity of a run.
 std::string of_inputs(const std::vector<std::pair<std::string, std::string>>& inputs);
 
 // Propagates in the light of the experiment. A table of light first holds twice the initial tilt

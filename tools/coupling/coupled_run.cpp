@@ -59,7 +59,7 @@ CoupledRun::CoupledRun(const LightModel& light, std::shared_ptr<const RotationTa
       power_(run.initial.time_s, run.initial.charge_drawn_C) {
   for (const GroupOutput& group : outputs_) {
     has_sun_ = has_sun_ || group.group.is_sun;
-    if (group.group.position > 0) continue;  // the same lamps as at the first
+    if (group.group.position > 0) continue;  // lamps as at the first position
     const auto& all = group.output->switches_s();
     switches_s_.insert(switches_s_.end(), all.begin(), all.end());
     for (const double time_s : all) {

@@ -1,4 +1,4 @@
-// Light, power and attitude in one run: what happens beside the motion.
+// Light, power and attitude in one run: the simulations beside the motion.
 #pragma once
 
 #include <functional>
@@ -61,7 +61,8 @@ class CoupledRun {
   // Before the first step of the motion, unless the run goes on from a snapshot.
   void begin(Propagator& motion);
   bool has_begun() const { return begun_; }
-  // After every step of the motion: what it passed, and at the end of a segment the exchange.
+  // After every step of the motion: the instants within it, and at the end of a segment the
+  // exchange.
   void follow(Propagator& motion);
   void keep(Snapshot& snapshot);
 

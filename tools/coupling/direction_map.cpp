@@ -58,7 +58,7 @@ std::vector<Direction> directions_of(const WrenchTable& table, const DirectionGr
   return all;
 }
 
-// Without what only a full, regular sphere has, format_spad() refuses: then there is no such file.
+// format_spad() requires a full, regular sphere: otherwise there is no such file.
 bool covers_sphere(const WrenchTable& table) {
   const auto spans = [](const std::vector<double>& axis, double half) {
     return axis.size() > 1 && std::abs(axis.front() + half) < 1e-9 &&

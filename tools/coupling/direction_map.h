@@ -23,7 +23,8 @@ struct DirectionMap {
 // is for that, else by rays. When the directions cover the sphere, the wrench per pressure is a
 // file of the result in the SPAD layout. The experiment's only source must be a sun. Directions are
 // shared out over `threads` (0: all); `run` itself is best made for one. `watch` has each traced
-// for it. With a checkpoint what is done is kept there now and then, and gone on from.
+// for it. With a checkpoint, finished nodes are saved there periodically, and the run resumes from
+// it.
 DirectionMap map_over_directions(const Console& console, const OpticalRun& run, int threads,
                                  const NodeWatch& watch = {}, CheckpointFile* checkpoint = nullptr);
 
@@ -40,7 +41,7 @@ struct SunLight {
 // The wrench at one direction, about the point of the table.
 struct DirectionWrench {
   WrenchComponents direct{};
-  TwofoldWrench bounced;     // what light does that has met a surface before, twice
+  TwofoldWrench bounced;     // of light after its first bounce, twice
   WrenchComponents error{};  // standard error of the parts that both halves share
   uint64_t rays = 0;
   std::vector<std::string> warnings;

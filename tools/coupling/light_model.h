@@ -1,4 +1,4 @@
-// The light of a run of the attitude: the table [light] and what it does at any attitude.
+// The light of a run of the attitude: the table [light] and its effects at any attitude.
 #pragma once
 
 #include <functional>
@@ -95,7 +95,7 @@ class LightModel {
   // The angle that the first table holds, for a motion that begins at a tilt. What a live run does
   // is not known, and it cannot begin again: its table holds [light] max_tilt_deg or all angles.
   double first_angle_rad(double initial_tilt_rad, bool is_live) const;
-  // The table up to an angle, from the cache or traced now; says which on the console.
+  // The table up to an angle, from the cache or traced now; prints which of both.
   std::shared_ptr<const RotationTable> make_table(const Console& console,
                                                   double max_angle_rad) const;
 

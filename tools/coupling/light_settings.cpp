@@ -34,7 +34,7 @@ constexpr TablesKey switch_key("switch", "lamps are switched");
 constexpr TableKey light("light", "light in a run of the motion");
 }  // namespace light_key
 
-// Where programs keep what they can make again (freedesktop.org, XDG Base Directory Specification).
+// Folder for files that can be recomputed (freedesktop.org, XDG Base Directory Specification).
 std::optional<std::filesystem::path> user_cache() {
   const char* own = std::getenv("XDG_CACHE_HOME");
   if (own != nullptr && *own != '\0') return std::filesystem::path(own) / "photorque";

@@ -20,7 +20,7 @@ struct MotionRun {
   RunResult result;  // its files: recording.csv, attitude.aem
 };
 
-// Torques that act besides those of the experiment, and what the provenance says of them.
+// Torques that act besides those of the experiment, and their text in the provenance.
 struct FurtherTorques {
   std::vector<Disturbance> disturbances;
   std::vector<std::pair<std::string, std::string>> inputs;  // name, hash

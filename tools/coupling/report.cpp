@@ -55,17 +55,17 @@ bool has_column(const Table& table, const std::string& name) {
 Plot::Curve curve(const std::string& label, const std::vector<double>& x,
                   const std::vector<double>& y) {
   // As many points as a picture has columns, the extremes of each interval.
-  constexpr size_t stretches = 700;
+  constexpr size_t intervals = 700;
   Plot::Curve c;
   c.label = label;
   c.width = 1.2;
-  if (x.size() <= 2 * stretches) {
+  if (x.size() <= 2 * intervals) {
     c.x = x;
     c.y = y;
     return c;
   }
-  for (size_t s = 0; s < stretches; ++s) {
-    const size_t from = s * x.size() / stretches, to = (s + 1) * x.size() / stretches;
+  for (size_t s = 0; s < intervals; ++s) {
+    const size_t from = s * x.size() / intervals, to = (s + 1) * x.size() / intervals;
     const auto [low, high] = std::minmax_element(y.begin() + static_cast<std::ptrdiff_t>(from),
                                                  y.begin() + static_cast<std::ptrdiff_t>(to));
     for (const auto at : {std::min(low, high), std::max(low, high)}) {

@@ -185,7 +185,7 @@ void CoSimulation::run(double start_s, double stop_s) {
   changed_.notify_all();
 }
 
-// In the thread: what holds from this tick on.
+// In the thread: the commands from this tick on.
 ZeroOrderHold CoSimulation::at_tick(const LiveRow& row) {
   outputs_.take(row);
   tick_s_ = row.time_s;

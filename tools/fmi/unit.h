@@ -57,7 +57,7 @@ struct UnitDescription {
   double start_s = 0.0, stop_s = 0.0;  // [propagate] initial_time_s, and duration_s after it
   std::vector<UnitVariable> variables;
 };
-// InputError for what is wrong with the experiment's platform.
+// InputError for errors of the experiment's platform.
 UnitDescription describe_unit(const RunOptions& options);
 
 // One run. The propagation continues in a separate thread, which waits for every command, so it is

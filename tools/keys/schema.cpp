@@ -178,7 +178,7 @@ std::string quantity_of(const Key& key) {
   return unit.unit.empty() ? key.name : unit.stem + " of " + unit.dimension;
 }
 
-// Every key that a table can hold, whatever it chooses.
+// Every key that a table can hold, with any of its choices.
 void flatten(const std::vector<Key>& keys, std::vector<const Key*>& all) {
   for (const Key& key : keys) {
     all.push_back(&key);
@@ -219,7 +219,7 @@ class ObjectSchema {
   }
 
  private:
-  // Keys of one quantity that mean the same whatever was chosen.
+  // Keys of one quantity whose meaning is independent of the choice.
   bool is_one(const Key& key) const {
     const std::vector<const Key*>& same = variants_.at(quantity_of(key));
     const double to_SI = unit_of_key(key.name).to_SI;
@@ -288,7 +288,7 @@ class ObjectSchema {
     Json then = {{"propertyNames", {{"pattern", "^(" + allowed(key, choice) + ")$"}}}};
     Json properties = Json::object(), patterns = Json::object();
     const ObjectSchema inner(choice.keys,
-                             definitions_);  // what deeper choices decide is left to them
+                             definitions_);  // deeper choices decide their own keys
     for (const Key* own : flat(choice.keys)) {
       if (is_one(*own) || !inner.is_one(*own)) continue;
       const KeyUnit unit = unit_of_key(own->name);

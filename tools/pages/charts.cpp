@@ -25,7 +25,7 @@ std::string name_of(const Alternative& alternative) {
   return name.empty() ? "nothing missing" : name;
 }
 
-// Beside a bar that is as long as the best one's, only the difference says something.
+// Beside a bar of the length of the best one, only the difference is informative.
 std::string note_on(const Alternative& alternative, double best_log_evidence) {
   if (!alternative.remark.empty()) return spoken(alternative.remark);
   const double behind = best_log_evidence - alternative.log_evidence_relative;

@@ -27,8 +27,8 @@ BarChart dependence_chart(const Where& where);
 // `of`: which domain's, where motion and light were recorded together.
 BarChart ranking_chart(const Diagnosis& diagnosis, const std::string& of = {});
 
-// Readings beside both models, where the channel has them, above the residuals of both; what was
-// held out is shaded, twice the noise of a reading dotted.
+// Readings beside both models, where the channel has them, above the residuals of both;
+// held-out data are shaded, twice the noise of a reading dotted.
 Plot channel_plot(const ChannelSeries& channel, const RecordingSeries& recording);
 
 // "tilt 12 deg, heading 60 deg"
@@ -72,7 +72,7 @@ Map scan_map(const ScanGroup& group, const ScanView& shown, size_t number);
 
 // The curves that a sweep holds, by their numbers.
 std::vector<int> sweeps_of(const LightSeries& light);
-// A sweep: points beside both models, and what they miss.
+// A sweep: points beside both models, and their residuals.
 Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_found);
 
 // The array from its front as an element of a page, cells by their numbers, those that something

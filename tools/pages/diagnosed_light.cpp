@@ -107,7 +107,7 @@ void show_scans(const std::vector<ScanGroup>& groups, const OpticalRun& run, boo
   page.stage = std::move(stage);
 }
 
-// Runs: the platform over time in the light of the nominal model, what the array gave beside it.
+// Runs: the platform over time in the light of the nominal model, with the power of the array.
 void show_runs(const std::vector<RecordingSeries>& runs, const OpticalRun& optics, bool found,
                RunPage& page) {
   constexpr size_t most_states = 1500;

@@ -121,7 +121,7 @@ void add_sentence(std::string& text, const std::string& sentence) {
   text += (text.empty() ? "" : " ") + sentence;
 }
 
-// Angles between what was measured and the models, in body axes, with their errors.
+// Angles between measurement and models, in body axes, with their errors.
 struct Difference {
   Vec3 body = Vec3::Zero(), error_body = Vec3::Zero();
 };

@@ -197,7 +197,7 @@ std::function<void(const TracedNode&)> TorqueMapStage::watch() {
 RunFile torque_map_page(const OpticalRun& run, const WrenchTable& table, const RunResult& result,
                         TorqueMapStage stage, const PageHead& head) {
   RunPage page = page_of(result, head, {"largest_", "max_"});
-  // The torque is what the map is made for: the first that is shown.
+  // The torque is the purpose of the map: it is shown first.
   std::ranges::stable_partition(page.product.maps,
                                 [](const Map& map) { return map.title.starts_with("Torque"); });
   const bool by_tilt = table.angles == WrenchTable::Angles::tilt_heading;

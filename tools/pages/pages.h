@@ -1,4 +1,4 @@
-// The pages of the commands: what each of them found, with its scene.
+// The pages of the commands: results with their scene.
 #pragma once
 
 #include <memory>

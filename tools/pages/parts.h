@@ -44,15 +44,15 @@ void add_light(SceneStage& stage, const OpticalRun& run, const RigidTransform& l
                const OpticalResult& result, size_t lights);
 
 // The light at up to 12 of some attitudes of the body, evenly over them; each of them shows the
-// nearest, and the stage's remark says so.
+// nearest, and the stage's remark states it.
 void light_along(SceneStage& stage, const OpticalRun& run, const std::vector<Quat>& lab_from_body);
 
 // The surface of a receiver's bins, to be painted with maps that the caller gives.
 PaintedSurface painted_receiver(const OpticalRun& run, const std::string& receiver);
 
 // The even ellipsoid whose principal moments are in the platform's proportions, half as long as
-// 1 m at its longest, and a rod along body x; camera and radius to match, and a remark that says
-// so. A platform about one axis has one moment: a disc about that axis.
+// 1 m at its longest, and a rod along body x; camera and radius to match, and a remark that
+// states it. A platform about one axis has one moment: a disc about that axis.
 SceneStage platform_stage(const Platform& platform);
 
 // Recordings as people know them: the end of one that was held out is part of it again, names are

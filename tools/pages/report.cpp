@@ -75,7 +75,7 @@ std::string count(int64_t number) {
   return digits;
 }
 
-// The figures that say at a glance what the finding rests on.
+// The figures on which the finding rests.
 std::string cards(const Diagnosis& d) {
   const auto card = [](const std::string& value, const std::string& meaning) {
     return tag("div", tag("b", value) + tag("span", meaning));
@@ -259,7 +259,7 @@ std::string first_of(const std::string& what, size_t all, size_t most) {
                                     std::to_string(most) + ".");
 }
 
-// Scans at each attitude: measured, nominal, and what either model leaves.
+// Scans at each attitude: measured, nominal, and the residuals of both models.
 std::string scan_figures(const RecordingSeries& recording, bool found) {
   constexpr size_t most = 6;  // attitudes
   std::string figures;

@@ -99,7 +99,7 @@ std::string bash_script(const CLI::App& app) {
          "complete -o default -F _photorque photorque\n";
 }
 
-// Colons and brackets have a meaning in what zsh describes options by.
+// Colons and brackets have a meaning in zsh's descriptions of options.
 std::string zsh_text(const std::string& text) {
   std::string safe;
   for (const char c : text) {

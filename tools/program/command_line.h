@@ -1,4 +1,4 @@
-// The command line, read by CLI11, and what other programs read of it: help, manual page and
+// The command line, read by CLI11, and its texts for other programs: help, manual page and
 // completions for shells.
 #pragma once
 

@@ -14,7 +14,6 @@
 #include <system_error>
 
 #include "core/errors.h"
-#include "core/old_names.h"
 #include "core/provenance.h"
 #include "core/settings/settings.h"
 #include "core/text/format.h"
@@ -72,17 +71,13 @@ int run(int argc, char** argv, Interruption& interruption) {
   const CommandOptions& options = *line.command.options;
   if (options.out && options.out->empty()) throw InputError({"--out"}, "", "nothing", "a folder");
   hold_memory(options.max_memory_GB);
-  const int status = run_command(line.command, {verbs, &interruption});
-  for (const std::string& notice : old_name_notices()) {
-    if (!options.quiet) std::fprintf(stderr, "note: %s\n", clean_text(notice).c_str());
-  }
-  return status;
+  return run_command(line.command, {verbs, &interruption});
 }
 
 // The last resort: one line and a documented status where a library, or this program, would end by
-// a signal. Calls nothing but what is allowed in a handler.
+// a signal. Calls only functions that are allowed in a handler.
 [[noreturn]] void end_after_fault(int) {
-  // Libraries that do not check what they allocate end here too.
+  // Libraries that do not check their allocations end here too.
   constexpr size_t some = size_t{256} << 20;
   const bool has_memory = ::mmap(nullptr, some, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS,
                                  -1, 0) != MAP_FAILED;

@@ -29,7 +29,7 @@ class TickClock {
   // Seconds of the run at an instant of the clock.
   double run_s(int64_t at_ns) const;
   // A tick was served at `now_ns` after `computing_ns` of work; whether it missed its deadline.
-  // NumericalError when it did and OnMiss::stop says so.
+  // NumericalError when it did and OnMiss::stop requires it.
   bool served(size_t tick, int64_t now_ns, int64_t computing_ns);
 
   // Quantities ticks, ticks_missed, slipped_s, lateness and computing time (p50, p99, p99.99,

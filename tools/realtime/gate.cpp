@@ -50,7 +50,7 @@ std::optional<Refusal> Gate::fault_of(std::span<const std::byte> bytes,
   return {};
 }
 
-// Whether this sender may say it now.
+// Whether this sender may send this packet now.
 std::optional<Refusal> Gate::stands_against(const ClientPacket& packet, uint64_t sender,
                                             int64_t now_ns) const {
   const photorque_header& header = packet.command.header;

@@ -1,7 +1,7 @@
 // A simulated wireless link: packets come late, in another order, in bursts or not at all.
 //
 // Every draw is a hash of the seed, the direction and the packet's number, so that the same packets
-// meet the same fate whatever the clock does.
+// are treated equally at any speed of the clock.
 #pragma once
 
 #include <algorithm>

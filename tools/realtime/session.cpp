@@ -232,7 +232,7 @@ void Session::send(const photorque_measurement_packet& packet, uint32_t flags) {
   ++sent_;
 }
 
-// Datagrams may be lost even on one machine: what was asked is asked again.
+// Datagrams may be lost even on one machine: the request is repeated.
 void Session::await_answer() {
   const int64_t give_up_ns = monotonic_ns() + in_ns(settings_.client_timeout_s);
   constexpr int64_t again_ns = 200'000'000;

@@ -67,7 +67,7 @@ class Session {
   // Commands that acted, for `propagate` to repeat the run.
   const Schedule& commands() const { return acted_; }
   double last_tick_s() const { return start_s_ + tick_s_; }
-  // Deadlines, packets and what was refused.
+  // Deadlines, packets and rejections.
   Product product() const;
 
  private:

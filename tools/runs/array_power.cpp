@@ -23,8 +23,8 @@ std::vector<double> mean_wavelengths_m(const std::vector<double>& ideal_responsi
   return wavelength_m;
 }
 
-// Within a band all light counts alike, whichever source it is from: said where it is not. From the
-// ampere per watt of each source in the band.
+// Within a band the light of all sources counts alike: a notice is printed where it does not. From
+// the ampere per watt of each source in the band.
 std::vector<std::string> unlike_sources(const QuantumEfficiency& efficiency, const Bands& bands,
                                         const std::vector<WeighedSpectrum>& spectra) {
   constexpr double alike = 0.01;

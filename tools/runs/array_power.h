@@ -32,7 +32,7 @@ ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known = nullptr);
 // deliver more than they absorb.
 ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const TraceResult& result);
 
-// `array` with its cells at the temperature of `result`, whatever the light.
+// `array` with its cells at the temperature of `result`, in any light.
 ArrayPower held_at(ArrayPower array, const ArrayResult& result);
 
 // "steady state: both faces in still air of 293.15 K, emissivity 0.84", or "as stated".
@@ -44,7 +44,7 @@ std::optional<std::string> above_rated(const ArrayDesign& design, double kelvin)
 
 // array_product() and the fractions that need the emitted power: "illumination_efficiency" (power
 // on the cells over emitted) and "light_to_electric_efficiency".
-// And the table "cell_temperature": whence it is, and what the power loses per kelvin.
+// And the table "cell_temperature": its origin, and the loss of power per kelvin.
 Product array_power_product(const ArrayDesign& design, const ArrayResult& array,
                             const TraceResult& result);
 

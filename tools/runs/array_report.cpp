@@ -107,10 +107,9 @@ Table sensitivity_table(const Console& console, const ArrayDesign& design,
   return table;
 }
 
-// InputError for a figure that is neither given nor published.
-// What the target requires: EQE V_oc FF, light on the cells; what remains of it at the tilts that
-// powers were published for; what known cells reach; what changes the power of this array. Tables
-// "target", "known_cells", "sensitivities".
+// Requirements of the target (EQE V_oc FF, light on the cells), the power at tilts with published
+// powers, the figures of known cells, and the sensitivities of this array. Tables "target",
+// "known_cells", "sensitivities". InputError for a figure that is neither given nor published.
 Product target_report(const Console& console, const ArrayTarget& target,
                       const std::vector<PublishedFigure>& published, const ArrayDesign& design,
                       const ArrayResult& result, const LossInputs& light, double tilt_rad) {

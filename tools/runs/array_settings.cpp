@@ -1,4 +1,4 @@
-// [array] beyond the array itself: what `power` reports of it.
+// [array] beyond the array: tables of further results of `power`.
 #include <algorithm>
 
 #include "core/constants.h"

@@ -16,7 +16,7 @@ struct ConsoleSinks {
   std::function<void(const std::string& what, double fraction)> progress;
   std::function<void(const std::string&)> note;  // how far a long task is, in words
   std::function<void()> done;                    // the task of `progress` is over
-  bool has_details = true;                       // what details() says is wanted
+  bool has_details = true;                       // details() are printed
 };
 
 class Console {
@@ -27,7 +27,7 @@ class Console {
   void line(const std::string& text = "") const;
   void heading(const std::string& text) const;
 
-  // For what only --verbose prints: silent without it.
+  // For output of --verbose only: silent without it.
   Console details() const;
 
   // For TraceOptions::progress and the like; empty without a listener.

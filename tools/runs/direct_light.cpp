@@ -34,7 +34,7 @@ Estimate direct_bin_W(const FluxMapReceiver& map, const BinSums& sums, size_t bi
   return with_bound(estimate_from_replicates(values), bound_W);
 }
 
-// Rays are single precision: what cancels does so to this fraction of what was emitted.
+// Rays are single precision: cancelling sums keep an error of this fraction of the emitted sum.
 constexpr double ray_rounding = 1e-7;
 
 // `ray_W`: of one ray, on the mean.
@@ -76,7 +76,7 @@ void replace_direct(const Gathered& gathered, BinSums& sums) {
               sums.sums.begin() + static_cast<std::ptrdiff_t>(static_cast<size_t>(r) * sums.bins));
   }
   sums.bound = gathered.direct.bound;
-  sums.bound.resize(sums.bins, 0.0);  // what bounces comes by rays
+  sums.bound.resize(sums.bins, 0.0);  // bounces come from rays
 }
 
 std::array<Estimate, 3> total_N_m(const TorqueMapReceiver& map, const BinSums& sums) {
@@ -154,7 +154,7 @@ struct Wanted {
 
   double force_N() const { return emitted_W / speed_of_light_m_s; }
 
-  // Whether it is worth while; else says so.
+  // Whether it is worth while; otherwise prints a note.
   bool pays(const std::string& what, size_t pairs) const {
     if (!weigh_cost || gathering_pays(pairs, rays)) return true;
     route.notices.push_back(cost_notice(what, pairs, rays));

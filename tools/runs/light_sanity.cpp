@@ -107,7 +107,7 @@ std::vector<InputError> light_mistakes(const OpticalRun& run) {
       on_receiver_W[i] += lit_W(experiment.receivers[i], result.sums[i]);
     }
   }
-  if (!mistakes.empty()) return mistakes;  // which says why maps are dark
+  if (!mistakes.empty()) return mistakes;  // which state why maps are dark
   for (size_t i = 0; i < experiment.file.receivers.size(); ++i) {
     const NamedReceiver& receiver = experiment.receivers[i];
     if (!receiver.flux_map || on_receiver_W[i] > 0.0) continue;

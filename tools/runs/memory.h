@@ -17,7 +17,7 @@ uint64_t memory_limit_bytes(std::optional<double> allowed_GB);
 // memory" and exit status 3.
 void hold_memory(std::optional<double> allowed_GB);
 
-// Throws InputError at `where` when about `bytes` for `what` are more than the limit.
+// Throws InputError at `where` if about `bytes` for `what` exceed the limit.
 void require_memory(std::optional<double> allowed_GB, uint64_t bytes, const InputLocation& where,
                     const std::string& what);
 

@@ -191,7 +191,7 @@ double loud_sigma_of(int replicates) {
 }  // namespace
 
 std::vector<std::string> OpticalRun::warnings(const OpticalResult& result) const {
-  // The likely causes, and what to do.
+  // The likely causes and remedies.
   constexpr const char* rarely_met =
       ": few rays carry much of it; raise trace.rays until the figure falls";
   constexpr const char* by_edges =

@@ -102,9 +102,9 @@ using NodeWatch = std::function<void(const TracedNode&)>;
 // The warnings of several runs, each once: at most three in full, then how many more there are.
 class Warnings {
  public:
-  // `where` says of which run: "tilt 5 deg, heading 0".
+  // `where` names the run: "tilt 5 deg, heading 0".
   void add(const std::vector<std::string>& warnings, const std::string& where);
-  // Prints the results; and into what is written.
+  // Prints the results, and adds them to the output.
   void print(const Console& console) const;
   Provenance into(Provenance provenance) const;
 
@@ -115,7 +115,7 @@ class Warnings {
   size_t count_ = 0;
 };
 
-// Where the light went and what it did, as text.
+// The power balance and the effects of the light, as text.
 void print_trace(const Console& console, const OpticalRun& run, const OpticalResult& result);
 
 // Adds the items of `more` to `product`.

@@ -21,14 +21,14 @@ struct RunOptions {
   // The experiment's file. With a given text it need not exist: it is what messages call the text,
   // and files that the text names are relative to its folder.
   std::filesystem::path experiment;
-  std::optional<std::string> text;      // TOML instead of what the file says
+  std::optional<std::string> text;      // TOML in place of the file's text
   std::vector<std::string> overrides;   // KEY=VALUE, in order
   int threads = 0;                      // 0: all
   std::optional<uint64_t> seed;         // over the experiment's own
   std::optional<double> target_error;   // over [trace] target_error
   std::optional<double> max_time_s;     // over [trace] max_time_s
   bool allow_outside = false;           // over [scene] allow_outside
-  std::optional<double> max_memory_GB;  // most that the run may take; nothing: what is free
+  std::optional<double> max_memory_GB;  // limit of the run; nothing: free memory
   std::vector<FurtherLamp> lamps = {};  // that shine besides those of the experiment
 
   // The text, or that of the file.

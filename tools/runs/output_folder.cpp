@@ -24,9 +24,9 @@ InputError refused(const fs::path& path, const std::string& found, const std::st
 
 // The process that cleans up after a stopped run (Interruption) holds its lock for some
 // milliseconds more.
-bool take_lock(int descriptor, int how, bool patiently) {
+bool take_lock(int descriptor, int how, bool waits) {
   constexpr int tries = 50, apart_us = 20'000;
-  if (patiently) return ::flock(descriptor, how) == 0;
+  if (waits) return ::flock(descriptor, how) == 0;
   for (int i = 0; ::flock(descriptor, how | LOCK_NB) != 0; ++i) {
     if (errno != EWOULDBLOCK || i == tries) return false;
     ::usleep(apart_us);

@@ -15,7 +15,7 @@ inline constexpr Range conversion_range{0.0, 1.0, true, false};
 // [supply_trade.battery]: specific_energy_Wh_kg (150 ± 50, of the pack), usable_fraction (0.9),
 // electrodes_m (how far the lithium moves along body x, 3.2e-4).
 SupplyOption battery_option(const Settings& settings, const SupplyTask& task);
-// The torque of its lithium at a charge drawn, as a fraction of what the task draws, at zero tilt.
+// The torque of its lithium at a charge drawn, as a fraction of the task's charge, at zero tilt.
 double battery_torque_N_m(const Settings& settings, const SupplyTask& task, double fraction);
 
 // [supply_trade.cable]: voltage_V (24), length_m, strands, strand_diameter_m,

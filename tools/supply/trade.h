@@ -1,5 +1,4 @@
-// Ways to bring power aboard, side by side: what arrives over the tilt, what it weighs, and what it
-// disturbs.
+// Comparison of power supplies: power over the tilt, mass, and disturbance.
 #pragma once
 
 #include <functional>
@@ -26,7 +25,7 @@ struct SupplyTask {
 // At one tilt, about the axis that tilts.
 struct SupplyPoint {
   Estimate delivered_W;  // to the load
-  // Mean torque; what alternates so fast that it turns nothing stands beside it, as an amplitude.
+  // Mean torque; fast alternating torque without effect is separate, as an amplitude.
   Estimate torque_N_m;
   Estimate alternating_N_m;
 };
@@ -42,8 +41,8 @@ struct SupplyOption {
   std::vector<std::pair<std::string, Estimate>> figures;
 };
 
-// Numbers with the user's errors, and what follows from them: values at the middle, errors from
-// each input moved by its sigma to either side, added in squares (to first order).
+// Numbers with the user's errors, and their results: values at the middle, errors from each input
+// moved by its sigma to either side, added in squares (to first order).
 class UncertainInputs {
  public:
   // Reads a key that may be { value, sigma }; gives its index.

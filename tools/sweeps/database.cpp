@@ -15,7 +15,7 @@ namespace {
 
 constexpr int application = 0x70687471;  // "phtq", in the file's head
 constexpr int format = 1;
-constexpr int patience_ms = 60000;  // for another process that is writing
+constexpr int timeout_ms = 60000;  // for another process that is writing
 
 constexpr const char* schema = R"(
 CREATE TABLE IF NOT EXISTS run(
@@ -139,7 +139,7 @@ RunDatabase::RunDatabase(const std::filesystem::path& path) : path_(path) {
                         nullptr) != SQLITE_OK) {
       fail();
     }
-    sqlite3_busy_timeout(handle_, patience_ms);
+    sqlite3_busy_timeout(handle_, timeout_ms);
     prepare_tables();
   } catch (...) {
     sqlite3_close(handle_);
@@ -160,7 +160,7 @@ void RunDatabase::require_plain_tables() const {
   if (others.step() && others.whole(0) > 0) fail("a database with other tables than a sweep's");
 }
 
-// Readers do not wait for writers (WAL), and what is committed stays after a power cut (FULL).
+// Readers do not wait for writers (WAL), and committed runs survive a power cut (FULL).
 void RunDatabase::prepare_tables() {
   Statement tables(*this, "SELECT count(*) FROM sqlite_master");
   const bool is_new = tables.step() && tables.whole(0) == 0;
@@ -178,7 +178,7 @@ void RunDatabase::prepare_tables() {
          SQLITE_OK) {
     const bool busy = (sqlite3_errcode(handle_) & 0xff) == SQLITE_BUSY;
     const auto waited = std::chrono::steady_clock::now() - begin;
-    if (!busy || waited > std::chrono::milliseconds(patience_ms)) fail();
+    if (!busy || waited > std::chrono::milliseconds(timeout_ms)) fail();
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   execute("PRAGMA synchronous = FULL");

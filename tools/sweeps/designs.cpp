@@ -102,7 +102,7 @@ std::string where_it_failed(const SweepPlan& plan, size_t run) {
   return where.empty() ? "" : " (" + where + ")";
 }
 
-// Larger is better in all of them; empty where the design has no say.
+// Larger is better in all of them; empty where the design does not count.
 std::vector<double> merits(const SweepPlan& plan, const Design& design) {
   std::vector<double> all;
   if (!design.feasible) return all;

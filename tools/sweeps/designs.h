@@ -1,4 +1,4 @@
-// Designs: what their runs gave together, which keep to the constraints, which are best.
+// Designs: the combined results of their runs, their constraints, and the best designs.
 #pragma once
 
 #include <optional>

@@ -20,7 +20,7 @@ std::string shard_name(size_t number, size_t count) {
   return std::to_string(number) + "-of-" + std::to_string(count);
 }
 
-// An error that a run ended with, said of its plan: the values reach it as if by --set.
+// An error of a run, reported for its plan: the values reach it as if by --set.
 std::string without_origin(const std::string& text) {
   constexpr std::string_view by_set = "--set: ";
   return text.starts_with(by_set) ? text.substr(by_set.size()) : text;

@@ -35,7 +35,7 @@ class RunEngine {
     RunOptions options;
     std::string command;
     std::filesystem::path database;
-    // Runs the command and gives its figures; throws what goes wrong.
+    // Runs the command and returns its figures; throws its errors.
     std::function<std::vector<Figure>(const RunOptions&)> run;
     // Called with the figures of the first run that succeeds.
     std::function<void(const std::vector<Figure>&)> first = {};

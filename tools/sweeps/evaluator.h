@@ -1,4 +1,4 @@
-// From the changes of a design to what it is worth: its runs, those of its built copies, together.
+// From the changes of a design to its figures: its runs and those of its built copies, combined.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// The designs of a sweep: which keys of an experiment take which values, and what is asked of them.
+// The designs of a sweep: the values of the experiment's keys, objectives and constraints.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace photorque {
 
-// One key of the experiment and what it takes in turn, as TOML values ("3.5", "\"gaussian\"").
+// One key of the experiment and its values in turn, as TOML ("3.5", "\"gaussian\"").
 struct SweepAxis {
   std::string key;
   std::vector<std::string> values = {};  // of each design of a random plan, of each step of a grid
@@ -63,7 +63,7 @@ struct Tolerance {
 };
 
 // Copies of a design as they would be built. The n-th has the same draws in every design, so that
-// designs are compared by what they are and not by luck.
+// the comparison of designs does not depend on chance.
 struct BuiltCopies {
   std::vector<Tolerance> tolerances;
   size_t copies = 0;

@@ -10,7 +10,7 @@ namespace photorque {
 
 inline constexpr size_t max_designs = 1000000;
 
-// 15 digits: what a decimal file says, without the rest of its binary form.
+// 15 digits: the decimal number of a file, without the rest of its binary form.
 std::string toml_number(double value);
 
 // A value as TOML text, its numbers by toml_number().

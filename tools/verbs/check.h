@@ -12,15 +12,15 @@ namespace photorque {
 struct CheckReport {
   struct Command {
     std::string name;
-    std::string what;  // what the command would do, in a sentence
+    std::string what;  // effect of the command, in a sentence
   };
   std::vector<Command> commands;
-  std::vector<Command> impossible;  // what the file has tables for, and why it cannot be done
+  std::vector<Command> impossible;  // commands with tables in the file, and why they cannot run
   std::vector<std::string> tables;  // that the file has, in the order of the documents
   // Every key that is unknown, of the wrong type or out of range; beside them, of tables without
   // such, the first that a run would end with.
   std::vector<InputError> mistakes;
-  std::vector<std::string> notes;  // what the readers had to assume
+  std::vector<std::string> notes;  // assumptions of the readers
 };
 
 enum class KeyCheck {

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The curves of a file, cleaned; what was left out goes to the notes.
+// The curves of a file, cleaned; the notes state the omitted points.
 void add_curves(const fs::path& file, std::optional<double> irradiance_W_m2,
                 std::optional<double> temperature_K, FitTask& task) {
   std::vector<MeasuredCurve> curves = curves_in(whole_text(file), file.string());
@@ -355,7 +355,7 @@ Product fit_datasheet(const FitTask& task, const Console& console) {
   FitTask at_first = task;
   at_first.temperature_K = task.datasheet[0].temperature_K;
   check_ideality(fit.diode, at_first);
-  // The search for the gap ends there, whatever the slope says.
+  // The search for the gap ends there for any slope.
   constexpr double lowest_eV = 0.3, highest_eV = 4.0;
   if (!(fit.model.gap_eV > lowest_eV && fit.model.gap_eV < highest_eV)) {
     throw InputError({}, "fit.open_circuit_slope_per_K",
@@ -424,7 +424,7 @@ Product fit_uneven_light(const FitTask& task, const Console& console) {
   return product;
 }
 
-// The cell of a module in a library, as keys, and what it is rated at beside what it gives.
+// The cell of a module in a library, as keys, and its listed and computed ratings.
 Product list_module(const ListedModule& module, const Console& console) {
   const CellParameters& p = module.cell.reference;
   const RatedPoint& rated = module.rated;

@@ -75,7 +75,7 @@ Product parameter_product(const std::vector<CellRow>& rows) {
 void print_rows(const Console& console, const std::vector<CellRow>& rows) {
   console.heading("Fitted parameters (± standard error)");
   for (const CellRow& row : rows) {
-    // A limit is printed beside the name of what it limits.
+    // A limit is printed beside the name of its parameter.
     std::string name = row.name;
     if (row.is != Is::value) name = name.substr(0, name.find('_')) + "_ohm";
     console.line("  " + padded(name, 26) + words_of(row));

@@ -22,7 +22,7 @@ struct FitTask {
   // Curves with light and temperature, where they are not repeats.
   std::vector<CurveAt> conditions;
   std::vector<std::string> names;  // of the sweeps
-  std::vector<std::string> notes;  // what was left out of them
+  std::vector<std::string> notes;  // parts that were left out
   std::optional<ShuntLaw> shunt_law;
   std::vector<RatedPoint> datasheet;
   std::optional<ListedModule> module;
@@ -38,7 +38,7 @@ struct FitTask {
 };
 
 // A figure of a fit. A limit (95 %, one-sided) replaces a number that the data do not determine;
-// its name says so: "shunt_above_ohm".
+// its name states it: "shunt_above_ohm".
 struct CellRow {
   enum class Is { value, lower_limit, upper_limit };
   std::string name;
@@ -53,7 +53,7 @@ Product parameter_product(const std::vector<CellRow>& rows);
 void print_rows(const Console& console, const std::vector<CellRow>& rows);
 // Parameters that are positive by their nature and come out with an error as large as themselves.
 void print_undetermined(const Console& console, const std::vector<CellRow>& rows);
-// Each bound on which the fit ended: key, bound, what it means.
+// Each bound on which the fit ended: key, bound, meaning.
 void print_bounds(const Console& console, const std::vector<BoundReached>& bounds);
 void print_key(const Console& console, const char* name, double value,
                const std::string& comment = "");

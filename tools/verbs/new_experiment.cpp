@@ -103,8 +103,8 @@ Vec3 middle_m(const Scene& scene, const std::string& path) {
   return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box.center());
 }
 
-// The part that light from above most likely is meant for: one whose name says so, else the one
-// with most surface to be seen from above.
+// The part that most likely receives the light from above: by its name, else the one with the
+// largest surface seen from above.
 std::string lit_node(const Scene& scene) {
   std::string best;
   double best_score = -1.0;

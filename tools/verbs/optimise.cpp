@@ -21,7 +21,7 @@ SearchBox box_of(const SweepPlan& plan) {
   return box;
 }
 
-// The experiment as it stands, where it says what an axis is; else the middle.
+// The value of the experiment for an axis, if it states one; else the middle.
 std::vector<double> start_of(const SearchBox& box, const SweepPlan& plan,
                              const RunIdentity& identity) {
   std::vector<double> start;
@@ -30,7 +30,7 @@ std::vector<double> start_of(const SearchBox& box, const SweepPlan& plan,
     try {
       value = number_in(toml_text(identity.value({}, plan.axes[i].key))).value_or(value);
     } catch (const InputError&) {
-      // In another unit, or not said at all.
+      // In another unit, or not stated.
     }
     start.push_back(std::clamp(value, box.low[i], box.high[i]));
   }

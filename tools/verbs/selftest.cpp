@@ -1,5 +1,5 @@
-// photorque selftest: whether this machine computes what it should. Small experiments whose answers
-// are known in closed form, through the same readers, tracer, propagator and writers as any other.
+// photorque selftest: whether this machine computes correctly. Small experiments whose answers are
+// known in closed form, through the same readers, tracer, propagator and writers as any other.
 #include <algorithm>
 #include <cmath>
 #include <map>

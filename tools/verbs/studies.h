@@ -1,4 +1,4 @@
-// Shared by `sweep` and `optimise`: a command as what their runs do, and their results.
+// Shared by `sweep` and `optimise`: the command of their runs, and their results.
 #pragma once
 
 #include <functional>
@@ -21,7 +21,7 @@ SweepPlan read_study_plan(const ExperimentFile& file, const std::vector<Verb>& v
 RunEngine::Task study_task(const RunOptions& options, const SweepPlan& plan,
                            const std::vector<Verb>& verbs, const std::filesystem::path& database);
 
-// The error of a study in which nothing succeeded, as said of design `design`.
+// The error of a study in which nothing succeeded, as reported for design `design`.
 [[noreturn]] void throw_failed_study(const CommandOptions& options, const RunOutcome& outcome,
                                      size_t design, size_t count);
 

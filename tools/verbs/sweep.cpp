@@ -1,4 +1,4 @@
-// photorque sweep: one command over many designs, and what they gave as one table.
+// photorque sweep: one command over many designs, with their results as one table.
 #include <algorithm>
 #include <cstdio>
 

@@ -229,7 +229,7 @@ static std::string clean_lines(const std::string& text) {
 Console terminal(const CommandOptions& options) {
   if (options.quiet || options.json) return Console();
   ConsoleSinks sinks;
-  // At once, also into a pipe: a program may wait for the line that says where a run listens.
+  // At once, also into a pipe: a program may wait for the line with the address of a run.
   const auto print = [](const std::string& text) {
     std::printf("%s\n", clean_lines(text).c_str());
     std::fflush(stdout);

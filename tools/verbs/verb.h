@@ -1,5 +1,6 @@
-// A command of the program: its options as data, and what runs with them. One file each, which
-// needs no library of command lines: tools/program parses the options and prints help and manual.
+// A command of the program: its options as data, and the function that runs with them. One file
+// each, which needs no library of command lines: tools/program parses the options and prints help
+// and manual.
 #pragma once
 
 #include <filesystem>
@@ -39,7 +40,7 @@ struct CommandOptions : RunOptions {
 // The program around a command.
 struct Program {
   const std::vector<Verb>& verbs;
-  Interruption* interruption;  // null: a signal leaves what is half written
+  Interruption* interruption;  // null: a signal leaves incomplete files
 };
 
 // One option: where its value goes, and what --help says of it. Options are "--page" or "-o,--out";
@@ -78,7 +79,7 @@ struct Command {
   void add_results(CommandOptions& common);
   // The experiment with --set, those of results, and the common options.
   void add_experiment(CommandOptions& common, Folder writes = Folder::own, bool required = true);
-  // Also what a trace can be asked for: --target-error, --max-time, --allow-outside.
+  // Also the options of a trace: --target-error, --max-time, --allow-outside.
   void add_traced_experiment(CommandOptions& common, Folder writes = Folder::own);
   void add_recordings(std::vector<std::filesystem::path>& recordings);
   void add_page(bool& page);
@@ -93,7 +94,7 @@ struct Verb {
   std::string name;
   std::string summary;  // one sentence for --help
   std::function<Command()> command;
-  // Of an experiment: the tables that it reads, and what it cannot run without, in words.
+  // Of an experiment: the tables that it reads, and those that it requires, in words.
   std::vector<std::string> tables = {};
   std::string needs = {};
   // One design of a sweep over it: no text, no files. Empty: it gives no figures.

@@ -1,4 +1,4 @@
-// Laminar boundary layers on what turns: T = −k |ω|^½ ω (eq. 18, 20, 21).
+// Laminar boundary layers on a rotating body: T = −k |ω|^½ ω (eq. 18, 20, 21).
 //
 // coefficient: k ≥ 0 [N m s^1.5]; or one [[disturbance.part]] per body of external_air.h, whose
 // friction about the vertical axis is summed in the environment's air. The law is taken the same

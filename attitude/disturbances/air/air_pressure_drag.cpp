@@ -1,4 +1,4 @@
-// Form drag of what stands in the air: T = −k |ω| ω (eq. 22).
+// Form drag of parts in the air: T = −k |ω| ω (eq. 22).
 //
 // coefficient_N_m_s2: k ≥ 0; or three of them, T = −|ω| diag(k) ω, of a body whose shape differs
 // about its axes; or one [[disturbance.part]] per body of external_air.h, whose form

@@ -26,7 +26,7 @@ enum class AirShape {
   blunt_face,        // a face that meets the air square: a stiffener, a box
 };
 
-// One or several equal parts. Which lengths a shape needs is said at read_air_parts().
+// One or several equal parts. read_air_parts() lists the lengths that a shape needs.
 struct AirPart {
   std::string name = {};
   AirShape shape = AirShape::disc;

@@ -1,4 +1,4 @@
-// The air film between ball and socket in closed form: what it carries and how it drags.
+// The air film between ball and socket in closed form: load and drag.
 //
 // The ball is a sphere of radius R in a concentric socket that reaches from the bottom to the polar
 // angle θ_S. Around the bottom, up to θ_r, may lie a recess: full inlet pressure, no shear. The
@@ -62,7 +62,7 @@ struct FilmAir {
   double viscosity_Pa_s = 1.813e-5;
 };
 
-// A load and what it takes.
+// A load, with the pressure and flow that it needs.
 struct FilmState {
   double load_N = 0.0;
   double flow_kg_s = 0.0;

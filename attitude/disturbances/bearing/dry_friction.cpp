@@ -46,12 +46,11 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 DisturbanceKind kind() {
   return {.name = "dry_friction",
-          .summary = "rubbing contact: a torque against the motion, whatever the rate",
+          .summary = "dry contact: a torque against the motion, independent of the rate",
           .read = read,
-          .screening =
-              {.parametrisations = {{"something rubs: a torque of constant size against the motion",
-                                     {EffectKey::not_negative(friction.name, 5e-6)}}},
-               .needs = Requirement::bearing},
+          .screening = {.parametrisations = {{"a contact brakes with a torque of constant size",
+                                              {EffectKey::not_negative(friction.name, 5e-6)}}},
+                        .needs = Requirement::bearing},
           .keys = {friction, key::creep_rate}};
 }
 

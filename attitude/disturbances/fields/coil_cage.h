@@ -41,8 +41,8 @@ Vec3 straight_wire_field_T(const Vec3& from_m, const Vec3& to_m, double current_
 // Field of a closed polygon [T].
 Vec3 polygon_field_T(std::span<const Vec3> corners_m, double current_A, const Vec3& at_m);
 
-// A Helmholtz cage: three pairs of square coils around the platform, and what they are asked for.
-// The fields are those of straight wires, exact everywhere off the wires.
+// A Helmholtz cage: three pairs of square coils around the platform, and the required field. The
+// fields are those of straight wires, exact everywhere off the wires.
 
 // Two equal square coils about a lab axis through the centre, one on each side of it.
 struct CoilPair {

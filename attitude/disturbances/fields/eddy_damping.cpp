@@ -30,7 +30,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 DisturbanceKind kind() {
   return {.name = "eddy_damping",
-          .summary = "eddy currents brake what turns across the ambient field",
+          .summary = "eddy currents brake a rotation across the ambient field",
           .read = read,
           .screening = {.parametrisations =
                             {{"eddy currents brake rotation across the ambient magnetic field",

@@ -94,9 +94,7 @@ DisturbanceKind kind() {
   return {.name = "helmholtz_cage",
           .summary = "coils around the platform set the magnetic field",
           .read = read,
-          .screening =
-              {.reason_against =
-                   "the coils are a part of the laboratory that is set, not one that is forgotten"},
+          .screening = {.reason_against = "the coils are a known part of the laboratory"},
           .sets = "the magnetic field",
           .keys = {
               key::field_lab, key::field_file,

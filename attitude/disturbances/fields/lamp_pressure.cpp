@@ -40,16 +40,17 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "lamp_pressure",
-          .summary = "the light of the laboratory's lamps pushes, as much as they shine",
-          .read = read,
-          .screening = {.parametrisations = {{"the light of the lamps exerts a torque, constant in "
-                                              "the laboratory but for their brightness",
-                                              {EffectKey::vector(torque_lab.name, 5e-6),
-                                               EffectKey::largest_recorded(led_current.name)}}},
-                        .needs = Requirement::lamps},
-          .budget = {.reason_against = "depends on the light at the instant"},
-          .keys = {torque_lab, key::led_current}};
+  return {
+      .name = "lamp_pressure",
+      .summary = "the laboratory's lamps exert radiation pressure, in proportion to their light",
+      .read = read,
+      .screening = {.parametrisations = {{"the light of the lamps exerts a torque, constant in "
+                                          "the laboratory but for their brightness",
+                                          {EffectKey::vector(torque_lab.name, 5e-6),
+                                           EffectKey::largest_recorded(led_current.name)}}},
+                    .needs = Requirement::lamps},
+      .budget = {.reason_against = "depends on the light at the instant"},
+      .keys = {torque_lab, key::led_current}};
 }
 
 }  // namespace photorque::kinds::lamp_pressure

@@ -139,15 +139,14 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "power_balance",
-      .summary = "the battery gives what the load takes and the array does not deliver",
-      .read = read,
-      .screening =
-          {.reason_against =
-               "acts on the battery alone; of the motion nothing shows it but battery_discharge"},
-      .sets = "the battery's current",
-      .keys = {load, key::array_power, key::tilt, key::power, array_scale}};
+  return {.name = "power_balance",
+          .summary = "the battery supplies the part of the load that the array does not deliver",
+          .read = read,
+          .screening =
+              {.reason_against =
+                   "acts on the battery alone; the motion shows it only through battery_discharge"},
+          .sets = "the battery's current",
+          .keys = {load, key::array_power, key::tilt, key::power, array_scale}};
 }
 
 }  // namespace photorque::kinds::power_balance

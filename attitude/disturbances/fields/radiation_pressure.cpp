@@ -108,7 +108,7 @@ Disturbance read_of_sun(const Settings& settings, const DisturbanceContext& cont
                                        *context.environment.sun);
 }
 
-// Where the experiment says where the Sun is, its pressure may be a missing effect.
+// If the experiment gives the Sun's direction, its pressure may be a missing effect.
 std::vector<Parametrisation> of_experiment(const DisturbanceContext& context) {
   if (!context.environment.sun) return {};
   return {
@@ -135,7 +135,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
 
 DisturbanceKind kind() {
   return {.name = "radiation_pressure",
-          .summary = "light pushes on what it falls on",
+          .summary = "light exerts pressure on the surfaces that it meets",
           .read = read,
           .screening = {.of_experiment = of_experiment,
                         .widths = "1 m³, where `[environment.sun]` is stated"},

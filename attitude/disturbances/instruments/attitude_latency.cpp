@@ -22,9 +22,9 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 DisturbanceKind kind() {
   return {.name = "attitude_latency",
-          .summary = "the camera reports an attitude that is already past",
+          .summary = "the camera reports a past attitude",
           .read = read,
-          .screening = {.parametrisations = {{"the camera reports an attitude that is already past",
+          .screening = {.parametrisations = {{"the camera reports a past attitude",
                                               {EffectKey::not_negative(latency.name, 0.1)}}}},
           .budget = {.reason_against = "an error of an instrument: no torque"},
           .instrument = "camera",

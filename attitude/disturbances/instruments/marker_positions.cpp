@@ -287,7 +287,7 @@ std::vector<Parametrisation> of_markers(const DisturbanceContext& context) {
 
 DisturbanceKind kind() {
   return {.name = "marker_positions",
-          .summary = "the camera's markers are not where the pose takes them to be",
+          .summary = "the camera's markers deviate from the positions used for the pose",
           .read = read,
           .screening = {.of_experiment = of_markers,
                         .widths = "`error_m` 0.0003 each, of every marker alone and of all; needs "

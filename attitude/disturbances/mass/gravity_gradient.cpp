@@ -22,7 +22,7 @@ Disturbance read(const Settings&, const DisturbanceContext&) {
 
 DisturbanceKind kind() {
   return {.name = "gravity_gradient",
-          .summary = "gravity is weaker higher up and aligns the long axis with it",
+          .summary = "gravity decreases with height and turns the long axis towards the vertical",
           .read = read,
           .screening = {
               .parametrisations = {

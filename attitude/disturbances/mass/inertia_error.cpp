@@ -55,7 +55,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
 
 DisturbanceKind kind() {
   return {.name = "inertia_error",
-          .summary = "the moments or products of inertia are not those stated",
+          .summary = "the moments or products of inertia differ from those stated",
           .read = read,
           .screening =
               {.parametrisations = {{"the moments or products of inertia differ from those stated",

@@ -30,7 +30,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
 DisturbanceKind kind() {
   return {
       .name = "mass_error",
-      .summary = "the mass is not the one stated",
+      .summary = "the mass differs from the stated one",
       .read = read,
       .screening = {.reason_against = "`static_unbalance` and `actuator_gain` have the same effect",
                     .changes_mass = true},

@@ -1,6 +1,6 @@
 // Something slips: the same as static_unbalance, from one instant on.
 //
-// time_s: the instant. offset_m[3]: what the centre of mass moves by, body axes.
+// time_s: the instant. offset_m[3]: the shift of the centre of mass, body axes.
 
 #include "attitude/disturbances/kind.h"
 

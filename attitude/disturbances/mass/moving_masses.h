@@ -34,7 +34,7 @@ double horizontal_rounding_torque_N_m(const MovingMass& mass, double tilt_rad, d
 // along the vertical one.
 std::vector<MovingMass> eight_masses(const MovingMass& pattern);
 
-// Whole steps of each mass, and what they leave.
+// Whole steps of each mass, and the remaining offset.
 struct BalanceCommand {
   std::vector<int64_t> steps;
   Vec3 left_over_m = Vec3::Zero();  // of the centre of mass, body axes

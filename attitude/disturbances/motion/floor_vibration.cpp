@@ -142,10 +142,10 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 DisturbanceKind kind() {
   return {
       .name = "floor_vibration",
-      .summary = "the floor shakes the bearing under a centre of mass that is off",
+      .summary = "the floor accelerates the bearing, with a displaced centre of mass",
       .read = read,
       .screening = {.parametrisations =
-                        {{"the floor shakes the bearing under a centre of mass that is off",
+                        {{"the floor accelerates the bearing, with a displaced centre of mass",
                           {EffectKey::vector(shaking.name, 0.1),
                            EffectKey::shape(frequency.name, 1.0, 5.0, 0.0, 100.0),
                            EffectKey::shape(phase.name, 0.0, phase_scale, -EffectKey::unbounded)}}},

@@ -36,13 +36,13 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 DisturbanceKind kind() {
   return {
       .name = "periodic_torque",
-      .summary = "something on board shakes at one frequency",
+      .summary = "a vibration on board at one frequency",
       .read = read,
-      .screening = {.parametrisations = {{"something on board shakes the platform at one frequency",
-                                          {EffectKey::vector(amplitude.name, 5e-5),
-                                           EffectKey::shape(frequency.name, 1.0, 5.0, 0.0, 100.0),
-                                           EffectKey::shape(phase.name, 0.0, phase_scale,
-                                                            -EffectKey::unbounded)}}},
+      .screening = {.parametrisations =
+                        {{"a vibration on board drives the platform at one frequency",
+                          {EffectKey::vector(amplitude.name, 5e-5),
+                           EffectKey::shape(frequency.name, 1.0, 5.0, 0.0, 100.0),
+                           EffectKey::shape(phase.name, 0.0, phase_scale, -EffectKey::unbounded)}}},
                     .scan = Scan::frequency,
                     .fast = true},
       .keys = {amplitude, frequency, phase, key::phase}};

@@ -24,7 +24,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 DisturbanceKind kind() {
   return {.name = "rotor_momentum",
-          .summary = "a spinning part resists being turned",
+          .summary = "the angular momentum of a spinning part couples the axes",
           .read = read,
           .screening =
               {.parametrisations = {{"a spinning part on board couples the axes like a gyroscope",

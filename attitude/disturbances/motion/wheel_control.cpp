@@ -144,8 +144,7 @@ DisturbanceKind kind() {
       .name = "wheel_control",
       .summary = "reaction wheels turn the platform to a target attitude",
       .read = read,
-      .screening = {.reason_against = "a controller is known to its user; its "
-                                      "torque stands in the commands"},
+      .screening = {.reason_against = "a controller is known; its torque is in the commands"},
       .keys = {gain_on_angle, gain_on_rate, key::target_axis, key::target_angle, key::target_rate,
                key::wheel_inertia, key::largest_torque, key::largest_rate, viscous, dry}};
 }

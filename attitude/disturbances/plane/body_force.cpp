@@ -1,5 +1,5 @@
-// A force that turns with what slides: F = R f, as a leaking thruster or a current of air from the
-// platform itself exerts it.
+// A force that turns with a sliding body: F = R f, such as that of a leaking thruster or of an
+// air jet of the platform.
 //
 // force_N[2]: f along body x and y.
 #include "attitude/disturbances/kind.h"
@@ -29,7 +29,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 DisturbanceKind kind() {
   return {.name = "body_force",
-          .summary = "a constant force that turns with what slides",
+          .summary = "a constant force that turns with a sliding body",
           .read = read,
           .screening = {.parametrisations = {{"a constant force acts that turns with the platform: "
                                               "a leaking thruster, a hose, a fan on board",

@@ -1,4 +1,4 @@
-// Form drag of what slides through air: F = −k |v| v.
+// Form drag of a body that slides through air: F = −k |v| v.
 //
 // coefficient_kg_m: k ≥ 0, ½ ρ c_d A of a body.
 #include "attitude/disturbances/kind.h"
@@ -23,9 +23,9 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 DisturbanceKind kind() {
   return {.name = "sliding_air_drag",
-          .summary = "form drag of what slides through air, by the square of the speed",
+          .summary = "form drag of a body that slides through air, by the square of the speed",
           .read = read,
-          .screening = {.parametrisations = {{"air drags on what slides, by the square of its "
+          .screening = {.parametrisations = {{"air drags on a sliding body, by the square of its "
                                               "speed",
                                               {EffectKey::not_negative(coefficient.name, 1e-2)}}},
                         .needs = Requirement::plane},

@@ -1,4 +1,4 @@
-// Viscous drag of what slides, as an air film has it: F = −c v.
+// Viscous drag of a sliding body, as of an air film: F = −c v.
 //
 // coefficient_kg_s: c ≥ 0.
 #include "attitude/disturbances/kind.h"
@@ -22,15 +22,16 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "sliding_drag",
-          .summary = "viscous drag of what slides, linear in the speed",
-          .read = read,
-          .screening = {.parametrisations = {{"the air film drags on what slides, in proportion to "
-                                              "its speed",
-                                              {EffectKey::not_negative(coefficient.name, 1e-2)}}},
-                        .needs = Requirement::plane},
-          .budget = {.reason_against = "a force, not a torque"},
-          .keys = {coefficient}};
+  return {
+      .name = "sliding_drag",
+      .summary = "viscous drag of a sliding body, linear in the speed",
+      .read = read,
+      .screening = {.parametrisations = {{"the air film drags on a sliding body, in proportion to "
+                                          "its speed",
+                                          {EffectKey::not_negative(coefficient.name, 1e-2)}}},
+                    .needs = Requirement::plane},
+      .budget = {.reason_against = "a force, not a torque"},
+      .keys = {coefficient}};
 }
 
 }  // namespace photorque::kinds::sliding_drag

@@ -1,4 +1,4 @@
-// Dry friction of what slides: F = −μ m g v/|v|.
+// Dry friction of a sliding body: F = −μ m g v/|v|.
 //
 // coefficient: μ ≥ 0. Below a speed of 1e-4 m/s it fades with the speed, so that a platform that
 // comes to rest stays within a creep of that size.
@@ -28,15 +28,16 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "sliding_friction",
-          .summary = "dry friction of what slides, the same at every speed",
-          .read = read,
-          .screening = {.parametrisations = {{"dry friction brakes what slides, the same at every "
-                                              "speed",
-                                              {EffectKey::not_negative(coefficient.name, 1e-3)}}},
-                        .needs = Requirement::plane},
-          .budget = {.reason_against = "a force, not a torque"},
-          .keys = {coefficient}};
+  return {
+      .name = "sliding_friction",
+      .summary = "dry friction of a sliding body, equal at every speed",
+      .read = read,
+      .screening = {.parametrisations = {{"dry friction brakes a sliding body, equally at every "
+                                          "speed",
+                                          {EffectKey::not_negative(coefficient.name, 1e-3)}}},
+                    .needs = Requirement::plane},
+      .budget = {.reason_against = "a force, not a torque"},
+      .keys = {coefficient}};
 }
 
 }  // namespace photorque::kinds::sliding_friction

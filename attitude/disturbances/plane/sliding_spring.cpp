@@ -1,4 +1,4 @@
-// A spring or cable that holds what slides: F = f − k r.
+// A spring or cable that holds a sliding body: F = f − k r.
 //
 // stiffness_N_per_m: k ≥ 0; pull_N[2]: f at the lab's origin, so that f/k is where it pulls to.
 #include "attitude/disturbances/kind.h"
@@ -33,9 +33,9 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 DisturbanceKind kind() {
   return {.name = "sliding_spring",
-          .summary = "a spring or cable pulls what slides back to one place",
+          .summary = "a spring or cable pulls a sliding body back to one place",
           .read = read,
-          .screening = {.parametrisations = {{"a spring or cable pulls what slides back to one "
+          .screening = {.parametrisations = {{"a spring or cable pulls a sliding body back to one "
                                               "place",
                                               {EffectKey::not_negative(stiffness.name, 1e-2),
                                                {pull.name, {0.0, 0.0}, 1e-2}}}},

@@ -1,5 +1,5 @@
-// Thrusters that give less the more they are asked for, on each body axis of what slides:
-// F = c / (1 + k |c| / 1 N) in place of the commanded c.
+// Thrusters that give less for larger commands, on each body axis of a sliding body: F = c / (1 + k
+// |c| / 1 N) in place of the commanded c.
 //
 // loss_at_one_newton: k ≥ 0; the largest thrust is 1/k newton.
 #include "attitude/disturbances/kind.h"
@@ -34,7 +34,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 DisturbanceKind kind() {
   return {.name = "thrust_saturation",
-          .summary = "thrusters give less than commanded, and ever less of large commands",
+          .summary = "thrusters give less than commanded, increasingly so for large commands",
           .read = read,
           .screening = {.parametrisations = {{"the thrusters saturate: large commands are met with "
                                               "less than small ones",

@@ -62,7 +62,7 @@ DisturbanceKind kind() {
   return {.name = kind_name,
           .summary = "a torque that follows no known law, as a fit or a measurement gives it",
           .read = read,
-          .screening = {.reason_against = "it is what diagnose fits where no known law will do"},
+          .screening = {.reason_against = "diagnose fits it where no known law suffices"},
           .keys = empirical_shape_keys()};
 }
 

@@ -4,7 +4,6 @@
 #include <cstdio>
 
 #include "core/errors.h"
-#include "core/old_names.h"
 
 namespace photorque {
 
@@ -153,13 +152,10 @@ void require_functions(const Settings& settings, const EmpiricalShape& shape) {
   needs(TorqueAxes::cross_talk, MotionVariable::command);
 }
 
-// The key of the harmonics of the yaw, under the name that the user wrote.
+// The key of the harmonics of the yaw, under the name that the user wrote: the second one is that
+// of earlier improved.toml.
 std::string yaw_key(const Settings& settings) {
-  constexpr const char* old_key = "heading_orders";
-  const std::vector<std::string> written = settings.keys();
-  if (std::ranges::find(written, old_key) == written.end()) return "yaw_orders";
-  note_old_name(settings.error(old_key, "the old name", "yaw_orders").what());
-  return old_key;
+  return settings.has("heading_orders") ? "heading_orders" : "yaw_orders";
 }
 
 std::string print(double x) {

@@ -1,4 +1,4 @@
-// The shape of a torque that follows no known law: about which axes, as what functions of what.
+// The shape of a torque that follows no known law: its axes, functions and variables.
 #pragma once
 
 #include <array>
@@ -44,7 +44,7 @@ class SmoothTable {
   std::vector<Slope> slopes_;
 };
 
-// About what the torque acts. Each counts as one component, or more: a coefficient for each.
+// Axes of the torque. Each counts as one component, or more: a coefficient for each.
 enum class TorqueAxes {
   body,          // body x, y, z
   lab,           // lab x, y, z

@@ -15,10 +15,10 @@ namespace {
 struct ReadMotion {
   std::vector<PlatformState> states;
   double acceleration_rad_s2 = 0.0;
-  double acceleration_m_s2 = 0.0;  // of what slides
+  double acceleration_m_s2 = 0.0;  // of a sliding body
 };
 
-// Places and velocities of what slides, as they were read at block `i`.
+// Places and velocities of a sliding body, as they were read at block `i`.
 std::array<double, 4> place_at(const Observation& seen, size_t i, size_t reach) {
   std::array<double, 4> place{};
   const size_t from = i - std::min(i, reach), to = std::min(seen.blocks() - 1, i + reach);
@@ -66,7 +66,7 @@ Vec3 rate_at(const Observation& seen, size_t i, size_t reach) {
 ReadMotion read_motion(const AttitudeModel& model, const Observation& seen) {
   constexpr size_t most_states = 40;
   const size_t stride = std::max<size_t>(1, seen.blocks() / most_states);
-  // Attitudes so far apart tell a rate.
+  // Attitudes so far apart determine a rate.
   const size_t reach = std::max<size_t>(1, seen.blocks() / 8);
   ReadMotion motion;
   Vec3 least = Vec3::Constant(1e308), most = -least, slowest = least, fastest = most;
@@ -93,8 +93,8 @@ ReadMotion read_motion(const AttitudeModel& model, const Observation& seen) {
   return motion;
 }
 
-// Mean square of the torque of one disturbance over the motion [N² m²]: about one axis, where that
-// is all that moves; of a force on what slides [N²].
+// Mean square of the torque of one disturbance over the motion [N² m²]: about the axis of a
+// platform with one axis; of a force on a sliding body [N²].
 double mean_square_action(const Disturbance& disturbance, const AttitudeModel& nominal,
                           const std::vector<Observation>& runs,
                           const std::vector<ReadMotion>& motions) {
@@ -142,10 +142,10 @@ void leave_out_what_does_nothing(const std::vector<double>& actions, Candidate& 
 }
 
 // The catalogue's sizes are those of platforms on air bearings. On a bicycle wheel or a spacecraft
-// they are wrong by many decades either way: there the size of every strength is set so that its
-// torque, over the recorded motion, is what changes the recorded rates: the mean moment of inertia
-// times the range of the rates over the duration. Does nothing for a platform on an air bearing,
-// nor to what exerts no torque.
+// they are wrong by many decades. There the size of every strength is set by the recorded rates:
+// its torque over the recorded motion is the mean moment of inertia times the range of the rates
+// over the duration. Does nothing for a platform on an air bearing, nor to effects without a
+// torque.
 void scale_to_machine(const NominalModel& nominal, const std::vector<Observation>& runs,
                       std::vector<Candidate>& candidates) {
   const Platform& platform = nominal.model.platform;
@@ -153,7 +153,7 @@ void scale_to_machine(const NominalModel& nominal, const std::vector<Observation
   AttitudeModel bare = nominal.model;
   bare.disturbances.clear();
   if (platform.slides()) bare.disturbances.push_back(translation());
-  // A few runs show what there is to see.
+  // A few runs suffice.
   constexpr size_t most_runs = 8;
   std::vector<Observation> some;
   std::vector<ReadMotion> motions;
@@ -198,7 +198,7 @@ Candidate candidate_of(const Effect& effect, const DisturbanceContext& context) 
   c.effect = effect;
   c.start = disturbance_of(effect, context);
   for (const Parameter& parameter : c.start.parameters) {
-    // A fixed detail of the law (where a rubbing contact begins to creep) is not fitted.
+    // A fixed detail of the law (the rate below which a contact creeps) is not fitted.
     const auto key = std::find_if(effect.keys.begin(), effect.keys.end(),
                                   [&](const EffectKey& k) { return k.key == parameter.key; });
     c.scale.push_back(key == effect.keys.end() ? 0.0 : key->scale);
@@ -330,14 +330,15 @@ bool only_slows_down(const std::vector<Observation>& runs, const Vec3& axis) {
     const std::vector<double> rate_rad_s = rates_about(seen, axis);
     if (rate_rad_s.empty()) return false;
     const auto [least, most] = std::minmax_element(rate_rad_s.begin(), rate_rad_s.end());
-    // What noise makes of a wheel at rest, and of a short stretch.
+    // Fraction of the largest rate that noise alone may give to a wheel at rest, or in a short
+    // segment.
     constexpr double little = 0.02;
     return std::min(-*least, *most) < little * std::max(-*least, *most) &&
            std::abs(rate_rad_s.back()) < (1.0 + little) * std::abs(rate_rad_s.front());
   });
 }
 
-// Velocities of what slides across an eighth of the run, along lab x and y, from places alone.
+// Velocities of a sliding body over an eighth of the run, along lab x and y, from places alone.
 std::vector<Vec2> velocities_m_s(const Observation& seen) {
   std::vector<Vec2> place_m, velocity;
   std::vector<double> time_s;
@@ -358,7 +359,7 @@ std::vector<Vec2> velocities_m_s(const Observation& seen) {
   return velocity;
 }
 
-// Whether what slides goes straight on in every run, and ever more slowly; it may stop.
+// Whether the sliding body goes straight on in every run, and ever more slowly; it may stop.
 bool only_slides_out(const std::vector<Observation>& runs) {
   return std::ranges::all_of(runs, [](const Observation& seen) {
     const std::vector<Vec2> velocity = velocities_m_s(seen);
@@ -441,7 +442,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
                           const Thresholds& limits) {
   const DisturbanceContext context = nominal.context();
   const CoveredMotion covered = covered_by(runs);
-  // A spacecraft's experiment says no latitude.
+  // A spacecraft's experiment has no latitude.
   const bool floats_in_laboratory =
       !context.platform.has_bearing() && context.environment.latitude_rad != 0.0 &&
       std::any_of(runs.begin(), runs.end(),
@@ -503,14 +504,14 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     all.list.push_back(candidate_of(law));
   }
   scale_to_machine(nominal, runs, all.list);
-  // Of what slides the turn may not be seen.
+  // The rotation of a sliding body may not be observed.
   const bool sees_turn = std::any_of(runs.begin(), runs.end(), [](const Observation& seen) {
     return seen.sees_some_attitude() || seen.has_gyro;
   });
   if (context.platform.slides() && !sees_turn) {
     std::erase_if(all.list, [](const Candidate& c) { return !is_force(c.effect.how.needs); });
   }
-  // A law of the yaw cannot be told from a constant where the yaw hardly changes, nor a
+  // Where the yaw hardly changes, a law of the yaw is not distinguished from a constant, nor a
   // force that turns with the body.
   if (!context.platform.has_air_bearing() && !turns(runs)) {
     const bool always = depends_on_attitude(nominal.model);
@@ -521,13 +522,13 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     });
   }
   if (context.platform.turns_about_one_axis()) {
-    // About a level axis the direction of body x in the plane is always the same, and so is the
-    // tilt about an upright one: a law of it would be another law once more.
+    // About a level axis the direction of body x in the plane is constant, and so is the tilt about
+    // an upright axis: a law of it would duplicate another law.
     const bool is_level = std::abs(context.platform.axis.z()) < 0.5;
     std::erase_if(all.list,
                   [&](const Candidate& c) { return c.variable == (is_level ? "yaw" : "tilt"); });
     // A weight pulls back about a level axis, and a twisted line would do so nearly alike.
-    // What slides carries no line that is known to twist.
+    // A sliding body carries no line that is known to twist.
     const bool has_weight =
         context.platform.slides() || std::ranges::any_of(all.list, [&](const Candidate& c) {
           return c.effect.how.needs == Requirement::gravity && pulls_back(c, nominal.model);
@@ -537,21 +538,22 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
              pulls_back(c, nominal.model);
     });
   }
-  // What rubs brakes with a steady torque as well, and its sign is known.
+  // While the rate keeps its sign, friction is also a steady torque, and its sign is known.
   if (context.platform.turns_about_one_axis() && only_slows_down(runs, context.platform.axis) &&
       std::erase_if(all.list, [](const Candidate& c) { return c.effect.how.steady; }) > 0) {
     all.remark =
-        "it turns one way only: a torque that rubs cannot be told from any other that is steady";
+        "it turns one way only: friction cannot be distinguished from any other steady torque";
   }
   if (context.platform.slides() && only_slides_out(runs) &&
       std::erase_if(all.list, [](const Candidate& c) {
         return c.effect.how.steady && c.effect.how.needs == Requirement::plane;
       }) > 0) {
     all.remark =
-        "it slides straight on and only becomes slower: friction cannot be told from a slope or a "
+        "it slides straight on and only becomes slower: friction is not distinguished from a slope "
+        "or a "
         "pull against the motion";
   }
-  // Nobody knows the attitude.
+  // The attitude is unknown.
   if (nominal.model.holds_attitude) {
     std::erase_if(all.list, [&](const Candidate& c) { return needs_attitude(c, nominal.model); });
   }

@@ -22,7 +22,7 @@ struct EmpiricalLaw {
   double lowest = 0.0, highest = 0.0, own_scale = 0.0;
 };
 
-// What the recordings cover, by which the laws are scaled.
+// Ranges of the motion in the recordings, by which the laws are scaled.
 struct CoveredMotion {
   double duration_s = 0.0;
   double tilt_rad = 0.0;      // the largest

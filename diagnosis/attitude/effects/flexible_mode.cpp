@@ -108,11 +108,11 @@ Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inert
 
 namespace {
 
-// Mostly short pulls set appendages swinging (a command that begins or ends), so that a resonance
-// looks as wide as its damping: enough of it for the grid of frequencies.
+// Mostly short pulses (the start or end of a command) excite appendages, so that a resonance looks
+// as wide as its damping: enough of it for the grid of frequencies.
 constexpr double scanned_damping = 0.08;
 
-// An appendage begins by turning with the body, its rate being counted about its axis.
+// An appendage starts by turning with the body; its rate is counted about its axis.
 void set_axis(Disturbance& d, const Vec3& unit) {
   set_vector(d, "axis", unit);
   state_of(d, "rate_rad_s").per_body_rate = unit;
@@ -153,8 +153,7 @@ struct Mode {
   Disturbance start;
 };
 
-// The one appendage that does most of what the six would together: about an eigenvector of
-// Σ J a aᵀ.
+// The appendage with the largest part of the effect of all six: about an eigenvector of Σ J a aᵀ.
 Mode best_appendage(const ScoreGroup& group, const Score& score, const Mat3& inertia_kg_m2) {
   Mode best;
   if (score.estimate.size() != 6) return best;
@@ -184,7 +183,7 @@ Mode best_appendage(const ScoreGroup& group, const Score& score, const Mat3& ine
   return best;
 }
 
-// What two scores tell that share no reading's news, about the same parameters.
+// Combines two scores of the same parameters from independent readings: their informations add.
 Score together(const Score& a, const Score& b) {
   if (a.estimate.size() != b.estimate.size()) return b;
   const Eigen::MatrixXd information = a.information + b.information;
@@ -226,7 +225,8 @@ std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit
     modes.push_back(best_appendage(group, score(fit, slow_runs, {group}).front(), inertia_kg_m2));
   }
   start_at_peaks(modes, max_starts);
-  // What swings fast turns along with slow motion, as a part of the inertia: the same for all.
+  // An appendage that swings fast follows slow motion as a part of the inertia: its slow score is
+  // the same at all frequencies.
   constexpr double stiff = 5.0;  // times slow_Hz
   const Score carried = score(fit, slow_runs, {appendages(start, stiff * slow_Hz)}).front();
   modes.clear();

@@ -17,17 +17,17 @@ struct PropagatedRun {
 };
 
 // The score of light appendages about these axes [body, unit vectors], one strength J [kg m²] each,
-// all of one frequency and damping (fraction of critical). What the fitted motion makes each of
-// them do is exact; how the platform answers holds where nothing else turns it within a swing: it
-// is free there, δω = −J I⁻¹ a φ'. What is slower than a swing is taken out of the readings and the
-// answers alike, which stands for projecting out what the fit could still take up.
+// all of one frequency and damping (fraction of critical). The motion of each appendage under the
+// fitted motion is exact. The response of the platform assumes that it is free within a swing: δω =
+// −J I⁻¹ a φ'. Parts slower than a swing are removed from readings and responses, in place of a
+// projection of the fitted parameters.
 Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inertia_kg_m2,
                        const std::vector<Vec3>& axes, double frequency_Hz, double damping);
 
 // Starts for an appendage that swings: its frequency and axis.
 
-// The most promising flexible modes to add to `fit`, at most three. `start` is the disturbance with
-// its expected strength, `slow_runs` averages of the runs, as good for what is slow.
+// The best flexible modes to add to `fit`, at most three. `start` is the disturbance with
+// its expected strength, `slow_runs` averages of the runs, sufficient for slow motion.
 std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit,
                                         const std::vector<Observation>& runs,
                                         const std::vector<Observation>& slow_runs,

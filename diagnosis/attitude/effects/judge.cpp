@@ -17,7 +17,7 @@ bool changes_inertia(const Disturbance& d) {
 
 namespace {
 
-// What is stated as uncertain by more may change by more: three of its standard deviations, over
+// Largest change of inertia that the stated uncertainties allow: three standard deviations, over
 // the moment.
 double stated_inertia_change(const Trial& trial) {
   constexpr double sigmas = 3.0;
@@ -35,7 +35,7 @@ double stated_inertia_change(const Trial& trial) {
 
 // The largest change of a principal moment by a fitted error of the inertia, as a fraction of the
 // nominal one. The torque equation is homogeneous: hardly any inertia at all explains nearly
-// everything, but nobody weighs a platform that badly.
+// everything, but platforms are weighed more accurately.
 double inertia_change(const Trial& trial) {
   const Mat3& nominal_kg_m2 = trial.fit.best.model.platform.inertia_kg_m2;
   const Vec3 nominal = nominal_kg_m2.selfadjointView<Eigen::Lower>().eigenvalues();
@@ -51,8 +51,8 @@ double inertia_change(const Trial& trial) {
   return largest;
 }
 
-// A kind that the nominal model has as well may be corrected downwards, but not below what physics
-// allows of the sum.
+// A kind that the nominal model also has may be corrected downwards, but the sum must stay within
+// its physical bound.
 std::string sum_objection(const AttitudeModel& model) {
   for (const DisturbanceKind& kind : disturbance_kinds()) {
     const std::optional<LeastSum>& least = kind.screening.least_sum;
@@ -103,9 +103,9 @@ std::string objection_to(const Trial& trial, const Candidates& all) {
   return sum_objection(trial.fit.best.model);
 }
 
-// The key without which the effect is none, or another one, as a spring without stiffness is a
-// slope: the first that has strengths, or else the moment of inertia of what swings. Empty: the
-// effect has no size.
+// The key without which the effect is zero, or another effect (a spring without stiffness is a
+// slope): the first that has strengths, or else the moment of inertia of the swinging part. Empty:
+// the effect has no size.
 std::string key_of_size(const Candidate& c) {
   for (size_t p = 0; p < c.scale.size(); ++p) {
     if (c.is_strength(p)) return c.start.parameters[p].key;
@@ -156,7 +156,7 @@ double log_evidence(const Trial& trial, const Candidates& all) {
   if (!std::isfinite(fit.chi2)) return -1e300;
   inference::ArrowMatrix hessian = fit.hessian;
   double result = -0.5 * fit.chi2;
-  // The parameters that are not searched, in units of what is expected of them.
+  // The parameters that are not searched, in units of their expected sizes.
   inference::Strengths strengths;
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
     const Candidate& c = all[trial.candidates[i]];

@@ -1,4 +1,4 @@
-// What a fitted model is worth, and what speaks against it.
+// Evidence of a fitted model, and physical objections to it.
 #pragma once
 
 #include "diagnosis/attitude/effects/trial.h"
@@ -6,7 +6,7 @@
 namespace photorque {
 
 // Laplace's approximation of the evidence. The fit's own prior is far wider than the nominal model
-// of an effect; here it is replaced by what is expected of one.
+// of an effect; here it is replaced by the expected size of an effect.
 double log_evidence(const Trial& trial, const Candidates& all);
 
 // States the significance of each of the trial's candidates, its evidence, and the objection to it.

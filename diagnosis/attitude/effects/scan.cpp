@@ -56,8 +56,8 @@ void add_power(const std::vector<double>& white, const Observation& seen,
   }
 }
 
-// All channels of one run. The gyro counts in body axes and, turned, in lab axes: what shakes from
-// outside has its one frequency there, while a platform that turns sees it split.
+// Adds all channels of one run. The gyro counts in body axes and, rotated, in lab axes: a vibration
+// from outside has one frequency in lab axes, while a rotating platform splits it.
 void add_power(const Prediction& prediction, const Observation& seen, ResidualSpectrum& spectrum) {
   std::array<std::vector<double>, 9> channels;
   for (size_t i = 0; i < prediction.residual.size(); ++i) {
@@ -77,7 +77,7 @@ const std::string& strength_of(const Candidate& c) {
   return found->key;
 }
 
-// What begins at each of a grid of instants.
+// Starts of an effect that sets in at an instant: those of a grid with the largest gains.
 std::vector<Start> instant_starts(const Candidate& c, const Trial& parent,
                                   const std::vector<Observation>& runs,
                                   const Thresholds::Scoring& limits) {
@@ -128,8 +128,8 @@ std::vector<Start> empirical_starts(const Candidate& c, const Trial& parent,
   return {{d, scores[best].gain}};
 }
 
-// Up to this, sinusoids excite the platform's own motion; there the slopes of the whole trajectory
-// tell more than the residual's power.
+// Below this frequency, sinusoids excite the platform's own motion: the slopes of the whole
+// trajectory then contain more information than the residual's power.
 double slowest_line_Hz(const std::vector<Observation>& runs) {
   return std::min(0.2, 100.0 / span_s(runs));
 }

@@ -12,23 +12,21 @@
 
 namespace photorque {
 
-// Frequencies at which what is left of a fit has power, strongest first [Hz], at most `most`, above
+// Frequencies at which the residual of a fit has power, strongest first [Hz], at most `most`, above
 // those of the platform's own motion.
 std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observation>& runs,
                                         const Thresholds::Scoring& limits, size_t most = 4);
 
-// Where to start the fit of a candidate added to `parent`: one start, or the most promising ones of
-// a scan. `slow_runs` are averages of the runs, as good for what is slow; `lines_Hz` are the
-// parent's line_frequencies_Hz().
+// Starts of the fit of a candidate added to `parent`: one, or the best ones of a scan. `slow_runs`
+// are averages of the runs, sufficient for slow effects; `lines_Hz` are the parent's
+// line_frequencies_Hz().
 std::vector<Start> starts_of(const Candidate& candidate, const Trial& parent,
                              const std::vector<Observation>& runs,
                              const std::vector<Observation>& slow_runs,
                              const std::vector<double>& lines_Hz,
                              const Thresholds::Scoring& limits);
 
-// What the scans for starts share.
-
-// From the first reading to the last [s], of all pieces and recordings on their clock: what acts at
+// From the first reading to the last [s], of all pieces and recordings on their clock: an effect of
 // one frequency keeps its phase from piece to piece.
 inline double span_s(const std::vector<Observation>& runs) {
   double start_s = runs.front().time_s.front(), end_s = runs.front().time_s.back();

@@ -17,8 +17,8 @@ std::vector<int> parameters_of(const ScoreGroup& group, const Disturbance& d) {
   return all;
 }
 
-// What the data say about the parameters of some groups, everything fitted (and the starts of the
-// groups' own states) projected out.
+// Information of the data about the parameters of some groups. All fitted parameters, and the
+// initial values of the groups' states, are projected out.
 struct GroupsAtFit {
   inference::Projected all;
   std::vector<Eigen::Index> begin;  // of each group's parameters, and the end
@@ -100,7 +100,7 @@ inference::StrengthGroup group_of(const inference::Term<Start>& term, size_t at,
   return group;
 }
 
-// With no strength: the derivative by it is wanted there, whatever a scan has found.
+// Sets the strength to zero, where the derivative by it is needed, whatever a scan found.
 Disturbance without_strength(const Candidate& c, Disturbance d) {
   for (size_t p = 0; p < c.scale.size(); ++p) {
     if (c.is_strength(p)) d.parameters[p].value = 0.0;

@@ -22,7 +22,7 @@ std::vector<Score> score(const Fit& at, const std::vector<Observation>& runs,
                          const std::vector<ScoreGroup>& groups);
 
 // The strengths of terms about a trial (inference/subsets.h), everything else that is fitted
-// projected out. The first of `terms` are the trial's own; what is fast makes no group. In one pass
+// projected out. The first of `terms` are the trial's own; fast effects make no group. In one pass
 // with all their parameters: for runs of some thousand blocks.
 inference::LinearProblem linear_problem(const Trial& at, const Candidates& all,
                                         const std::vector<inference::Term<Start>>& terms,

@@ -47,8 +47,8 @@ Disturbance disturbance_of(const Effect& effect, const DisturbanceContext& conte
 
 namespace {
 
-// Where a fit diverged, its parameters are no start: back to the nominal model and to what was
-// seen at the beginning of each run.
+// Resets a diverged fit to the nominal model and to the first readings of each run, because its
+// parameters are no start.
 void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observation>& runs) {
   const auto& found = parent.disturbances;
   for (const Free& f : h.free) {
@@ -67,9 +67,9 @@ bool inertia_is_bent(const Hypothesis& h, size_t nominal_disturbances) {
   });
 }
 
-// The fit from `h`. The torque equation is homogeneous, so that a model that lacks something bends
-// its inertia first, and what is added to it then only finds the minimum beside that: there it is
-// fitted from what was stated as well.
+// The fit from `h`. The torque equation is homogeneous, so that a model without an effect moves its
+// inertia first. An added effect then only finds the local minimum beside that inertia: it is
+// therefore fitted from the stated values as well.
 Fit fit_unbent(const Hypothesis& h, size_t nominal_disturbances,
                const std::vector<Observation>& runs, const FitSettings& settings,
                const Thresholds& limits) {
@@ -94,7 +94,7 @@ void free_parameters(Hypothesis& h, const Candidate& c, size_t index, const Thre
     Free f{index, static_cast<int>(p)};
     f.mean = c.searched[p] ? h.parameter(f).value : 0.0;
     f.sigma = limits.evidence.fit_prior_widths * c.scale[p];
-    // One axis of several may have none of what the others have.
+    // The effect may be zero about one of several axes.
     if (c.searched[p] || c.effect.of_free_bodies) {
       f.lowest = c.lowest[p];
       f.highest = c.highest[p];
@@ -231,9 +231,8 @@ Trial assemble(const Trial& from, const Candidates& all, const inference::Member
   FitSettings near = settings;
   near.max_start_chi2 = std::max(all.limits.fitting.max_start_growth * from.fit.chi2,
                                  all.limits.diverged_chi2_per_sample * from.fit.samples);
-  // With nothing taken out, the first step of a fit from the trial itself is the forecast, and
-  // moves what each run began with too; with something taken out, the forecast is the nearest
-  // start.
+  // Without removed members, the first step of a fit from the trial is the forecast, and also moves
+  // the initial conditions of each run. With removed members, the forecast is the nearest start.
   Trial trial = assembled(from, all, adds_to(from, members) ? without_forecast(members) : members,
                           runs, near);
   if (!std::isfinite(trial.fit.chi2)) {
@@ -285,7 +284,7 @@ Trial within_physics(const Trial& trial, const Candidates& all,
     result.fit = fit(start, runs, settings);
     return result.fit.chi2 < trial.fit.chi2 + all.limits.leaders.near_chi2;
   };
-  // Where the way back was a long one, what was fitted beside it may be off.
+  // After a long way back, the other parameters may be off.
   return leads_back({1.0}) || leads_back(all.limits.fitting.diverged_windows) ? result : trial;
 }
 

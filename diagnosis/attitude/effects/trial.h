@@ -14,15 +14,15 @@
 
 namespace photorque {
 
-// The effects that may be missing: every kind of disturbance that a recording can reveal, with what
-// is known about its parameters before looking. What is known stands in the kinds' own files.
+// The effects that may be missing: every kind of disturbance that a recording can reveal, with the
+// priors of its parameters. The priors stand in the kinds' own files.
 
 // One parametrisation of a kind.
 struct Effect {
   std::string kind;
   std::vector<EffectKey> keys;  // scaled to the platform
   std::string explanation;      // one sentence for the report
-  Screening how = {};           // what else the kind's file says about looking for it
+  Screening how = {};           // further search options of the kind
   bool of_free_bodies = false;  // as in its parametrisation
 };
 
@@ -32,7 +32,7 @@ std::vector<Effect> catalogue(const DisturbanceContext& context);
 // The disturbance with every parameter at its start.
 Disturbance disturbance_of(const Effect& effect, const DisturbanceContext& context);
 
-// Candidates that may explain what is left, and models that contain some of them, fitted in full.
+// Candidates that may explain the residual, and models that contain some of them, fitted in full.
 
 struct NominalModel;  // attitude/propagation/run.h
 
@@ -49,21 +49,21 @@ struct Candidate {
 
   bool empirical() const { return !variable.empty(); }
   bool is_fitted(size_t p) const { return scale[p] > 0.0; }
-  // Enters linearly, and how strongly nobody knows.
+  // Enters linearly, with unknown strength.
   bool is_strength(size_t p) const { return is_fitted(p) && !searched[p]; }
   // Whether a parameter need not be searched.
   bool has_linear_strength() const {
     return std::any_of(searched.begin(), searched.end(), [](bool b) { return !b; });
   }
-  // Whether a score test can predict what its fit gains.
+  // Whether a score test can predict the gain of its fit.
   bool is_linear() const {
     return !start.parameters.empty() &&
            std::none_of(searched.begin(), searched.end(), [](bool b) { return b; });
   }
 };
 
-// By which power of the rate, or of the speed of what slides, a candidate brakes: 0 where it rubs.
-// Nothing where it does anything else. `model`: of the platform.
+// The power of the rate, or of the speed of a sliding body, by which a candidate brakes (0:
+// friction). Nothing where it does anything else. `model`: of the platform.
 std::optional<double> braking_power(const Candidate& candidate, AttitudeModel model);
 
 // Whether a candidate pulls what turns about one axis back to an angle, as a weight or a twisted
@@ -77,12 +77,12 @@ struct Start {
   double gain = std::numeric_limits<double>::infinity();
 };
 
-// Everything that may be missing, and by what it is judged.
+// All candidates, and the limits of their evaluation.
 struct Candidates {
   std::vector<Candidate> list;
   Thresholds limits;
   double longest_run_s = 0.0;
-  std::string remark = {};  // on what is not tried, for whoever reads a name; empty: none
+  std::string remark = {};  // on effects that are not tried; empty: none
 
   const Candidate& operator[](size_t i) const { return list[i]; }
   size_t size() const { return list.size(); }
@@ -101,8 +101,9 @@ struct Trial : inference::Explanation {
 
 Trial nominal_trial(const Fit& nominal, const Candidates& all);
 
-// The trial with every number of its candidates within what physics allows: the rest fitted anew
-// where one was beyond; as it is where that leads away. Its evidence stays as it was weighed.
+// The trial with every number of its candidates within its physical bounds. If one was beyond, the
+// others are refitted; if that fit diverges, the trial is returned as it is. Its evidence is
+// unchanged.
 Trial within_physics(const Trial& trial, const Candidates& all,
                      const std::vector<Observation>& runs);
 
@@ -110,19 +111,19 @@ Trial within_physics(const Trial& trial, const Candidates& all,
 Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const Disturbance& start,
              const std::vector<Observation>& runs, const FitSettings& settings = {});
 
-// The same with another candidate in the place of the `which`-th of the trial, fitted from `start`.
-// Neither may have states of its own.
+// Fits the trial with another candidate in the place of its `which`-th, from `start`. Neither may
+// have states.
 Trial exchange(const Trial& trial, const Candidates& all, size_t which, size_t candidate,
                const Disturbance& start, const std::vector<Observation>& runs,
                const FitSettings& settings = {});
 
-// The same trial on other or more runs: shared parameters start from the fitted ones.
+// Refits the trial to other or more runs: shared parameters start from the fitted ones.
 Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observation>& runs,
             const std::vector<RunStart>& starts, const FitSettings& settings = {});
 
-// The same trial from where another on the same runs ended: its starts, and its values of all that
-// the two share. Of a long run that tumbles a fit may end in one of many local minima; what others
-// found is a second chance.
+// Refits the trial from the end of another trial on the same runs: from its starts, and its values
+// of all parameters that both have. The fit of a long tumbling run may end in one of many local
+// minima; the results of others are a second chance.
 Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
                  const std::vector<Observation>& runs, const FitSettings& settings = {});
 

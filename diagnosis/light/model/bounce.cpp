@@ -39,8 +39,8 @@ std::vector<WallPatch> patches_of(const LightLab& lab, const LightWall& wall) {
   return patches;
 }
 
-// The fraction of what leaves a triangle diffusely that meets a unit area at a point, over its
-// area: Lambert's sum over the edges of the part above the point's horizon (M. Cohen, J. Wallace,
+// The fraction of the diffuse light of a triangle that meets a unit area at a point, over its area:
+// Lambert's sum over the edges of the part above the point's horizon (M. Cohen, J. Wallace,
 // Radiosity and Realistic Image Synthesis, 1993, eq. 4.13).
 double near_share(const std::array<Vec3, 3>& triangle, const Vec3& point, const Vec3& normal) {
   std::array<Vec3, 4> corner;
@@ -62,7 +62,7 @@ double near_share(const std::array<Vec3, 3>& triangle, const Vec3& point, const 
   return std::abs(sum) / (2.0 * pi);
 }
 
-// The same of a patch: as if all of it were at its middle, where that is far.
+// Fraction of the light of a patch; a distant patch counts as if all of it were at its centre.
 double share_of(const WallPatch& patch, const Vec3& point, const Vec3& normal) {
   constexpr double far2 = 64.0;  // distance over size, squared: good to some tenths of a per cent
   const Vec3 to = point - patch.centre_m;

@@ -1,8 +1,8 @@
-// Light of each lamp alone on the places that a recording looks at.
+// Light of each lamp alone on the places of a recording.
 //
-// A lamp's light on a point is that of its aperture (raytrace/direct/disc_light.h), less what boxes
-// and parts of the scene hide of the aperture. Light by way of a wall is the diffuse or specular
-// part of what the wall gets, once; everything else is black.
+// A lamp's light on a point is that of its aperture (raytrace/direct/disc_light.h), less the parts
+// of the aperture that boxes and the scene hide. A wall reflects light once, diffusely or
+// like a mirror; everything else is black.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,7 +35,7 @@ struct LightSites {
   bool enters_cells = false;        // counted behind the cells' front
 };
 
-// What a lamp's light depends on, but for its power.
+// Parameters of a lamp's light except its power.
 struct LampGeometry {
   size_t lamp = 0;
   Vec2 aim = Vec2::Zero();
@@ -81,7 +81,7 @@ class Illumination {
 
   void move_to(size_t attitude);
 
-  // At a point of the body on a surface of this normal, with what stands in between but for one
+  // The light at a point of the body on a surface of this normal, with all obstacles except one
   // wall.
   double on(const Vec3& point, const Vec3& normal, size_t skipped) const;
   const Vec3& lamp_body_m() const { return at_->body_from_lamp.translation_m; }
@@ -127,7 +127,7 @@ struct WallPatch {
   double area_m2;
 };
 
-// What a wall and the places of a recording are to each other, whatever shines.
+// Exchange of light between a wall and the places of a recording, whatever lamp shines.
 struct WallExchange {
   std::vector<WallPatch> patches;
   // Of every group of places, by patch: the light on it over that which leaves the patch.

@@ -54,7 +54,7 @@ class LightLab {
   bool has_array() const { return parts_.design.has_value(); }
   const ArrayDesign& design() const { return *parts_.design; }
   const std::vector<LightCell>& cells() const { return cells_; }
-  // What each cell is.
+  // The model of each cell.
   std::vector<const CellModel*> models() const;
   // The cells' diodes at a temperature, with a leak more across each. `tabulated`: worth its time
   // where hundreds of points follow.

@@ -12,7 +12,7 @@ namespace photorque {
 // With s = d/h the slope under which a point at the distance d from the axis and the height h sees
 // the middle of the aperture, h² times both factors of DiscLight is a smooth function of s whose
 // shape hardly changes with (R/h)²: polynomials of degree five in s, whose nodes lie evenly, and
-// in (R/h)². They are held against the quadrature when they are made, and refined
+// in (R/h)². They are compared with the quadrature when they are made, and refined
 // until they differ by less than 1e-6 of the light on the axis. Beams with edges have kinks and are
 // not tabulated.
 class LampTable {

@@ -83,7 +83,7 @@ DiscPart disc_part(const Vec2& a, const Vec2& b) {
   return part;
 }
 
-// What the disc shares with a polygon, whichever way round it goes.
+// Intersection of the disc and a polygon of either orientation.
 DiscPart shared_with(std::span<const Vec2> polygon) {
   DiscPart sum;
   for (size_t i = 0; i < polygon.size(); ++i) {
@@ -92,7 +92,7 @@ DiscPart shared_with(std::span<const Vec2> polygon) {
   return sum.area < 0.0 ? DiscPart{-sum.area, -sum.moment} : sum;
 }
 
-// What the disc shares with the convex hull of some points. The hull by A. Andrew, Information
+// Intersection of the disc and the convex hull of some points. The hull by A. Andrew, Information
 // Processing Letters 9, 216 (1979).
 DiscPart shared_with_hull(std::array<Vec2, 8>& points) {
   std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) {
@@ -126,7 +126,7 @@ class View {
   }
   // Of the way to the aperture's plane.
   double part(const Vec3& at) const { return normal_.dot(at - point_) / height_; }
-  // Of what is neither behind the point nor beyond the aperture.
+  // Of parts that are neither behind the point nor beyond the aperture.
   Vec2 project(const Vec3& at) const {
     const Vec3 there = (at - point_) / part(at) - away_;
     return Vec2(there.dot(side_), there.dot(up_)) / side_.squaredNorm();
@@ -139,8 +139,9 @@ class View {
 
 constexpr double nearest_part = 1e-4;
 
-// What a sheet hides of the aperture; nothing for other walls, whose parts may hide the same, and
-// where it reaches beyond the aperture's plane. What the point has behind it hides nothing.
+// The part of the aperture that a sheet hides. Nothing for other walls, whose parts may hide the
+// same, and for a sheet that reaches beyond the aperture's plane. Parts behind the point hide
+// nothing.
 std::optional<DiscPart> hidden_by(const LightWall& wall, const View& view) {
   if (!wall.is_sheet) return std::nullopt;
   DiscPart hidden;
@@ -183,7 +184,7 @@ bool crosses(const std::array<Vec3, 3>& t, const Vec3& from, const Vec3& to) {
   if (u < 0.0 || u > 1.0) return false;
   const Vec3 q = s.cross(a);
   const double v = d.dot(q) / det, along = b.dot(q) / det;
-  constexpr double touch = 1e-9;  // what it starts or ends on does not hide it
+  constexpr double touch = 1e-9;  // the surfaces at its ends do not hide it
   return v >= 0.0 && u + v <= 1.0 && along > touch && along < 1.0 - touch;
 }
 

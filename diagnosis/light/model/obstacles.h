@@ -1,4 +1,4 @@
-// What stands between the lamps and the receiver.
+// Obstacles between the lamps and the receiver.
 #pragma once
 
 #include "diagnosis/light/model/lab.h"
@@ -23,9 +23,9 @@ class Obstacles {
   // Whether a box may hide a part of an aperture of this radius from a point.
   bool meets_boxes(const Vec3& point, const Vec3& lamp, double radius_m) const;
 
-  // What of a lamp's aperture is open to a point: its fraction, and the mean over the whole
-  // aperture of the distance from its middle, in radii along `side` and `up`, where it is open, 0
-  // elsewhere.
+  // The visible part of a lamp's aperture from a point: its fraction, and the first moment over the
+  // whole aperture: the mean distance from the centre, in radii along `side` and `up`, with hidden
+  // parts counted as 0.
   struct Open {
     double fraction = 1.0;
     Vec2 moment = Vec2::Zero();

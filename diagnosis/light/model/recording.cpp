@@ -12,7 +12,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/random.h"
-#include "core/numerics/steady_stretches.h"
+#include "core/numerics/steady_intervals.h"
 #include "core/settings/settings.h"
 #include "core/text/parse.h"
 #include "core/transform.h"
@@ -23,7 +23,7 @@ namespace {
 
 constexpr double absent = std::numeric_limits<double>::quiet_NaN();
 
-// Where a column stands in a row, and what its unit is in SI.
+// Index of a column in a row, and its unit in SI.
 struct LightColumn {
   size_t place = 0;
   double to_SI = 1.0;
@@ -88,7 +88,7 @@ bool next_line(TextLines& lines, std::string_view& line) {
   return false;
 }
 
-// What a file begins with: a header of this reader, or of curves as instruments write them.
+// The beginning of a file: a header of this reader, or of curves as instruments write them.
 struct Beginning {
   std::optional<LightHeader> header;
   bool is_curve = false;
@@ -176,13 +176,13 @@ class RowReader {
         if (!std::isfinite(time_s)) return "row without time";
         if (!into_.time_s.empty() && time_s == into_.time_s.back()) return "repeated time";
         into_.time_s.push_back(time_s);
-        // Where a cell says nothing, what was before holds.
+        // An empty cell keeps the previous value.
         const double lamps = value(columns_.lamps);
         const double before = into_.lamp_light.empty() ? 1.0 : into_.lamp_light.back();
         into_.lamp_light.push_back(std::isfinite(lamps) ? std::max(0.0, lamps) : before);
       } else {
         const double sweep = columns_.sweep ? value(columns_.sweep) : 0.0;
-        constexpr double most = 1e9;  // what an int holds, and more than anybody measures
+        constexpr double most = 1e9;  // fits an int, and exceeds any measurement
         if (!(std::abs(sweep) <= most)) return "unreadable number";
         into_.sweep.push_back(static_cast<int>(sweep));
         if (columns_.irradiance) into_.irradiance_W_m2.push_back(value(columns_.irradiance));
@@ -232,7 +232,7 @@ class RowReader {
   std::unordered_set<uint64_t> seen_;
 };
 
-// Steady stretches of the lamps' current by their means: its noise is none of the light's.
+// Steady segments of the lamps' current by their means: its noise is not that of the light.
 void smooth_steady(std::vector<double>& lamps) {
   if (lamps.size() < 3) return;
   std::vector<double> steps;
@@ -341,7 +341,7 @@ std::vector<LightRecording> sweeps_of(const LightRecording& recording) {
     curves.back().rows_read = static_cast<int64_t>(rows[number].size());
     curves.back().rejected.clear();
   }
-  // What was left out of the file counts once.
+  // Rows left out of the file are counted once.
   for (const auto& [reason, count] : recording.rejected) {
     if (curves.size() > 1) curves.front().rows_read += count;
   }

@@ -1,5 +1,5 @@
 // Recordings of light and power: scans of irradiance, sweeps of current over voltage, runs of an
-// array under a tracker. The header of a file tells which of the three it is.
+// array under a tracker. The header of a file determines which of the three it is.
 //
 // CSV (also .csv.gz), columns in any order, comments from # on. Rows that cannot be read are left
 // out and counted; wild readings are found later, against a model (diagnosis/light/diagnose.h).
@@ -28,8 +28,8 @@ struct LightRecording {
   Kind kind = Kind::scan;
   std::string name;  // path as given
 
-  // One entry per row that was kept; what the kind does not have is empty.
-  // The irradiance of a sweep is what a sensor beside the array saw; NaN where a row has none.
+  // One entry per row that was kept; quantities that the kind lacks are empty. The irradiance of a
+  // sweep is what a sensor beside the array saw; NaN where a row has none.
   std::vector<double> u_m, v_m, irradiance_W_m2;
   std::vector<double> voltage_V, current_A;
   std::vector<double> time_s;
@@ -40,7 +40,7 @@ struct LightRecording {
   // be proportional. Empty where it hardly changes.
   std::vector<double> lamp_light;
 
-  // False: each row has what the experiment says.
+  // False: each row has the value of the experiment.
   bool has_attitudes = true, has_temperatures = true;
   int64_t rows_read = 0;                    // data rows in the file
   std::map<std::string, int64_t> rejected;  // by reason: "torn row", "unreadable", …
@@ -57,7 +57,7 @@ std::vector<LightRecording> sweeps_of(const LightRecording& recording);
 // The median of the finite values; NaN where there is none.
 double median_of(std::vector<double> values);
 
-// What rows have that do not say it themselves.
+// Defaults for rows without these values.
 struct UsualCircumstances {
   Quat lab_from_body = Quat::Identity();
   double temperature_K = 298.15;

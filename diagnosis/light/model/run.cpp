@@ -10,7 +10,7 @@ namespace {
 
 constexpr size_t no_cell = static_cast<size_t>(-1);
 
-// The middle of some readings: what noise and one wild reading cannot move far.
+// The median of some readings, which noise and one outlier cannot move far.
 double middle_of(std::vector<double> values) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), at, values.end());

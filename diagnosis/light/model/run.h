@@ -1,4 +1,4 @@
-// A recording as the forward model sees it: what it would read if a state were true.
+// A recording of the forward model: its expected readings for a state.
 //
 // From the state follow, one after the other, each lamp's light on every place, the
 // signals (readings of a scan; photocurrents of every cell at every instant), and the residuals,
@@ -60,18 +60,18 @@ class LightRun {
   LightRun part(const std::vector<size_t>& rows) const;
   // Of a scan: fields of this recording at the rows chosen, for its part.
   static LightFields part(const LightFields& fields, const std::vector<size_t>& rows);
-  // The same recording and noise with another nominal model.
+  // The recording and noise with another nominal model.
   LightRun in(const LightLab& lab) const;
-  // The same with all noise multiplied.
+  // Multiplies all noise.
   void scale_noise(double factor);
 
   // Parts of `near` stay where they are the same. Light by way of walls takes long, and changes
-  // little where lamps move a little: kept, it stays whatever the lamps do.
+  // little where lamps move a little: kept, it stays unchanged when the lamps change.
   enum class Walls { followed, kept };
   LightFields fields(const LightState& state, const LightFields* near,
                      Walls walls = Walls::followed) const;
-  // Light of all lamps on every output, before what acts on all of it alike. Of a state beside one
-  // whose light is known only those lamps are added anew that differ.
+  // Light of all lamps on every output, before effects that act on all light. Given a state with
+  // known light, only the lamps that differ are added again.
   struct KnownLight {
     const LightState* state;
     const LightFields* fields;
@@ -95,8 +95,8 @@ class LightRun {
   std::vector<double> gain_if_trapped(const LightState& state,
                                       const std::vector<double>& signals) const;
 
-  // What a reading is expected to be: of a scan the irradiance; of others voltage and current (of a
-  // sweep the current at the measured voltage).
+  // Expected readings: of a scan the irradiance; of others voltage and current (of a sweep the
+  // current at the measured voltage).
   struct Expected {
     double irradiance_W_m2 = 0.0, voltage_V = 0.0, current_A = 0.0;
   };

@@ -1,4 +1,4 @@
-// The light that a recording looks at: fields of its lamps and walls, their sum, and what acts on
+// The light that a recording looks at: fields of its lamps and walls, their sum, and effects on
 // it as a whole.
 #include <algorithm>
 #include <cmath>

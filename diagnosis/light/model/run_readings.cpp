@@ -1,5 +1,5 @@
-// What a recording reads where its light is known: currents and voltages of the array, what is left
-// of the readings, and how both move with the light.
+// Readings of a recording whose light is known: currents and voltages of the array, residuals, and
+// the derivatives of both by the light.
 #include <algorithm>
 #include <cmath>
 

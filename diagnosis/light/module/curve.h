@@ -32,7 +32,7 @@ struct ModuleCell {
   Translation translation = {};
 };
 
-// What acts on the module.
+// Effects on the module.
 struct ModuleState {
   double light = 1.0;  // over the reference's
   double temperature_K = 298.15;

@@ -1,4 +1,5 @@
-// What an experiment says about a module in sunlight: its cells, and what is known of it as it was.
+// The module in sunlight of an experiment: its cells, and the nominal values of the undamaged
+// module.
 //
 //   [module]
 //   cells_in_series = 96
@@ -12,10 +13,10 @@
 //   temperature_sigma_K = 2          how well that is known, of references as well
 //   current_noise_A, voltage_noise_V errors of a reading; found from the curves where not stated
 //
-// Files may say of each curve (`sweep`) its cell_temperature_K and irradiance_W_m2, which then
-// stand in the place of these keys. The irradiance may differ from curve to curve. [[effect]] with
-// the kinds and keys of a diagnosis states what is known to act on the recordings, and not on the
-// references; with the key `curve` on the curve of that name alone ("day.csv, sweep 6").
+// Files may contain cell_temperature_K and irradiance_W_m2 for each curve (`sweep`), which then
+// replace these keys. The irradiance may differ from curve to curve. [[effect]] with the kinds and
+// keys of a diagnosis states known effects on the recordings, and not on the references; with the
+// key `curve` on the curve of that name alone ("day.csv, sweep 6").
 #pragma once
 
 #include <map>
@@ -48,12 +49,12 @@ struct ModuleDesign {
   double temperature_K = 298.15, temperature_sigma_K = 2.0;
   std::optional<double> current_noise_A;
   double voltage_noise_V = 0.0;  // 0: a ten-thousandth of the open-circuit voltage
-  // What acts on the recordings, by the name of the curve; "": on all of them.
+  // Effects on the recordings, by the name of the curve; "": on all of them.
   std::map<std::string, ModuleActing> acting;
   LightColumns columns;  // of all files: [recording] columns
 };
 
-// All that acts on a curve, whose name may begin with folders.
+// All effects on a curve, whose name may begin with folders.
 ModuleActing acting_on(const ModuleDesign& design, const std::string& curve);
 
 // Reads [module] of an experiment whose files stand in `folder`. InputError for bad keys.

@@ -101,7 +101,7 @@ struct ModuleAnswer {
   inference::Decision decision;
 };
 
-// What a fit leaves of its runs beyond noise [sigma].
+// Excess of the residuals of a fit over noise [sigma].
 double excess_of(const ModuleFitter& fitter, const ModuleHypothesis& h, const ModuleTrial& trial,
                  const std::vector<ModuleRun>& runs, const Thresholds& limits) {
   std::vector<inference::ChannelResiduals> channels;
@@ -289,8 +289,8 @@ double squares_of(const ModuleFitter& fitter, const ModuleAnswer& answer, size_t
 // 0.8 % and more.
 constexpr double even_misfit = 7e-3;
 
-// A curve that is given as the module as it was and as a recording at once: what one diode cannot
-// describe counts as noise, so nothing would be found.
+// Whether a curve is both a reference and a recording. Its deviation from one diode would then
+// count as noise, so that no effect would be found.
 bool is_its_own_reference(const ModuleDesign& design,
                           const std::vector<LightRecording>& recordings) {
   return std::ranges::any_of(recordings, [&](const LightRecording& r) {
@@ -315,7 +315,7 @@ void judge_references(const ModuleDesign& design, const ModuleNominal& nominal,
   if (own) {
     d.warnings.push_back(
         "a recording is its own reference: what one diode cannot describe counts as noise, so that "
-        "only another curve or a datasheet can show what is missing");
+        "only another curve or a datasheet can show missing effects");
   }
   if (!own || !uneven || d.verdict != Verdict::consistent) return;
   d.verdict = Verdict::unexplained;

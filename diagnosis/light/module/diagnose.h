@@ -1,8 +1,8 @@
 // `diagnose` for a module in sunlight: current-voltage curves against the module as it was.
 //
 // Reference curves or a datasheet → one diode with its uncertainty → every hypothesis fitted to the
-// recordings, with light and temperature of each curve as its nuisances → evidence, with what was
-// held out → the decision of inference/decide.h.
+// recordings, with light and temperature of each curve as its nuisances → evidence, with the
+// held-out data → the decision of inference/decide.h.
 #pragma once
 
 #include "diagnosis/diagnosis.h"
@@ -18,7 +18,7 @@ struct ModuleDiagnoseOptions {
   Thresholds limits;
 };
 
-// Without holdouts every fourth stretch of each curve is held out. InputError for recordings that
+// Without holdouts every fourth segment of each curve is held out. InputError for recordings that
 // are no curves. The same result for any number of threads.
 Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRecording>& recordings,
                           const std::vector<LightRecording>& holdouts,

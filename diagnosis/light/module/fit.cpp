@@ -113,7 +113,7 @@ ModuleTrial ModuleFitter::fit(const ModuleHypothesis& h, const std::vector<Modul
   if (h.is_empirical || !h.kind.empty()) {
     evidence += h.is_empirical ? limits_.evidence.log_prior_empirical
                                : limits_.evidence.log_prior_effect - std::log(h.alternatives);
-    // What cannot be negative has half of a Gaussian as its prior.
+    // A parameter that cannot be negative has half of a Gaussian as its prior.
     for (const inference::Parameter& p : h.parameters) {
       if (p.mean == 0.0 && p.lowest == 0.0) evidence += std::log(2.0);
     }

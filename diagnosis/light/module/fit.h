@@ -1,5 +1,5 @@
-// What may be wrong with a module (its numbers, what they do to it, and what is expected of them),
-// and such a hypothesis fitted to curves.
+// Hypotheses about a module (parameters, their effect on it, and their priors), and their fit to
+// curves.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@ namespace photorque {
 
 struct ModuleHypothesis {
   std::string kind;         // empty: nothing, or a law without physics
-  std::string label;        // for people: "cell_cracked (3 cells)"
+  std::string label;        // as printed: "cell_cracked (3 cells)"
   std::string explanation;  // a sentence of physics without a full stop
   bool is_empirical = false;
   int count = 0;            // of cells; 0: not a number of cells
@@ -62,7 +62,7 @@ class ModuleFitter {
   // Measured less predicted over their errors.
   Eigen::VectorXd residuals(const ModuleHypothesis& h, const Eigen::VectorXd& x,
                             const ModuleRun& run) const;
-  // Of a run of a trial: its two nuisances, then what is shared.
+  // Of a run of a trial: its two nuisances, then the shared parameters.
   static Eigen::VectorXd numbers_of(const ModuleTrial& trial, size_t run);
 
  private:

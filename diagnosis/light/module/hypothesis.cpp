@@ -137,7 +137,7 @@ ModuleHypothesis shunted(int count, double alternatives, double usual_ohm) {
   return h;
 }
 
-// A trap: every curve that falls smoothly is fitted by some diode, whatever the physics.
+// A trap: some diode fits every smoothly falling curve.
 ModuleHypothesis other_diode() {
   ModuleHypothesis h;
   h.label = "another diode (all five parameters)";

@@ -65,7 +65,8 @@ struct ReferenceFit {
   std::vector<VectorXd> residuals_A;
 };
 
-constexpr Index own = 2;  // of each curve: logarithm of its light, temperature off what is stated
+constexpr Index own =
+    2;  // of each curve: logarithm of its light, deviation from the stated temperature
 
 inference::Parameters reference_parameters(const ModuleDesign& design,
                                            const std::vector<ModuleSweep>& sweeps) {
@@ -75,7 +76,7 @@ inference::Parameters reference_parameters(const ModuleDesign& design,
   const VectorXd logs = logs_of(start.diode, design.cells, design.reference_temperature_K);
   inference::Parameters parameters;
   const char* const names[] = {"photocurrent", "saturation", "ideality", "series", "shunt"};
-  // Bounds of what silicon and its contacts can be: a fit that ends there says so by its misfit.
+  // Bounds of real silicon and its contacts: a fit that ends there has a large misfit.
   const double low[] = {logs[0] - 1.0, logs[1] - 30.0, std::log(0.5), std::log(1e-6),
                         std::log(1e-2)};
   const double high[] = {logs[0] + 1.0, logs[1] + 30.0, std::log(4.0), std::log(1e2),
@@ -97,7 +98,7 @@ inference::Parameters reference_parameters(const ModuleDesign& design,
   return parameters;
 }
 
-// `noise`: of a point over the current of the first curve; `near`: where the fit begins, or
+// `noise`: of a point over the current of the first curve; `near`: where the fit starts, or
 // nullptr.
 ReferenceFit fit_references(const ModuleDesign& design, double noise, const ReferenceFit* near) {
   constexpr size_t most_points = 200;
@@ -204,7 +205,7 @@ ModuleNominal nominal_of_datasheet(const ModuleDesign& design) {
   const SingleDiode& d = fit.diode;
   const Estimate* of[] = {&d.photocurrent_A, &d.saturation_A, &d.scale_V, &d.series_ohm,
                           &d.shunt_ohm};
-  // Modules of one kind differ among each other by some per cent, whatever the sheet says.
+  // Modules of one kind differ from the datasheet and from each other by some per cent.
   constexpr double alike = 0.02, most = 1.0;
   for (Index k = 0; k < 5; ++k) {
     const Estimate& e = *of[k];
@@ -223,7 +224,7 @@ ModuleNominal nominal_of_references(const ModuleDesign& design) {
   ModuleNominal nominal;
   constexpr double first_noise = 1e-3;
   const ReferenceFit first = fit_references(design, first_noise, nullptr);
-  // Once more with the scatter that counts once in a length of correlation as its noise.
+  // The second fit takes the scatter, counted once per correlation length, as its noise.
   double length = 0.0;
   for (const VectorXd& r : first.residuals_A) {
     length += correlation_points(r) / static_cast<double>(first.residuals_A.size());
@@ -276,7 +277,7 @@ ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& de
   }
   all.noise_A =
       design.current_noise_A.value_or(std::max(noise_of(all.current_A), 1e-5 * largest_A));
-  // What leaves the line between its neighbours by far more than curves bend.
+  // Outliers: points that are farther from the line between their neighbours than a curve can bend.
   ModuleSweep good = all;
   good.voltage_V.clear();
   good.current_A.clear();
@@ -338,8 +339,8 @@ ModuleNominal nominal_module(const ModuleDesign& design) {
 double point_sigma_A(const ModuleNominal& nominal, const ModuleSweep& sweep) {
   const double step_V = (sweep.voltage_V.back() - sweep.voltage_V.front()) /
                         static_cast<double>(sweep.voltage_V.size() - 1);
-  // Per unit of distance, of the short-circuit current: what the powers of Translation leave of the
-  // two modules from which their sizes come.
+  // Per unit of distance, of the short-circuit current: the residual of the powers of Translation
+  // for the two modules from which their sizes come.
   constexpr double translation_misfit = 1.5e-3;
   // One or two references show their misfit over few lengths of correlation, to a third.
   constexpr double of_curves = 1.33;

@@ -29,8 +29,8 @@ struct ModuleNominal {
   static constexpr Eigen::Index numbers = 10;
   using Numbers = Eigen::Matrix<double, numbers, 1>;
   Eigen::Matrix<double, numbers, numbers> root = Eigen::Matrix<double, numbers, numbers>::Zero();
-  // What one diode leaves of the reference beyond its noise, over the short-circuit current, and
-  // the voltage over which that changes.
+  // Residual of the one-diode model of the reference beyond its noise, over the short-circuit
+  // current, and the voltage over which that residual changes.
   double misfit = 0.0, correlation_V = 0.0;
   double voltage_noise_V = 0.0;
 };
@@ -46,9 +46,9 @@ double distance_of(const ModuleNominal& nominal, const ModuleSweep& sweep);
 // InputError for references that no diode fits.
 ModuleNominal nominal_module(const ModuleDesign& design);
 
-// The standard deviation of each point of a sweep: the noise of its readings and what one diode
-// cannot describe, which changes slowly and so counts once in a length of correlation. It grows
-// with the distance from the reference, because the translation to another condition has an error.
+// The standard deviation of each point of a sweep: the noise of its readings and the misfit of one
+// diode, which changes slowly and therefore counts once per correlation length. It grows with the
+// distance from the reference, because the translation to another condition has an error.
 double point_sigma_A(const ModuleNominal& nominal, const ModuleSweep& sweep);
 
 }  // namespace photorque

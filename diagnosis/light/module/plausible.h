@@ -1,4 +1,4 @@
-// Curves that no module gives: the columns are not what their header says.
+// Curves that no module gives: the columns differ from their header.
 #pragma once
 
 #include "diagnosis/light/module/design.h"

@@ -38,8 +38,8 @@ class OnwardLight {
   OnwardLight(const TraceableScene& scene, const std::vector<std::vector<uint32_t>>& facet_of,
               const Vec3& about_m);
 
-  // Follows the rays, and what goes on from where they land, until less than `cutoff` of a ray is
-  // left; leaves none.
+  // Follows the rays and their further bounces until less than `cutoff` of a ray is left; leaves
+  // none.
   void follow(std::vector<OnwardRay>& rays, double cutoff, const OnwardSink& sink);
   uint64_t rays() const { return traced_; }
 

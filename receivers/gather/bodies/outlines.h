@@ -7,7 +7,7 @@
 
 namespace photorque {
 
-// The edges of all facets, each once, with what meets there.
+// The edges of all facets, each once, with the facets that meet there.
 class Outlines {
  public:
   explicit Outlines(const Facets& facets);

@@ -128,7 +128,7 @@ ScatteredLight::ScatteredLight(const TraceableScene& scene, const Shape& shape, 
   }
 }
 
-// Cuts a cell until it is small against all and against what stands on it or close above it.
+// Cuts a cell until it is small against the body and against parts on it or close above it.
 void ScatteredLight::grow(size_t side, size_t node, const Cell& cell, std::span<const Trace> traces,
                           const Facet& facet, double patch_m2) {
   constexpr uint32_t finer = 3;  // cuts below the common size
@@ -288,7 +288,7 @@ void ScatteredLight::settle(const Task& task, const std::vector<Work>& work,
   }
 }
 
-// Of cells that are cut: quarters stand behind what they are quarters of.
+// Of cells that are cut: quarters stand behind the cell that they divide.
 void ScatteredLight::find_means(size_t band) {
   for (size_t node = nodes_.size(); node-- > 0;) {
     const uint32_t first = nodes_[node].first_quarter;

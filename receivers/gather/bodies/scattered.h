@@ -50,7 +50,7 @@ class ScatteredLight {
                                     : node_at(side, piece.centre_uv);
     return per_watt_[band][node][covered ? 1 : 0];
   }
-  // The lines that end what stands closely above a side.
+  // The edges of parts closely above a side.
   std::span<const Line> lines(size_t side) const { return lines_[side]; }
   // The area of most patches.
   double patch_m2() const { return patch_m2_; }

@@ -16,7 +16,7 @@ constexpr double widest_rad = 1.0 * degree_rad;  // half-angle of a sun that sha
 constexpr double rounding = 1e-7;                // of the scene: in the plane of a facet
 constexpr double least_piece = 1e-6;             // of all area: not cut further
 
-// Adds up what each owner's light does.
+// Adds up the effects of each owner's light.
 OnwardSink adding_to(std::vector<TwofoldSum>& sums, const ScatteredLight& scattered) {
   return {[&](uint32_t owner, const WrenchSum& wrench) {
             sums[owner].head<6>() += wrench;
@@ -70,7 +70,7 @@ class SunlitBody::Direction {
   struct LitSide {
     FacetSide side;
     size_t number;  // 2 · facet + front
-    Vec3 travel;    // the mean direction of what arrives
+    Vec3 travel;    // the mean direction of arriving light
     ArrivingLight light;
     FirstContact contact;
     const OpticalSurface* surface;
@@ -108,7 +108,7 @@ class SunlitBody::Direction {
                        [](double one) { return one > 0.0; });
   }
 
-  // The outlines of what is seen in a direction; facets of one plane ask one after another.
+  // The outlines of the view in a direction; facets of one plane query one after another.
   std::span<const Line> seen_along(const Vec3& direction) {
     if (!(direction - seen_direction_).isZero(1e-12)) {
       seen_.clear();
@@ -270,7 +270,7 @@ class SunlitBody::Direction {
     add(lit.surface->transmitted, lit.travel, -1.0);
   }
 
-  // Round by round: what four quarters of a cell do not agree on is cut again.
+  // Round by round: a cell whose four quarters disagree is cut again.
   void follow_thrown() {
     std::vector<LitPiece> now, next;
     for (const LitPiece& one : pieces_) {
@@ -314,7 +314,7 @@ class SunlitBody::Direction {
     return begin + 4;
   }
 
-  // Adds what a family says, or cuts it again.
+  // Adds the result of a family, or cuts it again.
   void settle(std::span<const LitPiece> family, std::span<const TwofoldSum> sums,
               std::vector<LitPiece>& next) {
     constexpr uint32_t deepest = 14;

@@ -28,12 +28,12 @@ struct SunlitEffort {
   size_t mirror_cells = 1000;  // of about equal areas, over all surfaces
 };
 
-// A wrench of sunlight: of what first contact leaves, and of all that follows twice, from
-// independent estimates of the scattered light.
+// A wrench of sunlight: of the first contact, and of all later light twice, from independent
+// estimates of the scattered light.
 struct SunlitWrench {
   WrenchSum direct = WrenchSum::Zero();
   TwofoldSum bounced = TwofoldSum::Zero();
-  // One standard error of what mirrors throw: from the scatter within the last cells.
+  // One standard error of mirrored light, from the scatter within the last cells.
   WrenchSum mirror_error = WrenchSum::Zero();
   uint64_t rays = 0;
 

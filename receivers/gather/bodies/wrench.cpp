@@ -59,7 +59,7 @@ struct GroupRay {
 // The properties that decide how the light of a side is summed.
 struct SideLight {
   double lit_W = 0.0, dark_W = 0.0;
-  bool as_open = false;  // less what is dark
+  bool as_open = false;  // less the dark part
 };
 
 // Sides whose points share a block, or one that takes several blocks.
@@ -249,7 +249,7 @@ void find_sides(const Facets& facets, const BodyLamp& lamp, bool plain, const Ve
   }
 }
 
-// Shares out the rays by what the light counts.
+// Distributes the rays in proportion to the light.
 void share_points(Item& item, double points_per_weight, const Vec3& about_m) {
   constexpr double most = 1 << 14;
   for (SampledSide& sampled : item.sampled) {

@@ -154,7 +154,7 @@ class Loader {
     return std::move(*found);
   }
 
-  std::string where_;  // of what is being loaded, a JSON pointer
+  std::string where_;  // of the part that is being loaded, a JSON pointer
   std::optional<std::string_view> binary_;
   bool is_glb_;
   const std::string& file_;

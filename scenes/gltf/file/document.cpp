@@ -155,8 +155,8 @@ bool is_harmless(std::string_view extension) {
       });
 }
 
-// Refuses what would cost more than it can mean, before anything is built from it: deep nesting,
-// and more values than there is memory for.
+// Rejects documents of excessive cost, before anything is built from them: deep nesting, and more
+// values than there is memory for.
 void check_extent(std::string_view text, const std::string& file, MemoryBudget* budget) {
   constexpr uint64_t bytes_per_value = 256;
   const JsonExtent extent = extent_of_json(text);

@@ -24,9 +24,9 @@
 namespace photorque::gltf {
 
 struct Document {
-  std::string file;       // what messages call it
+  std::string file;       // name in messages
   nlohmann::json json;    // as written, without the sections that are not needed
-  tinygltf::Model model;  // the same in types; without buffers, images, textures, animations
+  tinygltf::Model model;  // as typed objects; without buffers, images, textures, animations
   std::vector<Buffer> buffers;
   std::vector<std::pair<std::string, std::string>> inputs;  // external files: name, content hash
   std::vector<std::string> notices;

@@ -335,7 +335,7 @@ std::string SchemaWalk::expectation(const Field& field) const {
          ", the number of " + field.target + ", not empty";
 }
 
-// The value itself, not what is inside it.
+// The value alone, without its members.
 bool SchemaWalk::fits(const json& value, const Field& field) const {
   const auto in_range = [&](const json& number) {
     return number.is_number() && number.get<double>() >= field.low &&

@@ -7,10 +7,10 @@
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace photorque;
   const fuzz::FileInMemory file(data, size);
-  const bool told = is_light_recording(file.path());
+  const bool reported = is_light_recording(file.path());
   fuzz::may_refuse([&] {
     const LightRecording recording = read_light_recording(file.path(), {});
-    if (!told) std::abort();
+    if (!reported) std::abort();
     if (recording.temperature_K.size() != recording.rows()) std::abort();
     if (recording.part({recording.rows() - 1}).rows() != 1) std::abort();
     for (const double voltage_V : recording.voltage_V) {

@@ -1,4 +1,4 @@
-// Of lamp tables: what was read can be interpolated and written back.
+// Of lamp tables: a table that was read can be interpolated and written back.
 #pragma once
 
 #include "sources/photometry/file.h"

@@ -1,4 +1,4 @@
-// Of ray files: what was read makes a lamp and can be written back.
+// Of ray files: a file that was read makes a lamp and can be written back.
 #pragma once
 
 #include "sources/lamps/ray_file.h"

@@ -25,7 +25,7 @@ void check(const Recording& recording) {
   if (recording.report.text().empty()) std::abort();
 }
 
-// One in 64, since what is written is synced to the disk.
+// One in 64, because written files are synced to the disk.
 bool is_chosen(const uint8_t* data, size_t size) {
   uint32_t sum = 0;
   for (size_t i = 0; i < size; ++i) sum = 31 * sum + data[i];

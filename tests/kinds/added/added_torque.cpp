@@ -1,5 +1,5 @@
 // A kind of disturbance that the program does not have: a torque about body x that grows with the
-// charge drawn. All that anybody knows about it stands here.
+// charge drawn. This file alone describes it.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::added_torque {

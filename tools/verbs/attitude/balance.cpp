@@ -49,8 +49,8 @@ void print_balance(const Console& console, const BalanceRun& run, const BalanceR
                  show(Estimate{result.offset_body_m[k], result.sigma_m[k]}, "m"));
   }
   console.line("  chi² per sample of the fit " + show(result.chi2_per_sample));
-  if (result.stretches > 1) {
-    console.line("  the recording is in " + std::to_string(result.stretches) +
+  if (result.segments > 1) {
+    console.line("  the recording is in " + std::to_string(result.segments) +
                  " segments between gaps, each with its own initial state");
   }
   if (result.leaves_more_than_noise()) console.line("  WARNING: " + result.warning());

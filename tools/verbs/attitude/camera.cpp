@@ -1,4 +1,4 @@
-// photorque camera: how well the tracking camera knows the attitude, by its geometry.
+// photorque camera: attitude error of the tracking camera, from its geometry.
 #include "tools/verbs/attitude/camera.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// How well the tracking camera of an experiment knows the attitude.
+// Attitude error of the tracking camera of an experiment.
 #pragma once
 
 #include "attitude/camera/study.h"

@@ -1,4 +1,4 @@
-// photorque diagnose: what physics is missing between an experiment and its recordings.
+// photorque diagnose: missing physics of an experiment, from its recordings.
 #include "tools/verbs/attitude/diagnose.h"
 
 #include <algorithm>
@@ -208,7 +208,7 @@ DiagnosisRun diagnose_motion(const RunOptions& options, const std::vector<fs::pa
           with_overrides(options.experiment_text(), options.overrides), false};
 }
 
-// Recordings by what they hold. A run of the array says how the platform moved, too.
+// Recordings by their content. A run of the array contains the motion of the platform, too.
 struct Sorted {
   std::vector<fs::path> motion, light;
 };
@@ -299,7 +299,7 @@ DiagnosisRun run_diagnose(const RunOptions& options, const std::vector<fs::path>
       !sorted.motion.empty()) {
     return diagnose_both(options, root, sorted, sorted_by_content(holdouts, columns), console);
   }
-  // Without a platform nothing but light is meant: its reader says what a file is not.
+  // Without a platform the files must be of light: their reader reports other files.
   return are_of_light(recordings, holdouts, columns) || (root.has("scene") && !root.has("platform"))
              ? diagnose_light_recordings(options, root, recordings, holdouts, console)
              : diagnose_motion(options, recordings, holdouts, console);
