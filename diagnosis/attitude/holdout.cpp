@@ -138,7 +138,7 @@ RecordingSeries series_of(const Fit& before, const Fit& after, const Observation
         c.before.push_back(value - c.residual_before.back());
         c.after.push_back(value - c.residual_after.back());
       }
-      result.channels.push_back(std::move(c));
+      if (!c.time_s.empty()) result.channels.push_back(std::move(c));
     }
     result.attitude = attitude_of(a, b, seen);
   } catch (const NumericalError&) {

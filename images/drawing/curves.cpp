@@ -160,7 +160,9 @@ void draw_bar_numbers(Canvas& canvas, const ChartPanel& panel) {
     if (!hangs(curve)) continue;
     const auto bar = bar_of(panel, curve, 1);
     if (!bar) continue;
-    const double size = curve.y[1] - curve.y[0];
+    double size = curve.y[1] - curve.y[0];
+    // Rounding of what is nothing.
+    if (std::abs(size) < 1e-9 * std::max(std::abs(curve.y[0]), std::abs(curve.y[1]))) size = 0.0;
     std::string text = readable_number(std::abs(size), 3);
     if (size < 0.0) text = "−" + text;
     canvas.text(text, {bar->centre().x, bar->y - 5.0}, style);

@@ -1,5 +1,7 @@
 #include "images/drawing/plot.h"
 
+#include <sstream>
+
 #include "core/errors.h"
 #include "images/drawing/page_layout.h"
 
@@ -80,7 +82,8 @@ AxisRange y_range(const Plot::Panel& panel) {
   const bool log = panel.y_log;
   Extent extent = curves_extent(panel);
   for (const double level : panel.levels) extent.include(level, log);
-  AxisRange range = padded(extent, log, 0.06);
+  // Over bars that hang their sizes are written.
+  AxisRange range = padded(extent, log, names_stand_under_bars(panel.curves) ? 0.1 : 0.06);
   // A quantity that starts at zero stands on the axis.
   if (extent.low == 0.0 && extent.high > 0.0) range.low = 0.0;
   return range;
@@ -96,34 +99,64 @@ double usual_height(const std::vector<Plot::Panel>& panels, double scale) {
   return height;
 }
 
-// The names under bars, each in the room of its bar.
+constexpr double smallest_name = 7.5;  // points
+
+// Whether every word of the names fits under its bar.
+bool words_fit(const std::vector<Plot::Curve>& curves, double room, TextStyle style) {
+  style.size = smallest_name;
+  return std::ranges::all_of(curves, [&](const Plot::Curve& curve) {
+    std::istringstream words(curve.label);
+    for (std::string word; words >> word;) {
+      if (text_width(word, style) > room) return false;
+    }
+    return true;
+  });
+}
+
+// The names under bars, each in the room of its bar; upright where words are wider than that.
 std::vector<TextBlock> names_of(const ChartPanel& panel) {
   if (!names_stand_under_bars(panel.curves)) return {};
   TextStyle style = tick_style;
-  style.align = TextAlign::centre;
   const double room = panel.frame.width / (panel.x.range.high - panel.x.range.low) - 6.0;
+  const bool fits = words_fit(panel.curves, room, style);
+  style.align = fits ? TextAlign::centre : TextAlign::right;
+  style.turn_rad = fits ? 0.0 : quarter_turn_rad;
+  constexpr double longest = 130.0;
   std::vector<TextBlock> names;
   for (const Plot::Curve& curve : panel.curves) {
-    names.push_back(fitted_text(curve.label, room, style, 7.5, 5));
+    names.push_back(fits ? fitted_text(curve.label, room, style, smallest_name, 5)
+                         : fitted_text(curve.label, longest, style, smallest_name, 2));
   }
   return names;
 }
 
 double names_height(const ChartPanel& panel) {
   double height = 0.0;
-  for (const TextBlock& name : names_of(panel)) height = std::max(height, name.height() + 8.0);
+  for (const TextBlock& name : names_of(panel)) {
+    double length = name.height();
+    if (name.style.turn_rad != 0.0) {
+      length = 0.0;
+      for (const std::string& line : name.lines) {
+        length = std::max(length, text_width(line, name.style));
+      }
+    }
+    height = std::max(height, length + 8.0);
+  }
   return height;
 }
 
 void draw_names(Canvas& canvas, const ChartPanel& panel) {
-  const std::vector<TextBlock> names = names_of(panel);
-  for (size_t i = 0; i < names.size(); ++i) {
-    const double x =
-        panel.frame.x + panel.frame.width * panel.x.fraction(panel.curves[i].x.front());
-    double y = panel.frame.bottom() + 4.0 + names[i].style.size;
-    for (const std::string& line : names[i].lines) {
-      canvas.text(line, {x, y}, names[i].style);
-      y += names[i].line_height();
+  for (size_t i = 0; const TextBlock& name : names_of(panel)) {
+    const double centre =
+        panel.frame.x + panel.frame.width * panel.x.fraction(panel.curves[i++].x.front());
+    const double top = panel.frame.bottom() + 4.0;
+    for (size_t k = 0; k < name.lines.size(); ++k) {
+      const double down = static_cast<double>(k) * name.line_height();
+      const double middle = 0.5 * static_cast<double>(name.lines.size() - 1) * name.line_height();
+      const PagePoint place = name.style.turn_rad == 0.0
+                                  ? PagePoint{centre, top + name.style.size + down}
+                                  : PagePoint{centre + 0.35 * name.style.size + down - middle, top};
+      canvas.text(name.lines[k], place, name.style);
     }
   }
 }

@@ -1,6 +1,7 @@
 #include "tools/coupling/propagate.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "attitude/model/platform.h"
 #include "attitude/recordings/aem.h"
@@ -20,9 +21,6 @@ void print_run(const Console& console, const PropagationRun& run, const CoupledR
     console.details().line("  " + disturbance.kind);
   console.heading("Trajectory");
   const PlatformState& end = result.states.back();
-  const auto row = [&](const std::string& name, double value, const std::string& unit) {
-    console.line("  " + padded(name, 24) + show_brief(value) + " " + unit);
-  };
   console.line("  " + padded("until", 24) + show_duration(end.time_s));
   const auto figure = [&](const char* name) {
     const auto at = std::ranges::find(result.product.quantities, name, &Quantity::name);
@@ -32,6 +30,20 @@ void print_run(const Console& console, const PropagationRun& run, const CoupledR
                " deg at " + show_duration(figure("largest_tilt_time_s")));
   console.line("  " + padded("yaw excursion", 24) + show_brief(figure("yaw_excursion_deg")) +
                " deg from least to largest");
+  // The lowest bar of the fractions is the strongest torque.
+  const auto fractions = std::ranges::find(result.product.plots, "torque_fractions", &Plot::name);
+  if (fractions != result.product.plots.end() && !fractions->curves.empty()) {
+    const Plot::Curve& strongest = fractions->curves.back();
+    const double sum = std::accumulate(strongest.y.begin(), strongest.y.end(), 0.0);
+    console.line("  " + padded("strongest torque", 24) + strongest.label + ", " +
+                 show_brief(sum / static_cast<double>(strongest.y.size())) +
+                 " % of all on average");
+  }
+  // A run in light prints its energies instead.
+  const Console ends = coupled.beside ? console.details() : console;
+  const auto row = [&](const std::string& name, double value, const std::string& unit) {
+    ends.line("  " + padded(name, 24) + show_brief(value) + " " + unit);
+  };
   row("tilt at the end", tilt_rad(end) / degree_rad, "deg");
   row("yaw at the end", yaw_rad(end) / degree_rad, "deg, between -180 and 180");
   row("rate at the end", end.rate_body_rad_s.norm(), "rad/s");
@@ -43,9 +55,10 @@ void print_run(const Console& console, const PropagationRun& run, const CoupledR
   }
   constexpr size_t max_events = 5;
   if (!result.events.empty()) console.heading("Events");
-  for (size_t i = 0; i < std::min(max_events, result.events.size()); ++i) {
+  for (size_t i = 0; i < result.events.size(); ++i) {
     const Event& event = result.events[i];
-    console.line("  " + event.name + " at " + show(event.time_s) + " s");
+    (i < max_events ? console : console.details())
+        .line("  " + event.name + " at " + show(event.time_s) + " s");
   }
   if (result.events.size() > max_events) {
     console.line("  and " + std::to_string(result.events.size() - max_events) +

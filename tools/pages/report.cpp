@@ -105,7 +105,8 @@ std::string head(const Diagnosis& d, const std::string& title) {
   const Face face = d.verdict == Verdict::consistent ? Face{"good", "✓", "Consistent"}
                     : d.verdict == Verdict::missing_physics
                         ? Face{"found", "◆", "Missing physics found"}
-                        : Face{"open", "?", "Not explained by known physics"};
+                    : d.effects.empty() ? Face{"open", "?", "Not explained by known physics"}
+                                        : Face{"open", "?", "Partly explained by known physics"};
   std::string content = tag("h1", xml_text(title) + "<span class=\"verb\">diagnose</span>");
   content +=
       tag("div",

@@ -78,12 +78,14 @@ std::string show(const Estimate& estimate, const std::string& unit) {
   // The scatter of equal samples by rounding is no error.
   const double rounding = 1e-12 * std::abs(estimate.value);
   if (!(error > rounding)) return show(estimate.value) + " " + unit;
-  // Two digits of the error decide how many of the value mean something.
-  const int last = magnitude(error) - 1;
+  // Two digits of the error decide how many of the value mean something; eight are printed.
   const double largest = std::max(std::abs(estimate.value), error);
   const int exponent = magnitude(largest);
-  if (exponent >= -3 && exponent < 6 && last > -8) {
-    return fixed(estimate.value, -last) + " ± " + fixed(error, -last) + " " + unit;
+  const int last = std::max(magnitude(error) - 1, exponent - 7);
+  if (exponent >= -3 && exponent < 6) {
+    const double shown = std::max(error, std::pow(10.0, last));
+    return fixed(estimate.value, std::max(0, -last)) + " ± " + fixed(shown, std::max(0, -last)) +
+           " " + unit;
   }
   const double scale = std::pow(10.0, exponent);
   const int decimals = exponent - last;

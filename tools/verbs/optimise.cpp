@@ -68,6 +68,7 @@ class Search {
     console_.line("  " + std::to_string(result_.designs.size()) + " designs; " +
                   std::to_string(engine_.made()) + " runs now, " + std::to_string(engine_.kept()) +
                   " kept from before");
+    print_limits();
     const bool all_failed =
         std::ranges::none_of(result_.designs, [](const Design& d) { return d.error.empty(); });
     if (all_failed) {
@@ -105,6 +106,30 @@ class Search {
       value.margins.push_back(figure ? relative_margin(constraint, figure->value) : -1.0);
     }
     return value;
+  }
+
+  // The best of a design at an end of a range may lie beyond it.
+  void print_limits() const {
+    const Design* best = nullptr;
+    const Objective& objective = plan_.objectives.front();
+    const auto merit = [&](const Design& design) {
+      const auto figure = figure_of(design, plan_.judged_column(objective));
+      return figure ? (objective.maximise ? figure->value : -figure->value) : -1e300;
+    };
+    for (const Design& design : result_.designs) {
+      if (design.error.empty() && (best == nullptr || merit(design) > merit(*best))) best = &design;
+    }
+    if (best == nullptr) return;
+    const auto index = static_cast<size_t>(best - result_.designs.data());
+    for (size_t i = 0; i < plan_.axes.size(); ++i) {
+      const double at = std::stod(plan_.axes[i].values[index]);
+      const double span = box_.high[i] - box_.low[i];
+      if (std::min(at - box_.low[i], box_.high[i] - at) < 1e-3 * span) {
+        console_.line("  note: the largest figure is at an end of the range of " +
+                      plan_.axes[i].key + " (" + plan_.axes[i].values[index] +
+                      "): widen it if that can be built");
+      }
+    }
   }
 
   // In parts of the limit, so that constraints of any unit weigh alike.
