@@ -160,6 +160,13 @@ Named named(std::string_view header_cell) {
   return result;
 }
 
+char separator_of(std::string_view header) {
+  for (const char separator : {'\t', ';', ','}) {
+    if (header.find(separator) != std::string_view::npos) return separator;
+  }
+  return ' ';
+}
+
 std::vector<std::string_view> split(std::string_view line, char separator) {
   if (separator != ' ') return cells_of(line, separator);
   return words_of(line, " \t");
@@ -195,10 +202,7 @@ std::string_view known_as(std::string_view cell, const CurveColumns& columns) {
 std::optional<Header> header_of(std::string_view line, const InputLocation& where,
                                 const CurveColumns& columns_named) {
   Header header;
-  for (const char separator : {'\t', ';', ',', ' '}) {
-    header.separator = separator;
-    if (line.find(separator) != std::string_view::npos) break;
-  }
+  header.separator = separator_of(line);
   header.unit.fill({"", 1.0, 0.0});
   const std::vector<std::string_view> cells = split(line, header.separator);
   for (size_t i = 0; i < cells.size(); ++i) {
@@ -457,6 +461,15 @@ bool is_curve_header(std::string_view line, const CurveColumns& columns) {
   } catch (const InputError&) {
     return true;  // names them, but in a way that the reader refuses
   }
+}
+
+std::vector<std::string> curve_header_cells(std::string_view line) {
+  using namespace curve_text;
+  std::vector<std::string> cells;
+  for (const std::string_view cell : split(line, separator_of(line))) {
+    cells.emplace_back(unquoted(cell));
+  }
+  return cells;
 }
 
 CurveCleaning clean_curve(IvSweep& sweep) {

@@ -42,6 +42,9 @@ std::vector<MeasuredCurve> curves_in(std::string_view text, const std::string& f
 // of points may stand beside), or names come from `columns`.
 bool is_curve_header(std::string_view line, const CurveColumns& columns = {});
 
+// The cells of such a header as they stand in the file, without quotation marks.
+std::vector<std::string> curve_header_cells(std::string_view line);
+
 // Points of a curve that are left out because no cell produces them.
 struct CurveCleaning {
   size_t clipped = 0;  // points beyond open circuit where the meter shows no current

@@ -190,6 +190,27 @@ TEST(LightRecordings, ColumnsMayHaveNamesOfTheFiles) {
   EXPECT_TRUE(read_light_recording(file, {}, misspelt).absent_columns.contains("reff"));
 }
 
+TEST(LightRecordings, AMisspeltColumnIsAbsentBesideOneOfItsQuantity) {
+  const LightColumns misspelt = {{"current_A", "I_ture"}};
+  const fs::path plain = light_file("plain.csv", "voltage_V,current_A\n0.1,5\n0.2,4\n"),
+                 instrument =
+                     light_file("instrument.csv", "note I_ture\nVolts;Amps\n0.1;5\n0.2;4\n");
+  for (const fs::path& file : {plain, instrument}) {
+    EXPECT_TRUE(read_light_recording(file, {}, misspelt).absent_columns.contains("I_ture"));
+  }
+}
+
+TEST(LightRecordings, ANamedColumnCountsBeforeOthersOfItsQuantity) {
+  const fs::path file =
+      light_file("both.csv", "voltage_V,current_A,corrected\n0.1,5,5.1\n0.2,4,4.1\n");
+  for (const auto& [name, scale] :
+       std::map<std::string, double>{{"current_A", 1.0}, {"current_mA", 1e-3}}) {
+    const auto sweep = read_light_recording(file, {}, {{name, "corrected"}});
+    EXPECT_NEAR(sweep.current_A[1], 4.1 * scale, 1e-15) << name;
+    EXPECT_TRUE(sweep.absent_columns.empty());
+  }
+}
+
 TEST(LightRecordings, OthersAreRefused) {
   const fs::path motion =
       light_file("motion.csv", "t_s,q_w,q_x,q_y,q_z,gyro_x_rad_s\n0,1,0,0,0,0\n");

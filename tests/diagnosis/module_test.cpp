@@ -2,6 +2,7 @@
 // curves that the network made.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -77,7 +78,7 @@ TEST(ModuleCurve, OfShadedCellsIsThatOfTheNetwork) {
     network.tables[0] = table_of(p);
     network.light_A[0] *= 0.4;
     ModuleState state;
-    state.shaded = {{1, 0.4, 0.6, -5.0, 3.0}};
+    state.shaded = {{1, 0.4, {0.6, -5.0, 3.0}}};
     expect_like(network.curve(), {cells, bypass_every, 0.5}, state);
   }
 }
@@ -94,6 +95,20 @@ TEST(ModuleCurve, OfCrackedCellsIsThatOfPartsTiedInParallel) {
   ModuleState state;
   state.cracked = {{1, fraction, resistance_ohm}};
   expect_like(network.curve(), {cells, 0, 0.5}, state);
+}
+
+// Voltages by bisection in NumPy of 11 usual cells and one with 0.4 of the light, whose diode is
+// open: no step, and the shaded cell in reverse at currents above its own 2 A.
+TEST(ModuleCurve, OfAShadedCellWithoutItsDiodeHasNoStep) {
+  constexpr double numpy[][2] = {{7.2466576446, 0.50}, {7.0884547563, 1.50}, {6.7360274697, 1.99},
+                                 {5.5210440952, 2.05}, {4.3936986134, 2.20}, {3.5317744093, 2.60},
+                                 {2.5377596774, 4.00}};
+  ModuleState state;
+  state.shaded = {{1, 0.4, {0.6, -5.0, 3.0}, false}};
+  const ArrayCurve curve = module_curve({cells, 6, 0.5}, usual, state);
+  for (const auto& [voltage_V, current_A] : numpy) {
+    EXPECT_NEAR(curve.current_A(voltage_V), current_A, 1e-6) << voltage_V;
+  }
 }
 
 LightRecording measured(const ArrayCurve& curve, unsigned seed) {
@@ -134,6 +149,42 @@ TEST(ModuleDiagnosis, NamesACellInTheShadeAndItsLight) {
   EXPECT_EQ(d.effects.front().parameters[0].value[0], 1.0);
   EXPECT_NEAR(d.effects.front().parameters[1].value[0], 0.55, 0.02);
   EXPECT_LT(d.holdout->rms_after.at("current_A"), 4e-3);
+}
+
+// The part that is cut off delivers nothing: one curve does not separate it from a shade.
+TEST(ModuleDiagnosis, NamesNoShadeAloneWhereAPartIsCutOff) {
+  Network network(6, false);
+  CellParameters p = parameters_of(usual, 0.6);
+  p.breakdown_fraction = 0.02;
+  p.breakdown_V = -12.0;
+  network.tables[3] = table_of(p);
+  network.light_A[3] *= 0.6;
+  ModuleDesign design = design_with_reference();
+  design.bypass_every = 6;
+  const Diagnosis d = diagnose_module(design, {measured(network.curve(), 2)}, {});
+  ASSERT_EQ(d.verdict, Verdict::missing_physics) << d.because;
+  std::vector<std::string> kinds = d.effects.front().indistinguishable_from;
+  kinds.push_back(d.effects.front().kind);
+  for (const char* kind : {"cell_shaded", "cell_cracked"}) {
+    EXPECT_NE(std::ranges::find(kinds, kind), kinds.end()) << kind;
+  }
+}
+
+TEST(ModuleDiagnosis, NamesAShadedCellWhoseDiodeIsOpen) {
+  Network network(6, false);
+  CellParameters p = parameters_of(usual);
+  p.breakdown_fraction = 0.02;
+  p.breakdown_V = -25.0;
+  network.tables[3] = table_of(p);
+  network.light_A[3] *= 0.5;
+  network.wiring.strings[0].substrings[0].bypass.kind = Diode::Kind::none;
+  ModuleDesign design = design_with_reference();
+  design.bypass_every = 6;
+  const Diagnosis d = diagnose_module(design, {measured(network.curve(), 2)}, {});
+  ASSERT_EQ(d.verdict, Verdict::missing_physics) << d.because;
+  EXPECT_EQ(d.effects.front().kind, "bypass_open");
+  EXPECT_TRUE(std::ranges::find(d.effects.front().indistinguishable_from, "cell_shaded") ==
+              d.effects.front().indistinguishable_from.end());
 }
 
 // Leaks that grow along the string, as of potential-induced degradation.

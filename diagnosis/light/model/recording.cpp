@@ -38,6 +38,7 @@ class LightHeader {
       if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') {
         cell = cell.substr(1, cell.size() - 2);
       }
+      written_.emplace_back(cell);
       for (const auto& [name, written] : columns) {
         if (written == cell) cell = name;
       }
@@ -48,9 +49,12 @@ class LightHeader {
       names_.emplace_back(cell);
       units_.push_back(unit);
     }
+    for (const auto& [name, written] : columns) ignore_beside(name, written);
   }
   size_t columns() const { return names_.size(); }
   const std::vector<std::string>& names() const { return names_; }
+  // The cells as they stand in the file.
+  const std::vector<std::string>& written() const { return written_; }
 
   // By its name in SI, or in another unit of the same quantity.
   std::optional<LightColumn> find(const std::string& name) const {
@@ -75,7 +79,22 @@ class LightHeader {
   }
 
  private:
-  std::vector<std::string> names_;
+  // Where the file has a column `written` for the quantity `name`, its others of that quantity do
+  // not count.
+  void ignore_beside(const std::string& name, const std::string& written) {
+    if (std::ranges::find(written_, written) == written_.end()) return;
+    const KeyUnit wanted = unit_of_key(name);
+    for (size_t i = 0; i < names_.size(); ++i) {
+      const bool is_same =
+          names_[i] == name || (!wanted.unit.empty() && units_[i].stem == wanted.stem &&
+                                units_[i].dimension == wanted.dimension);
+      if (!is_same || written_[i] == written) continue;
+      names_[i].clear();
+      units_[i] = {};
+    }
+  }
+
+  std::vector<std::string> names_, written_;
   std::vector<KeyUnit> units_;
 };
 
@@ -92,6 +111,7 @@ bool next_line(TextLines& lines, std::string_view& line) {
 struct Beginning {
   std::optional<LightHeader> header;
   bool is_curve = false;
+  std::vector<std::string> cells;  // of the header, as written
 };
 
 // Preambles need not be comments: the header is the first line that names what a recording has.
@@ -100,8 +120,8 @@ Beginning find_header(TextLines& lines, const LightColumns& columns) {
   std::string_view line;
   for (int i = 0; i < most && next_line(lines, line); ++i) {
     LightHeader header(line, columns);
-    if (header.kind()) return {header, false};
-    if (is_curve_header(line, columns)) return {{}, true};
+    if (header.kind()) return {header, false, header.written()};
+    if (is_curve_header(line, columns)) return {{}, true, curve_header_cells(line)};
   }
   return {};
 }
@@ -259,11 +279,11 @@ void make_relative(std::vector<double>& lamps) {
   for (double& current : lamps) current /= brightest;
 }
 
-// The names in the file that stand for none of its columns.
-std::set<std::string> absent_of(const LightColumns& named, const std::vector<std::string>& found) {
+// The named columns that the cells of a header lack.
+std::set<std::string> absent_of(const LightColumns& named, const std::vector<std::string>& cells) {
   std::set<std::string> absent_columns;
   for (const auto& [name, written] : named) {
-    if (std::ranges::find(found, name) == found.end()) absent_columns.insert(written);
+    if (std::ranges::find(cells, written) == cells.end()) absent_columns.insert(written);
   }
   return absent_columns;
 }
@@ -277,9 +297,6 @@ LightRecording curves_of_instrument(const std::filesystem::path& path,
   all.kind = LightRecording::Kind::sweep;
   all.name = path.string();
   all.has_attitudes = false;
-  for (const auto& [name, written] : named) {
-    if (text.find(written) == std::string::npos) all.absent_columns.insert(written);
-  }
   int64_t unread = 0;
   const bool has_light = std::ranges::any_of(
       curves, [](const MeasuredCurve& c) { return c.irradiance_W_m2.has_value(); });
@@ -377,7 +394,11 @@ LightRecording read_light_recording(const std::filesystem::path& path,
                                     const UsualCircumstances& usual, const LightColumns& named) {
   TextLines lines(path);
   const Beginning beginning = find_header(lines, named);
-  if (beginning.is_curve) return curves_of_instrument(path, usual, named);
+  if (beginning.is_curve) {
+    LightRecording curves = curves_of_instrument(path, usual, named);
+    curves.absent_columns = absent_of(named, beginning.cells);
+    return curves;
+  }
   const std::optional<LightHeader>& header = beginning.header;
   if (!header) {
     throw InputError({path.string()}, "header", "no line with the columns of a recording",
@@ -389,7 +410,7 @@ LightRecording read_light_recording(const std::filesystem::path& path,
   recording.kind = *header->kind();
   recording.name = path.string();
   const ColumnsOfLight columns = columns_of(*header, recording.kind);
-  recording.absent_columns = absent_of(named, header->names());
+  recording.absent_columns = absent_of(named, beginning.cells);
   require_whole_attitude(*header, columns, path);
   recording.has_temperatures = columns.temperature.has_value();
   recording.has_attitudes = columns.q[0].has_value() || (columns.tilt && columns.heading);

@@ -49,6 +49,13 @@ std::shared_ptr<const DiodeVoltageLaw> part_of(CellParameters p, double fraction
   return diode_voltage_law(p);
 }
 
+CellParameters with_breakdown(CellParameters p, const ModuleState::Breakdown& b) {
+  p.breakdown_fraction = b.fraction;
+  p.breakdown_V = b.voltage_V;
+  p.breakdown_exponent = b.exponent;
+  return p;
+}
+
 // A module under construction.
 struct ModuleString {
   int left = 0;  // cells like the others that no substring has yet
@@ -76,6 +83,7 @@ ArrayCurve module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
   struct Group {
     ArrayWiring::Substring substring;
     int cells;
+    bool is_bypassed = true;
   };
   std::vector<Group> groups;
   const auto add = [&](int count, const auto& add_row) {
@@ -86,12 +94,9 @@ ArrayCurve module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
     for (int i = 0; i < count; ++i) group.substring.rows.push_back(add_row());
   };
   for (const auto& s : state.shaded) {
-    CellParameters p = usual;
-    p.breakdown_fraction = s.breakdown_fraction;
-    p.breakdown_V = s.breakdown_V;
-    p.breakdown_exponent = s.breakdown_exponent;
-    const auto law = diode_voltage_law(p);
+    const auto law = diode_voltage_law(with_breakdown(usual, s.breakdown));
     add(s.count, [&] { return std::vector{module.add_cell(law, light_A * s.factor)}; });
+    if (!groups.empty()) groups.back().is_bypassed = s.is_bypassed;
   }
   for (const auto& s : state.shunted) {
     const auto law = diode_voltage_law(with_leak(usual, s.shunt_S));
@@ -99,8 +104,9 @@ ArrayCurve module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
   }
   for (const auto& c : state.cracked) {
     // Two parts of one cell in parallel, one of them behind a resistance.
-    const auto law = part_of(usual, 1.0 - c.fraction, 0.0),
-               cut = part_of(usual, c.fraction, c.resistance_ohm);
+    const CellParameters whole = with_breakdown(usual, c.breakdown);
+    const auto law = part_of(whole, 1.0 - c.fraction, 0.0),
+               cut = part_of(whole, c.fraction, c.resistance_ohm);
     add(c.count, [&] {
       return std::vector{module.add_cell(law, light_A * (1.0 - c.fraction)),
                          module.add_cell(cut, light_A * c.fraction)};
@@ -110,11 +116,13 @@ ArrayCurve module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
     for (int i = 0; i < count; ++i) substring.rows.push_back({module.add_cell(usual_law, light_A)});
     module.left -= count;
   };
+  Diode bypass;
+  bypass.kind = Diode::Kind::clamp;
+  bypass.drop_V = wiring.bypass_drop_V * state.bypass_drop;
   std::vector<ArrayWiring::Substring>& substrings = module.wiring.strings[0].substrings;
   for (Group& group : groups) {
     if (wiring.bypass_every > 0) {
-      group.substring.bypass.kind = Diode::Kind::clamp;
-      group.substring.bypass.drop_V = wiring.bypass_drop_V;
+      if (group.is_bypassed) group.substring.bypass = bypass;
       add_usual(std::clamp(wiring.bypass_every - group.cells, 0, std::max(0, module.left)),
                 group.substring);
     }

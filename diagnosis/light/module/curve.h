@@ -39,16 +39,22 @@ struct ModuleState {
   double series_ohm = 0.0;  // more, of the whole module
   double shunt_S = 0.0;     // more, across every cell
   int bypassed = 0;         // cells whose bypass diode is shorted
+  // Of a cell in reverse (J. W. Bishop 1988).
+  struct Breakdown {
+    double fraction = 0.0, voltage_V = -15.0, exponent = 3.0;
+  };
   struct Shaded {
     int count = 0;
     double factor = 1.0;  // of their light
-    double breakdown_fraction = 0.0, breakdown_V = -15.0, breakdown_exponent = 3.0;
+    Breakdown breakdown = {};
+    bool is_bypassed = true;  // their bypass diode is not open
   };
   std::vector<Shaded> shaded;
   // A part of a cell's area that the rest reaches through a resistance alone.
   struct Cracked {
     int count = 0;
     double fraction = 0.0, resistance_ohm = 0.0;
+    Breakdown breakdown = {};
   };
   std::vector<Cracked> cracked;
   struct Shunted {
@@ -59,6 +65,7 @@ struct ModuleState {
   // The light changes while the voltage rises, by u = V over the largest of the curve:
   // light · (1 + change (u − 1/2) + bend (6u² − 6u + 1)).
   double light_change = 0.0, light_bend = 0.0;
+  double bypass_drop = 1.0;  // of the bypass diodes, over that of the wiring
 };
 
 struct ModuleWiring {
@@ -67,7 +74,8 @@ struct ModuleWiring {
   double bypass_drop_V = 0.5;
 };
 
-// All changed cells of one kind are under one diode. The light does not change.
+// All changed cells of one kind are under one diode.
+// The light does not change.
 ArrayCurve module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
                         const ModuleState& state);
 

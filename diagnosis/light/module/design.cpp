@@ -55,24 +55,31 @@ void read_temperatures(const Settings& s, const std::vector<size_t>& files, Modu
 }
 
 void read_effect(const Settings& s, ModuleDesign& design) {
-  const std::vector<std::string> kinds = {"cell_shaded",    "cell_cracked",      "cell_shunted",
-                                          "shunt",          "series_resistance", "temperature",
-                                          "bypass_shorted", "substring_shaded",  "unsteady_light"};
+  const std::vector<std::string> kinds = {
+      "cell_shaded", "cell_cracked",   "cell_shunted",     "shunt",          "series_resistance",
+      "temperature", "bypass_shorted", "substring_shaded", "unsteady_light", "bypass_open"};
   const size_t kind = s.choice("kind", kinds);
   const auto count = [&] { return static_cast<int>(s.integer_or("count", 1, 1, design.cells)); };
   const auto resistance = [&] { return s.number("resistance_ohm", Range::positive()); };
   ModuleActing& acting = design.acting[s.has("curve") ? s.text("curve") : ""];
   ModuleState& state = acting.state;
+  const auto breakdown = [&] {
+    return ModuleState::Breakdown{s.number_or("breakdown_fraction", 0.0, {0.0, 7.0}),
+                                  s.number_or("breakdown_V", -15.0, {-1e308, 0.0, false, true}),
+                                  s.number_or("breakdown_exponent", 3.0, {1.0, 1e3})};
+  };
+  const auto require_diodes = [&](const char* found) {
+    if (design.bypass_every > 0) return;
+    throw s.error("kind", std::string(found) + " without bypass diodes",
+                  "module.bypass_every, the cells of a substring");
+  };
   switch (kind) {
     case 0:
-      state.shaded.push_back({count(), s.number("factor", Range::fraction()),
-                              s.number_or("breakdown_fraction", 0.0, {0.0, 7.0}),
-                              s.number_or("breakdown_V", -15.0, {-1e308, 0.0, false, true}),
-                              s.number_or("breakdown_exponent", 3.0, {1.0, 1e3})});
+      state.shaded.push_back({count(), s.number("factor", Range::fraction()), breakdown()});
       break;
     case 1:
       state.cracked.push_back(
-          {count(), s.number("fraction", {0.0, 1.0, true, true}), resistance()});
+          {count(), s.number("fraction", {0.0, 1.0, true, true}), resistance(), breakdown()});
       break;
     case 2:
       state.shunted.push_back({count(), 1.0 / resistance()});
@@ -90,15 +97,16 @@ void read_effect(const Settings& s, ModuleDesign& design) {
       state.bypassed += design.bypass_every;
       break;
     case 7:
-      if (design.bypass_every == 0) {
-        throw s.error("kind", "\"substring_shaded\" without bypass diodes",
-                      "module.bypass_every, the cells of a substring");
-      }
+      require_diodes("\"substring_shaded\"");
       for (const double factor : s.raw("factor").is_array()
                                      ? s.numbers("factor", Range::fraction())
                                      : std::vector{s.number("factor", Range::fraction())}) {
         state.shaded.push_back({design.bypass_every, factor});
       }
+      break;
+    case 9:
+      require_diodes("\"bypass_open\"");
+      state.shaded.push_back({count(), s.number("factor", Range::fraction()), breakdown(), false});
       break;
     default:
       state.light_change += s.number("change", {-1.0, 1.0});

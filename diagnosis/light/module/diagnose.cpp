@@ -114,43 +114,148 @@ double excess_of(const ModuleFitter& fitter, const ModuleHypothesis& h, const Mo
                   (trial.fit.data_chi2 / samples - 1.0) / std::sqrt(2.0 / samples));
 }
 
-// Whether the most likely number of cells of a kind is the largest that was tried: then the effect
-// spreads over the module in a way that this kind only imitates.
-bool is_at_largest_count(const ModuleAnswer& answer, const std::string& kind) {
-  int best = 0, largest = 0;
-  double most_likely = -INFINITY;
+// The χ² of what one diode and its translation leave of healthy curves: their errors, which the
+// standard deviations of the points count once in a length of correlation.
+double chi2_of_healthy(const ModuleNominal& nominal, const std::vector<ModuleRun>& runs) {
+  double chi2 = 0.0;
+  for (const ModuleRun& run : runs) {
+    chi2 += static_cast<double>(run.sweep.voltage_V.size()) *
+            std::pow(point_rms_A(nominal, run.sweep) / run.sigma_A, 2);
+  }
+  return chi2;
+}
+
+// Whether the largest number of cells of a kind that was tried is beyond doubt more likely than
+// fewer: then the effect spreads over the module in a way that this kind only imitates.
+bool is_at_largest_count(const ModuleAnswer& answer, const std::string& kind,
+                         double min_log_evidence_gain) {
+  double largest = -INFINITY, fewer = -INFINITY;
+  int most = 0;
   for (size_t i = 0; i < answer.hypotheses.size(); ++i) {
     const ModuleHypothesis& h = answer.hypotheses[i];
     if (h.kind != kind || h.count == 0) continue;
-    largest = std::max(largest, h.count);
-    if (!(answer.joint[i].log_evidence > most_likely)) continue;
-    most_likely = answer.joint[i].log_evidence;
-    best = h.count;
+    most = h.largest_count;
+    double& best = h.count == h.largest_count ? largest : fewer;
+    best = std::max(best, answer.joint[i].log_evidence);
   }
-  return largest > 1 && best == largest;
+  return most > 1 && largest > fewer + min_log_evidence_gain;
+}
+
+// The hypotheses of one kind, which differ in their number of cells, fitted to curves.
+struct Family {
+  std::vector<ModuleHypothesis> hypotheses;
+  std::vector<ModuleTrial> trials;
+};
+
+std::vector<Family> families_of(const std::vector<ModuleHypothesis>& hypotheses) {
+  std::vector<Family> families;
+  for (const ModuleHypothesis& h : hypotheses) {
+    const bool is_next =
+        !families.empty() && h.count > 0 && families.back().hypotheses.back().kind == h.kind;
+    if (!is_next) families.emplace_back();
+    families.back().hypotheses.push_back(h);
+  }
+  return families;
+}
+
+// Log evidence behind the best from which a number of cells is hopeless.
+constexpr double hopeless = 60.0;
+
+// By rising numbers of cells, until two in turn are hopeless beside the best.
+void fit_family(const ModuleFitter& fitter, const std::vector<ModuleRun>& runs, Family& family) {
+  double best = -INFINITY;
+  int behind = 0;
+  for (const ModuleHypothesis& h : family.hypotheses) {
+    family.trials.push_back(fitter.fit(h, runs));
+    const double evidence = family.trials.back().log_evidence;
+    best = std::max(best, evidence);
+    behind = evidence < best - hopeless ? behind + 1 : 0;
+    if (behind == 2) break;
+  }
+}
+
+const ModuleTrial& best_of(const Family& family) {
+  return *std::ranges::max_element(family.trials, {}, &ModuleTrial::log_evidence);
+}
+
+// Where shaded cells are no worse than `least`, cracked ones that look like them.
+void add_crack_like_shade(const ModuleFitter& fitter, const ModuleDesign& design,
+                          const ModuleNominal& nominal, const std::vector<ModuleRun>& runs,
+                          double least, std::vector<Family>& families) {
+  const auto of = [&](const std::string& kind) {
+    return std::ranges::find_if(families,
+                                [&](const Family& f) { return f.hypotheses.front().kind == kind; });
+  };
+  const auto shaded = of("cell_shaded"), cracked = of("cell_cracked");
+  if (shaded == families.end() || cracked == families.end()) return;
+  const ModuleTrial& trial = best_of(*shaded);
+  if (!(trial.log_evidence > least)) return;
+  const ModuleHypothesis& h =
+      shaded->hypotheses[static_cast<size_t>(&trial - shaded->trials.data())];
+  const size_t own = h.parameters.size();
+  const double* first = trial.shared.data() + trial.shared.size() - own;
+  Family like{{cracked_like(design, nominal, h, {first, own}, cracked->hypotheses.front())}, {}};
+  like.trials.push_back(fitter.fit(like.hypotheses.front(), runs));
+  families.push_back(std::move(like));
+}
+
+// Fits all hypotheses but the first, which is fitted, to the curves for training; the best of each
+// kind and those that are not hopeless beside the best of all then to all.
+void fit_effects(const ModuleFitter& fitter, const ModuleDesign& design,
+                 const ModuleNominal& nominal, const std::vector<ModuleHypothesis>& hypotheses,
+                 const std::vector<ModuleRun>& train, const std::vector<ModuleRun>& everything,
+                 int threads, ModuleAnswer& answer) {
+  std::vector<Family> families = families_of({hypotheses.begin() + 1, hypotheses.end()});
+  parallel_for(families.size(), threads, [&](size_t i) { fit_family(fitter, train, families[i]); });
+  double best = -INFINITY;
+  for (const Family& family : families) best = std::max(best, best_of(family).log_evidence);
+  add_crack_like_shade(fitter, design, nominal, train, best - hopeless, families);
+  for (Family& family : families) {
+    const double of_kind = best_of(family).log_evidence;
+    for (size_t i = 0; i < family.trials.size(); ++i) {
+      const double own = family.trials[i].log_evidence;
+      if (own < of_kind && own < best - hopeless) continue;
+      answer.hypotheses.push_back(std::move(family.hypotheses[i]));
+      answer.trials.push_back(std::move(family.trials[i]));
+    }
+  }
+  answer.joint.resize(answer.trials.size());
+  parallel_for(answer.trials.size() - 1, threads, [&](size_t i) {
+    answer.joint[i + 1] =
+        fitter.fit(answer.hypotheses[i + 1], everything, &answer.trials[i + 1].shared);
+  });
 }
 
 // `hypotheses`: the first is that nothing is missing.
 ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nominal,
-                            std::vector<ModuleHypothesis> hypotheses, const ModuleData& data,
+                            const std::vector<ModuleHypothesis>& hypotheses, const ModuleData& data,
                             const ModuleDiagnoseOptions& options) {
   ModuleAnswer answer;
-  answer.hypotheses = std::move(hypotheses);
   const ModuleFitter fitter(design, nominal, options.limits);
   std::vector<ModuleRun> everything = data.train;
   everything.insert(everything.end(), data.held.begin(), data.held.end());
+  answer.hypotheses = {hypotheses.front()};
+  answer.trials = {fitter.fit(hypotheses.front(), data.train)};
+  answer.joint = {fitter.fit(hypotheses.front(), everything, &answer.trials.front().shared)};
+  // Within the error of one diode and of its translation nothing can be said to act: χ² up to one
+  // per point, or to four times what healthy curves leave.
+  constexpr double of_healthy = 4.0;
+  const inference::Fit& as_it_was = answer.joint.front().fit;
+  const bool leaves_more =
+      !(as_it_was.data_chi2 <= std::min(static_cast<double>(as_it_was.samples),
+                                        of_healthy * chi2_of_healthy(nominal, everything)));
+  if (leaves_more) {
+    fit_effects(fitter, design, nominal, hypotheses, data.train, everything, options.threads,
+                answer);
+  }
   const size_t count = answer.hypotheses.size();
-  answer.trials.resize(count);
-  answer.joint.resize(count);
-  parallel_for(count, options.threads, [&](size_t i) {
-    answer.trials[i] = fitter.fit(answer.hypotheses[i], data.train);
-    answer.joint[i] = fitter.fit(answer.hypotheses[i], everything, &answer.trials[i].shared);
-  });
   std::vector<inference::CandidateTraits> traits(count);
   for (size_t i = 0; i < count; ++i) {
     const ModuleHypothesis& h = answer.hypotheses[i];
     traits[i].name = h.kind.empty() ? h.label : h.kind;
-    traits[i].is_empirical = h.is_empirical || is_at_largest_count(answer, h.kind);
+    traits[i].is_empirical =
+        h.is_empirical ||
+        is_at_largest_count(answer, h.kind, options.limits.search.min_log_evidence_gain);
     traits[i].parameters = h.parameters.size();
     if (i > 0) answer.trials[i].candidates = {i};
   }
@@ -165,11 +270,8 @@ ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nom
     p.sigma = (p.chi2_per_sample - 1.0) /
               std::sqrt(2.0 / held + 2.0 / static_cast<double>(train.fit.samples));
     if (i > 0) {
-      // Within the error of one diode and of its translation nothing can be said to act.
-      const bool leaves_more = all.data_chi2 > static_cast<double>(all.samples);
       train.significance = {std::sqrt(std::max(0.0, own.chi2 - train.fit.chi2))};
-      train.joint_significance = {leaves_more ? std::sqrt(std::max(0.0, all.chi2 - joint.fit.chi2))
-                                              : 0.0};
+      train.joint_significance = {std::sqrt(std::max(0.0, all.chi2 - joint.fit.chi2))};
     }
     train.holdout_chi2_per_sample = p.chi2_per_sample;
     train.predictive = p;
@@ -231,11 +333,24 @@ FoundEffect found_in_module(const ModuleAnswer& answer, size_t chosen, const Thr
   // A model of damage describes what the damage does to about 1 %, χ² to a ten-thousandth.
   constexpr double model_error = 1e-4;
   const double likely = answer.trials[chosen].log_evidence;
-  const double within = std::max(limits.search.min_log_evidence_gain,
+  // What no model describes to the noise tells models apart the less.
+  const double beyond_noise =
+      std::max(1.0, joint.fit.data_chi2 / static_cast<double>(joint.fit.samples));
+  const double within = std::max(limits.search.min_log_evidence_gain * beyond_noise,
                                  model_error * (likely - answer.trials.front().log_evidence));
+  // A cell in the shade and one with a part cut off differ by some hundredths of a volt, which the
+  // model of the other cells does not describe.
+  constexpr double cut_off_or_dark = 5e-3;
+  const double between_them = std::max(
+      within, std::min(hopeless, cut_off_or_dark * (likely - answer.trials.front().log_evidence)));
+  const auto is_dim = [](const std::string& kind) {
+    return kind == "cell_shaded" || kind == "cell_cracked";
+  };
   for (size_t i = 0; i < answer.trials.size(); ++i) {
     const double behind = likely - answer.trials[i].log_evidence;
-    if (behind > within || i == chosen || answer.hypotheses[i].kind.empty()) continue;
+    const bool are_dim = is_dim(h.kind) && is_dim(answer.hypotheses[i].kind);
+    if (behind > (are_dim ? between_them : within)) continue;
+    if (i == chosen || answer.hypotheses[i].kind.empty()) continue;
     if (answer.hypotheses[i].kind == h.kind) {
       if (behind > limits.search.min_log_evidence_gain) continue;
       fewest = std::min(fewest, answer.hypotheses[i].count);

@@ -46,14 +46,27 @@ VectorXd ModuleFitter::residuals(const ModuleHypothesis& h, const VectorXd& x,
   return r;
 }
 
+double ModuleFitter::first_light(const ModuleHypothesis& h, const ModuleRun& run,
+                                 const inference::Parameters& parameters) const {
+  const double seen = std::log(run.sweep.light);
+  if (!h.limits_current) return seen;
+  VectorXd x(of_curve + static_cast<Index>(parameters.shared.size()));
+  for (size_t k = 0; k < parameters.shared.size(); ++k) {
+    x[of_curve + static_cast<Index>(k)] = parameters.shared[k].value;
+  }
+  x[1] = 0.0;
+  const auto chi2 = [&](double light) {
+    x[0] = light;
+    return residuals(h, x, run).squaredNorm();
+  };
+  constexpr double darkest = 0.02;
+  const double behind = seen - std::log(std::max(darkest, x[of_curve + of_module]));
+  return chi2(behind) < chi2(seen) ? behind : seen;
+}
+
 ModuleTrial ModuleFitter::fit_from(const ModuleHypothesis& h, const std::vector<ModuleRun>& runs,
                                    const std::vector<double>& own, const VectorXd* from) const {
   inference::Parameters parameters;
-  for (const ModuleRun& run : runs) {
-    const double light = std::log(run.sweep.light);
-    parameters.of_run.push_back({{"light", "ln", light, light, 1.0, light - 5.0, light + 5.0},
-                                 {"temperature", "", 0.0, 0.0, 1.0, -20.0, 20.0}});
-  }
   for (Index k = 0; k < of_module; ++k) {
     parameters.shared.push_back({"module", "", from ? (*from)[k] : 0.0, 0.0, 1.0, -10.0, 10.0});
   }
@@ -62,6 +75,11 @@ ModuleTrial ModuleFitter::fit_from(const ModuleHypothesis& h, const std::vector<
     p.value =
         std::clamp(from ? (*from)[of_module + static_cast<Index>(k)] : own[k], p.lowest, p.highest);
     parameters.shared.push_back(std::move(p));
+  }
+  for (const ModuleRun& run : runs) {
+    const double light = std::log(run.sweep.light), first = first_light(h, run, parameters);
+    parameters.of_run.push_back({{"light", "ln", first, light, 1.0, light - 5.0, light + 5.0},
+                                 {"temperature", "", 0.0, 0.0, 1.0, -20.0, 20.0}});
   }
   // At the reference's own condition nothing is translated.
   constexpr double no_distance = 0.02;

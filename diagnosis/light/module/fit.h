@@ -18,10 +18,14 @@ struct ModuleHypothesis {
   std::string explanation;  // a sentence of physics without a full stop
   bool is_empirical = false;
   int count = 0;            // of cells; 0: not a number of cells
+  int largest_count = 0;    // of those that are tried of the kind
   double alternatives = 1;  // of which this is one: other numbers of cells
   std::vector<inference::Parameter> parameters;
   std::vector<std::vector<double>> starts;  // of the parameters; none: as they are
   std::function<void(std::span<const double> x, ModuleState& state, ModuleCell& cell)> act;
+  // Whether the first parameter, a fraction of the light, may limit the current at short circuit,
+  // from which the light of a curve is found.
+  bool limits_current = false;
   // The keys of the report from the parameters, in SI.
   struct Number {
     std::string key;
@@ -33,6 +37,13 @@ struct ModuleHypothesis {
 // The first is that nothing is missing.
 std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
                                                 const ModuleNominal& nominal);
+
+// Cells of which a part is cut off and that conduct in reverse as `shaded` ones with the numbers
+// `own`: with no light on that part, or no connection, the curves differ by n kT/q ln(factor) and
+// by the series resistance of one cell. `any_cracked`: one of the other hypotheses of cracks.
+ModuleHypothesis cracked_like(const ModuleDesign& design, const ModuleNominal& nominal,
+                              const ModuleHypothesis& shaded, std::span<const double> own,
+                              const ModuleHypothesis& any_cracked);
 
 // A curve and which of its points are fitted.
 struct ModuleRun {
@@ -66,6 +77,9 @@ class ModuleFitter {
   static Eigen::VectorXd numbers_of(const ModuleTrial& trial, size_t run);
 
  private:
+  // Logarithm of the light where a fit of the run begins.
+  double first_light(const ModuleHypothesis& h, const ModuleRun& run,
+                     const inference::Parameters& parameters) const;
   ModuleTrial fit_from(const ModuleHypothesis& h, const std::vector<ModuleRun>& runs,
                        const std::vector<double>& own, const Eigen::VectorXd* from) const;
 

@@ -15,40 +15,79 @@ inference::Parameter wide(const std::string& name, double mean, double sigma, do
 
 std::vector<int> counts_up_to(int most) {
   std::vector<int> counts;
-  for (const int k : {1, 2, 3, 4, 5, 6, 8, 12, 16, 24, 32, 48}) {
+  for (const int k : {1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48}) {
     if (k <= most) counts.push_back(k);
   }
   return counts;
+}
+
+// Of a cell, voltage over current.
+double usual_ohm_of(const ModuleNominal& nominal) {
+  return 0.6 / nominal.cell.photocurrent_A;
 }
 
 std::string cells(int count) {
   return count == 1 ? "one cell" : std::to_string(count) + " cells";
 }
 
-ModuleHypothesis shaded(int count, double alternatives) {
+// Appends the drop of bypass diodes that conduct, over the stated one.
+void add_bypass_drop(const ModuleDesign& design, ModuleHypothesis& h) {
+  if (design.bypass_every == 0) return;
+  h.parameters.push_back(wide("bypass_drop", 0.0, 0.2, -1.0, 1.0));
+  for (std::vector<double>& start : h.starts) start.push_back(0.0);
+  h.act = [act = std::move(h.act), at = h.parameters.size() - 1](X x, ModuleState& state,
+                                                                 ModuleCell& cell) {
+    act(x, state, cell);
+    state.bypass_drop *= std::exp(x[at]);
+  };
+}
+
+// Appends what cells do in reverse: breakdown is soft, and far from the tabulated exponent of three
+// in cells of other makes (J. W. Bishop, Solar Cells 25, 73 (1988)). Where diodes bypass them, the
+// drop of these is a nuisance: 0.35 V of a Schottky diode to 0.7 V of a junction.
+void add_reverse(const ModuleDesign& design, ModuleHypothesis& h) {
+  const size_t first = h.parameters.size();
+  h.parameters.push_back(wide("breakdown_fraction", 0.0, 2.0, -8.0, std::log(7.0)));
+  h.parameters.push_back(wide("breakdown_V", std::log(10.0), 0.8, std::log(0.5), std::log(200.0)));
+  h.parameters.push_back(wide("breakdown_exponent", std::log(3.4), 0.5, 0.0, std::log(30.0)));
+  for (std::vector<double>& start : h.starts) {
+    start.insert(start.end(), {-0.3, std::log(5.0), std::log(3.4)});
+  }
+  h.numbers.push_back({"breakdown_fraction", [=](X x) { return std::exp(x[first]); }});
+  h.numbers.push_back({"breakdown_V", [=](X x) { return -std::exp(x[first + 1]); }});
+  h.numbers.push_back({"breakdown_exponent", [=](X x) { return std::exp(x[first + 2]); }});
+  add_bypass_drop(design, h);
+}
+
+ModuleState::Breakdown breakdown_of(X x, size_t first) {
+  return {std::exp(x[first]), -std::exp(x[first + 1]), std::exp(x[first + 2])};
+}
+
+ModuleHypothesis shaded(const ModuleDesign& design, int count, double alternatives,
+                        bool is_bypassed = true) {
   ModuleHypothesis h;
-  h.kind = "cell_shaded";
-  h.label = "cell_shaded (" + cells(count) + ")";
-  h.explanation =
-      cells(count) + " of the module with less light, driven into reverse conduction by the others";
+  h.kind = is_bypassed ? "cell_shaded" : "bypass_open";
+  h.label = h.kind + " (" + cells(count) + ")";
+  h.explanation = cells(count) +
+                  " of the module with less light, driven into reverse conduction "
+                  "by the others";
+  if (!is_bypassed) h.explanation += ", because their bypass diode is open";
   h.count = count;
   h.alternatives = alternatives;
-  // Breakdown is soft, and far from the tabulated exponent of three in cells of other makes:
-  // J. W. Bishop, Solar Cells 25, 73 (1988).
-  h.parameters = {wide("factor", 0.5, 0.5, 0.0, 1.0),
-                  wide("breakdown_fraction", 0.0, 2.0, -8.0, std::log(7.0)),
-                  wide("breakdown_V", std::log(10.0), 0.8, std::log(0.5), std::log(200.0)),
-                  wide("breakdown_exponent", std::log(3.4), 0.5, 0.0, std::log(30.0))};
-  for (const double factor : {0.1, 0.4, 0.75}) {
-    h.starts.push_back({factor, -0.3, std::log(5.0), std::log(3.4)});
-  }
-  h.act = [count](X x, ModuleState& state, ModuleCell&) {
-    state.shaded.push_back({count, x[0], std::exp(x[1]), -std::exp(x[2]), std::exp(x[3])});
+  h.limits_current = !is_bypassed || design.bypass_every == 0;
+  h.parameters = {wide("factor", 0.5, 0.5, 0.0, 1.0)};
+  for (const double factor : {0.1, 0.4, 0.75}) h.starts.push_back({factor});
+  h.act = [=](X x, ModuleState& state, ModuleCell&) {
+    state.shaded.push_back({count, x[0], breakdown_of(x, 1), is_bypassed});
   };
-  h.numbers = {{"factor", [](X x) { return x[0]; }},
-               {"breakdown_fraction", [](X x) { return std::exp(x[1]); }},
-               {"breakdown_V", [](X x) { return -std::exp(x[2]); }},
-               {"breakdown_exponent", [](X x) { return std::exp(x[3]); }}};
+  h.numbers = {{"factor", [](X x) { return x[0]; }}};
+  add_reverse(design, h);
+  if (!is_bypassed) {
+    // Without a diode the whole module drives them, against hard breakdown as well.
+    for (const double factor : {0.3, 0.7}) {
+      h.starts.push_back({factor, std::log(0.02), std::log(25.0), std::log(3.4), 0.0});
+    }
+  }
   return h;
 }
 
@@ -72,6 +111,7 @@ ModuleHypothesis substrings_shaded(const ModuleDesign& design, int count, int mo
   h.act = [count, every = design.bypass_every](X x, ModuleState& state, ModuleCell&) {
     for (int k = 0; k < count; ++k) state.shaded.push_back({every, x[static_cast<size_t>(k)]});
   };
+  add_bypass_drop(design, h);
   return h;
 }
 
@@ -88,7 +128,9 @@ ModuleHypothesis unsteady_light() {
   return h;
 }
 
-ModuleHypothesis cracked(int count, double alternatives, double usual_ohm) {
+// `reverse`: whether its cells also conduct in reverse, as shaded cells do.
+ModuleHypothesis cracked(const ModuleDesign& design, int count, double alternatives,
+                         double usual_ohm, bool reverse = false) {
   ModuleHypothesis h;
   h.kind = "cell_cracked";
   h.label = "cell_cracked (" + cells(count) + ")";
@@ -102,11 +144,17 @@ ModuleHypothesis cracked(int count, double alternatives, double usual_ohm) {
                   wide("resistance_ohm", std::log(usual_ohm), 1.5, std::log(1e-4 * usual_ohm),
                        std::log(1e4 * usual_ohm))};
   h.starts = {{0.1, std::log(3.0 * usual_ohm)}, {0.4, std::log(2.0 * usual_ohm)}};
-  h.act = [count](X x, ModuleState& state, ModuleCell&) {
-    state.cracked.push_back({count, x[0], std::exp(x[1])});
+  h.act = [=](X x, ModuleState& state, ModuleCell&) {
+    state.cracked.push_back(
+        {count, x[0], std::exp(x[1]), reverse ? breakdown_of(x, 2) : ModuleState::Breakdown{}});
   };
   h.numbers = {{"fraction", [](X x) { return x[0]; }},
                {"resistance_ohm", [](X x) { return std::exp(x[1]); }}};
+  if (reverse) {
+    add_reverse(design, h);
+  } else {
+    add_bypass_drop(design, h);
+  }
   return h;
 }
 
@@ -160,16 +208,33 @@ ModuleHypothesis other_diode() {
 
 }  // namespace
 
+ModuleHypothesis cracked_like(const ModuleDesign& design, const ModuleNominal& nominal,
+                              const ModuleHypothesis& shaded, std::span<const double> own,
+                              const ModuleHypothesis& any_cracked) {
+  const double usual_ohm = usual_ohm_of(nominal);
+  ModuleHypothesis h =
+      cracked(design, shaded.count, any_cracked.alternatives, usual_ohm, /*reverse=*/true);
+  h.label += ", that conduct in reverse";
+  h.largest_count = any_cracked.largest_count;
+  constexpr double cut_off = 100.0;
+  std::vector<double> start = {std::clamp(1.0 - own[0], 2e-3, 0.97), std::log(cut_off * usual_ohm)};
+  start.insert(start.end(), own.begin() + 1, own.end());
+  h.starts = {std::move(start)};
+  return h;
+}
+
 std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
                                                 const ModuleNominal& nominal) {
   std::vector<ModuleHypothesis> all(1);
   all.front().act = [](X, ModuleState&, ModuleCell&) {};
-  const double usual_ohm = 0.6 / nominal.cell.photocurrent_A;  // of a cell, voltage over current
+  const double usual_ohm = usual_ohm_of(nominal);
   const int under_diode = design.bypass_every > 0 ? design.bypass_every : design.cells;
   const std::vector<int> few = counts_up_to(std::min(3, std::max(1, under_diode - 1)));
-  for (const int k : few) all.push_back(shaded(k, static_cast<double>(few.size())));
+  for (const int k : few) all.push_back(shaded(design, k, static_cast<double>(few.size())));
   const std::vector<int> some = counts_up_to(under_diode);
-  for (const int k : some) all.push_back(cracked(k, static_cast<double>(some.size()), usual_ohm));
+  for (const int k : some) {
+    all.push_back(cracked(design, k, static_cast<double>(some.size()), usual_ohm));
+  }
   const double of_module = design.cells * usual_ohm;
   all.push_back(of_one_number(
       "series_resistance", "more resistance in series with the module", "resistance_ohm",
@@ -187,6 +252,13 @@ std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
       "temperature", "cells warmer or colder than stated", "change_K", 30.0, -150.0, 150.0,
       [](double x, ModuleState& state) { state.temperature_K += x; }, [](double x) { return x; }));
   all.push_back(unsteady_light());
+  if (design.bypass_every > 0) {
+    // Two faults at once: a shade, and a diode that does not bypass it.
+    constexpr double of_diodes = 3.0;
+    for (const int k : few) {
+      all.push_back(shaded(design, k, of_diodes * static_cast<double>(few.size()), false));
+    }
+  }
   if (design.bypass_every > 0 && design.bypass_every < design.cells) {
     const int others = std::min(2, design.cells / design.bypass_every - 1);
     for (int k = 1; k <= others; ++k) all.push_back(substrings_shaded(design, k, others));
@@ -197,6 +269,11 @@ std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
     all.push_back(std::move(h));
   }
   all.push_back(other_diode());
+  for (ModuleHypothesis& h : all) {
+    for (const ModuleHypothesis& other : all) {
+      if (other.kind == h.kind) h.largest_count = std::max(h.largest_count, other.count);
+    }
+  }
   return all;
 }
 

@@ -16,6 +16,13 @@ Key count_key() {
       .range_that_varies();
 }
 
+// What shaded and cracked cells do in reverse.
+std::vector<Key> breakdown_keys() {
+  return {Key::number_or("breakdown_fraction", 0.0, {0.0, 7.0}, "a of the reverse conduction"),
+          Key::number_or("breakdown_V", -15.0, {-1e308, 0.0, false, true}, "V_br of it"),
+          Key::number_or("breakdown_exponent", 3.0, {1.0, 1e3}, "m of it")};
+}
+
 }  // namespace
 
 Key module_table() {
@@ -50,16 +57,13 @@ Key module_table() {
 
 std::vector<Key::Choice> module_effects() {
   std::vector<Key::Choice> kinds = {
-      {"cell_shaded",
-       "cells in the shade",
-       {count_key(), Key::number("factor", Range::fraction(), "of the light"),
-        Key::number_or("breakdown_fraction", 0.0, {0.0, 7.0}, "a of the reverse conduction"),
-        Key::number_or("breakdown_V", -15.0, {-1e308, 0.0, false, true}, "V_br of it"),
-        Key::number_or("breakdown_exponent", 3.0, {1.0, 1e3}, "m of it")}},
-      {"cell_cracked",
-       "cells of which a part is reached through a resistance alone",
-       {count_key(), Key::number("fraction", {0.0, 1.0, true, true}, "of the area"),
-        resistance_key("in front of that part")}},
+      {"cell_shaded", "cells in the shade",
+       joined({{count_key(), Key::number("factor", Range::fraction(), "of the light")},
+               breakdown_keys()})},
+      {"cell_cracked", "cells of which a part is reached through a resistance alone",
+       joined({{count_key(), Key::number("fraction", {0.0, 1.0, true, true}, "of the area"),
+                resistance_key("in front of that part")},
+               breakdown_keys()})},
       {"cell_shunted",
        "cells with a short cut",
        {count_key(), resistance_key("beside each of the cells")}},
@@ -69,6 +73,9 @@ std::vector<Key::Choice> module_effects() {
        "warmer or colder than stated",
        {Key::number("change_K", {-150.0, 150.0}, "of all cells")}},
       {"bypass_shorted", "a bypass diode that conducts always", {}},
+      {"bypass_open", "cells in the shade whose bypass diode is open",
+       joined({{count_key(), Key::number("factor", Range::fraction(), "of the light")},
+               breakdown_keys()})},
       {"substring_shaded",
        "cells of whole bypass diodes in the shade",
        {Key::other("factor", Key::a_number | Key::an_array, "of the light, of each")}},

@@ -336,19 +336,30 @@ ModuleNominal nominal_module(const ModuleDesign& design) {
   return design.datasheet.empty() ? nominal_of_references(design) : nominal_of_datasheet(design);
 }
 
-double point_sigma_A(const ModuleNominal& nominal, const ModuleSweep& sweep) {
-  const double step_V = (sweep.voltage_V.back() - sweep.voltage_V.front()) /
-                        static_cast<double>(sweep.voltage_V.size() - 1);
+namespace {
+
+// The residual of one diode and its translation.
+double misfit_A(const ModuleNominal& nominal, const ModuleSweep& sweep) {
   // Per unit of distance, of the short-circuit current: the residual of the powers of Translation
   // for the two modules from which their sizes come.
   constexpr double translation_misfit = 1.5e-3;
   // One or two references show their misfit over few lengths of correlation, to a third.
   constexpr double of_curves = 1.33;
-  const double misfit_A =
-      std::hypot(of_curves * nominal.misfit, translation_misfit * distance_of(nominal, sweep)) *
-      nominal.cell.photocurrent_A * sweep.light;
+  return std::hypot(of_curves * nominal.misfit, translation_misfit * distance_of(nominal, sweep)) *
+         nominal.cell.photocurrent_A * sweep.light;
+}
+
+}  // namespace
+
+double point_sigma_A(const ModuleNominal& nominal, const ModuleSweep& sweep) {
+  const double step_V = (sweep.voltage_V.back() - sweep.voltage_V.front()) /
+                        static_cast<double>(sweep.voltage_V.size() - 1);
   const double repeated = std::max(1.0, nominal.correlation_V / step_V);
-  return std::hypot(sweep.noise_A, misfit_A * std::sqrt(repeated));
+  return std::hypot(sweep.noise_A, misfit_A(nominal, sweep) * std::sqrt(repeated));
+}
+
+double point_rms_A(const ModuleNominal& nominal, const ModuleSweep& sweep) {
+  return std::hypot(sweep.noise_A, misfit_A(nominal, sweep));
 }
 
 }  // namespace photorque

@@ -51,4 +51,8 @@ ModuleNominal nominal_module(const ModuleDesign& design);
 // distance from the reference, because the translation to another condition has an error.
 double point_sigma_A(const ModuleNominal& nominal, const ModuleSweep& sweep);
 
+// The root of the mean square by which the points of a healthy module may differ from its curve:
+// the same errors, each counted once.
+double point_rms_A(const ModuleNominal& nominal, const ModuleSweep& sweep);
+
 }  // namespace photorque
