@@ -241,6 +241,21 @@ Disturbance uncertain_mass(double sigma_kg, const DisturbanceContext& context) {
   return error;
 }
 
+// A law of the ambient magnetic field needs one: stated, or set by another disturbance.
+void require_magnetic_field(const Settings& environment, const AttitudeModel& model) {
+  if (environment.has("magnetic_field_T") || environment.has("igrf")) return;
+  const DisturbanceKind* needy = nullptr;
+  for (const Disturbance& one : model.disturbances) {
+    const DisturbanceKind* kind = find_kind(one.kind);
+    if (kind == nullptr) continue;
+    if (kind->sets == std::string_view("the magnetic field")) return;
+    if (kind->screening.needs == Requirement::field) needy = kind;
+  }
+  if (needy == nullptr) return;
+  throw environment.error("magnetic_field_T", "no magnetic field, which " + needy->name + " needs",
+                          "magnetic_field_T or igrf in [environment]");
+}
+
 }  // namespace
 
 DisturbanceContext NominalModel::context() const {
@@ -267,6 +282,7 @@ NominalModel read_attitude_model(const Settings& root) {
   if (sensors.has("camera")) camera = read_tracking_camera(sensors.table("camera"));
   const DisturbanceContext context{model.platform, model.environment, camera ? &*camera : nullptr};
   model.disturbances = read_own_disturbances(root, context);
+  require_magnetic_field(environment, model);
   if (model.platform.slides()) model.disturbances.push_back(translation());
   if (const double sigma_kg = mass_sigma_kg(platform); sigma_kg > 0.0) {
     model.disturbances.push_back(uncertain_mass(sigma_kg, context));
