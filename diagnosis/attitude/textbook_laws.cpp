@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "diagnosis/attitude/domain.h"
 #include "inference/trials.h"
@@ -34,6 +35,15 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
   if (sees_angle) {
     const auto [pieces, parted] = inference::near_pieces(domain, nominal, data.train);
     found = domain.assemble(parted, members, pieces.runs, inference::patient(all.limits));
+    // Short pieces determine the laws roughly: longer and longer ones lead on to the whole.
+    for (const size_t count : std::views::reverse(all.limits.search.pieces)) {
+      const std::vector<Observation> longer =
+          count < pieces.pieces ? domain.cut(data.train, count) : std::vector<Observation>();
+      if (longer.empty()) continue;
+      const Trial next = domain.refit(found, longer, domain.seen_begins(found, longer),
+                                      inference::patient(all.limits));
+      if (std::isfinite(next.fit.chi2)) found = next;
+    }
     found = domain.refit(found, data.train, domain.seen_begins(found, data.train), growing);
   } else {
     found = domain.assemble(nominal, members, data.train, growing);

@@ -94,7 +94,10 @@ std::string show(const Estimate& estimate, const std::string& unit) {
 }
 
 std::string show_percent(double fraction) {
-  return show_brief(100.0 * fraction) + " %";
+  const double percent = 100.0 * fraction;
+  // Nearly all is not all.
+  const bool is_nearly_all = percent != 100.0 && show_brief(percent) == "100";
+  return (is_nearly_all ? show(1e-3 * std::round(1e3 * percent)) : show_brief(percent)) + " %";
 }
 
 std::string show_brief(double value) {

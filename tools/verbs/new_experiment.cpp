@@ -235,7 +235,8 @@ void run(const Options& options, const Program&) {
   }
   std::string text =
       "# Made by photorque new: a first guess at everything. Keys carry their unit; "
-      "docs/experiment.md has them all.\n# photorque check " +
+      "docs/experiment.md (scene, light) and docs/disturbances.md (platform) have them all.\n# "
+      "photorque check " +
       options.experiment.filename().string() + " says what can be done with it.\n\n";
   if (options.scene) {
     const SceneWords words = scene_words(options);
