@@ -8,6 +8,60 @@
 #include "inference/trials.h"
 
 namespace photorque {
+namespace {
+
+// Standard errors by which a number of the trial's `which`-th law lies beyond its physical bounds;
+// 0 within them.
+double beyond_physics(const Trial& trial, const Candidates& all, size_t which) {
+  const Candidate& c = all[trial.candidates[which]];
+  const std::vector<Parameter>& found =
+      trial.fit.best.model.disturbances[trial.disturbances[which]].parameters;
+  const std::vector<Eigen::Index> where = shared_indices(trial, which);
+  const Eigen::MatrixXd covariance = trial.fit.shared_posterior();
+  double farthest = 0.0;
+  size_t k = 0;
+  for (size_t p = 0; p < c.scale.size(); ++p) {
+    if (!c.is_fitted(p)) continue;
+    const Eigen::Index at = where[k++];
+    const double beyond = std::max(c.lowest[p] - found[p].value, found[p].value - c.highest[p]);
+    if (beyond > 0.0) farthest = std::max(farthest, beyond / std::sqrt(covariance(at, at)));
+  }
+  return farthest;
+}
+
+// The law to be given up next: the one farthest beyond physics, or else the one of least
+// significance. Nothing if all are needed.
+std::optional<size_t> superfluous(const Trial& trial, const Candidates& all) {
+  constexpr double needed = 2.0;  // standard errors
+  const size_t count = trial.candidates.size();
+  if (count < 2 || !std::isfinite(trial.fit.chi2)) return std::nullopt;
+  std::vector<double> beyond(count);
+  for (size_t i = 0; i < count; ++i) beyond[i] = beyond_physics(trial, all, i);
+  const auto farthest = std::ranges::max_element(beyond);
+  if (*farthest > 0.0) return static_cast<size_t>(farthest - beyond.begin());
+  const auto least = std::ranges::min_element(trial.significance);
+  if (least == trial.significance.end() || !(*least < needed)) return std::nullopt;
+  return static_cast<size_t>(least - trial.significance.begin());
+}
+
+// Friction and drag by several powers of the rate nearly replace each other in short pieces: with
+// opposite signs they fit those, and diverge in longer ones. Only laws that are needed stay.
+Trial without_superfluous(Trial trial, const AttitudeDomain& domain, const Candidates& all,
+                          const std::vector<Observation>& runs) {
+  while (const std::optional<size_t> least = superfluous(trial, all)) {
+    inference::Members<Start> rest;
+    const auto terms = domain.terms_of(trial);
+    for (size_t i = 0; i < terms.size(); ++i) {
+      if (i != *least) rest.push_back({terms[i], {}});
+    }
+    Trial fewer = domain.assemble(trial, rest, runs, inference::patient(all.limits));
+    if (!std::isfinite(fewer.fit.chi2)) break;
+    trial = std::move(fewer);
+  }
+  return trial;
+}
+
+}  // namespace
 
 std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates& all,
                                        const RecordedData& data) {
@@ -35,14 +89,16 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
   if (sees_angle) {
     const auto [pieces, parted] = inference::near_pieces(domain, nominal, data.train);
     found = domain.assemble(parted, members, pieces.runs, inference::patient(all.limits));
+    found = without_superfluous(std::move(found), domain, all, pieces.runs);
     // Short pieces determine the laws roughly: longer and longer ones lead on to the whole.
     for (const size_t count : std::views::reverse(all.limits.search.pieces)) {
       const std::vector<Observation> longer =
           count < pieces.pieces ? domain.cut(data.train, count) : std::vector<Observation>();
       if (longer.empty()) continue;
-      const Trial next = domain.refit(found, longer, domain.seen_begins(found, longer),
-                                      inference::patient(all.limits));
-      if (std::isfinite(next.fit.chi2)) found = next;
+      Trial next = domain.refit(found, longer, domain.seen_begins(found, longer),
+                                inference::patient(all.limits));
+      if (!std::isfinite(next.fit.chi2)) continue;
+      found = without_superfluous(std::move(next), domain, all, longer);
     }
     found = domain.refit(found, data.train, domain.seen_begins(found, data.train), growing);
   } else {

@@ -69,7 +69,7 @@ Console Call::console() const {
   sinks.done = [state = state_.get(), is_caller] {
     if (!is_caller() || state->task.empty()) return;
     const py::gil_scoped_acquire lock;
-    state->tell([&] {
+    state->call_report([&] {
       if (!state->progress.is_none()) state->progress(std::exchange(state->task, {}), 1.0);
     });
   };
