@@ -1,7 +1,11 @@
 #include "python/bindings/results.h"
 
+#include <algorithm>
+
 #include "core/errors.h"
+#include "core/text/parse.h"
 #include "python/bindings/arrays.h"
+#include "tools/runs/console.h"
 
 namespace photorque::python {
 namespace {
@@ -167,6 +171,17 @@ void bind_results(py::module_& module) {
   bind_table(module);
   bind_map(module);
   bind_plot(module);
+}
+
+std::string text_of(const RunResult& result, const std::string& command) {
+  constexpr size_t most = 4;
+  std::string text = "<" + command + ":";
+  const std::vector<Quantity>& figures = result.product.quantities;
+  for (size_t i = 0; i < std::min(most, figures.size()); ++i) {
+    text += (i == 0 ? " " : ", ") + figures[i].name + " = " +
+            std::string(trimmed(show(figures[i].estimate, "")));
+  }
+  return text + (figures.size() > most ? ", …>" : ">");
 }
 
 py::dict figures_of(const RunResult& result) {

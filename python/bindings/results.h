@@ -22,6 +22,8 @@ py::dict tables_of(const RunResult& result, const py::object& owner);
 py::dict maps_of(const RunResult& result, const py::object& owner);
 py::dict plots_of(const RunResult& result, const py::object& owner);
 py::dict provenance_of(const Provenance& provenance);
+// "<power: emitted_W = 88, absorbed_W = 76.8592 ± 0.0014, …>": the command and its first figures.
+std::string text_of(const RunResult& result, const std::string& command);
 // As the results of this command of the program.
 py::list write_of(const RunResult& result, const std::filesystem::path& folder,
                   const std::string& command, const std::vector<std::string>& formats);
@@ -71,6 +73,8 @@ void add_result(py::class_<Run, More...>& type, const std::string& command) {
       .def_property_readonly(
           "summary_json", [result_of](const py::object& self) { return result_of(self).summary(); },
           "What the program writes as summary.json.")
+      .def("__repr__", [result_of, command](
+                           const py::object& self) { return text_of(result_of(self), command); })
       .def(
           "write",
           [result_of, command](const py::object& self, const std::filesystem::path& folder,

@@ -48,6 +48,9 @@ class Plots(unittest.TestCase):
         self.assertEqual(len(axes), 3)
         np.testing.assert_array_equal(axes[1].lines[0].get_ydata(), motion.history["rate_y_rad_s"])
 
+    def test_a_result_shows_its_first_figures(self):
+        self.assertRegex(repr(self.power), r"^<power: emitted_W = 88, absorbed_W = 76\.[0-9]+ ± .*, …>$")
+
     def test_all_of_a_run_and_names_that_it_lacks(self):
         self.assertEqual(len(self.power.plot()), len(self.power.maps) + len(self.power.plots))
         with self.assertRaisesRegex(KeyError, "no map or plot 'iv', expected one of .*iv_curve"):
