@@ -61,6 +61,24 @@ Trial without_superfluous(Trial trial, const AttitudeDomain& domain, const Candi
   return trial;
 }
 
+// The laws that are needed, from short pieces, which determine them roughly, over longer and longer
+// ones.
+Trial lengthened(const Trial& in_pieces, const inference::RunSet<AttitudeDomain>& pieces,
+                 const AttitudeDomain& domain, const Candidates& all,
+                 const std::vector<Observation>& runs) {
+  Trial found = without_superfluous(in_pieces, domain, all, pieces.runs);
+  for (const size_t count : std::views::reverse(all.limits.search.pieces)) {
+    const std::vector<Observation> longer =
+        count < pieces.pieces ? domain.cut(runs, count) : std::vector<Observation>();
+    if (longer.empty()) continue;
+    Trial next = domain.refit(found, longer, domain.seen_begins(found, longer),
+                              inference::patient(all.limits));
+    if (!std::isfinite(next.fit.chi2)) continue;
+    found = without_superfluous(std::move(next), domain, all, longer);
+  }
+  return found;
+}
+
 }  // namespace
 
 std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates& all,
@@ -88,19 +106,15 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
       data.train, [](const Observation& seen) { return seen.sees_some_attitude(); });
   if (sees_angle) {
     const auto [pieces, parted] = inference::near_pieces(domain, nominal, data.train);
-    found = domain.assemble(parted, members, pieces.runs, inference::patient(all.limits));
-    found = without_superfluous(std::move(found), domain, all, pieces.runs);
-    // Short pieces determine the laws roughly: longer and longer ones lead on to the whole.
-    for (const size_t count : std::views::reverse(all.limits.search.pieces)) {
-      const std::vector<Observation> longer =
-          count < pieces.pieces ? domain.cut(data.train, count) : std::vector<Observation>();
-      if (longer.empty()) continue;
-      Trial next = domain.refit(found, longer, domain.seen_begins(found, longer),
-                                inference::patient(all.limits));
-      if (!std::isfinite(next.fit.chi2)) continue;
-      found = without_superfluous(std::move(next), domain, all, longer);
+    const Trial all_laws =
+        domain.assemble(parted, members, pieces.runs, inference::patient(all.limits));
+    const auto in_the_whole = [&](const Trial& laws) {
+      return domain.refit(laws, data.train, domain.seen_begins(laws, data.train), growing);
+    };
+    found = in_the_whole(all_laws);
+    if (!(found.fit.chi2 < nominal_fit.chi2)) {
+      found = in_the_whole(lengthened(all_laws, pieces, domain, all, data.train));
     }
-    found = domain.refit(found, data.train, domain.seen_begins(found, data.train), growing);
   } else {
     found = domain.assemble(nominal, members, data.train, growing);
   }
