@@ -106,7 +106,7 @@ TEST(EmpiricalLaw, CoggingFliesAgainAndHasAFormula) {
         const Vec3 up = s.lab_from_body.conjugate() * Vec3::UnitZ();
         return Vec3(1e-5 * std::cos(3.0 * std::atan2(nose.y(), nose.x()) - 1.0) * up);
       },
-      "unknown in heading: 3 periods a turn");
+      "unknown in yaw: 3 periods a turn");
   const Diagnosis d = reported(f);
   expect_same_flight(f, d);
   EXPECT_THAT(d.empirical.at(0).formula, HasSubstr("cos(3 ψ − (5"));  // 57 degrees
