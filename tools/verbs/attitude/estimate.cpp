@@ -212,7 +212,10 @@ void print_way(const Console& console, const EstimateRun::Estimated& one) {
   print_innovations(console, "attitude", chosen.estimation.attitude);
   print_innovations(console, "gyro", chosen.estimation.gyro);
   print_innovations(console, "yaw", chosen.estimation.yaw);
+  if (!result.unseen.empty()) console.heading("Undetermined by these readings");
+  for (const std::string& line : result.unseen) console.line("  " + line);
   if (!chosen.estimation.parameter_names.empty()) {
+    constexpr size_t most_rows = 8;
     console.line();
     print_table(console, result.product.tables[1],
                 {{"parameter", "parameter"},
@@ -220,10 +223,9 @@ void print_way(const Console& console, const EstimateRun::Estimated& one) {
                  {"before", "before"},
                  {"sigma", "sigma_before"},
                  {"after", "after"},
-                 {"sigma", "sigma_after"}});
+                 {"sigma", "sigma_after"}},
+                most_rows);
   }
-  if (!result.unseen.empty()) console.heading("Undetermined by these readings");
-  for (const std::string& line : result.unseen) console.line("  " + line);
 }
 
 void print_consistency(const Console& console, const ConsistencyResult& result) {
