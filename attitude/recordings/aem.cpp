@@ -196,7 +196,7 @@ constexpr std::array<Keyword, 18> keywords = {{
     {"INTERPOLATION_DEGREE", &Segment::interpolation_degree, false},
 }};
 
-// What the numbers of a row are.
+// The numbers of a row.
 struct AttitudeType {
   const char* name;
   size_t numbers;     // after the epoch

@@ -61,7 +61,7 @@ class XmlMessage {
   void add_assignments(const pugi::xml_node& parent, KvnItem& block) const {
     for (const pugi::xml_node& node : parent.children()) {
       const std::string name = node.name();
-      // Rows have the scalar last, whatever the file said of its own order.
+      // Rows have the scalar last, in any file.
       if (node.type() != pugi::node_element || name == "QUATERNION_TYPE") continue;
       KvnItem item = name == "COMMENT" ? kvn_comment(node.child_value())
                                        : kvn_assignment(name, node.child_value());

@@ -16,20 +16,23 @@ namespace {
 
 void print_run(const Console& console, const PropagationRun& run, const CoupledResult& coupled) {
   const PropagationResult& result = coupled.motion;
-  console.line(std::to_string(run.model.disturbances.size()) + " disturbances");
+  const Console details = console.details();
+  details.line(std::to_string(run.model.disturbances.size()) + " disturbances");
   for (const Disturbance& disturbance : run.model.disturbances)
-    console.details().line("  " + disturbance.kind);
+    details.line("  " + disturbance.kind);
+  // A run in light prints its energies instead.
+  const Console motion = coupled.beside ? details : console;
   console.heading("Trajectory");
   const PlatformState& end = result.states.back();
-  console.line("  " + padded("until", 24) + show_duration(end.time_s));
+  motion.line("  " + padded("until", 24) + show_duration(end.time_s));
   const auto figure = [&](const char* name) {
     const auto at = std::ranges::find(result.product.quantities, name, &Quantity::name);
     return at == result.product.quantities.end() ? 0.0 : at->estimate.value;
   };
   console.line("  " + padded("largest tilt", 24) + show_brief(figure("largest_tilt_deg")) +
                " deg at " + show_duration(figure("largest_tilt_time_s")));
-  console.line("  " + padded("yaw excursion", 24) + show_brief(figure("yaw_excursion_deg")) +
-               " deg from least to largest");
+  motion.line("  " + padded("yaw excursion", 24) + show_brief(figure("yaw_excursion_deg")) +
+              " deg from least to largest");
   // The lowest bar of the fractions is the strongest torque.
   const auto fractions = std::ranges::find(result.product.plots, "torque_fractions", &Plot::name);
   if (fractions != result.product.plots.end() && !fractions->curves.empty()) {
@@ -39,16 +42,14 @@ void print_run(const Console& console, const PropagationRun& run, const CoupledR
                  show_brief(sum / static_cast<double>(strongest.y.size())) +
                  " % of all on average");
   }
-  // A run in light prints its energies instead.
-  const Console ends = coupled.beside ? console.details() : console;
   const auto row = [&](const std::string& name, double value, const std::string& unit) {
-    ends.line("  " + padded(name, 24) + show_brief(value) + " " + unit);
+    motion.line("  " + padded(name, 24) + show_brief(value) + " " + unit);
   };
   row("tilt at the end", tilt_rad(end) / degree_rad, "deg");
   row("yaw at the end", yaw_rad(end) / degree_rad, "deg, between -180 and 180");
   row("rate at the end", end.rate_body_rad_s.norm(), "rad/s");
   if (end.charge_drawn_C != 0.0) row("charge missing", end.charge_drawn_C / 3600.0, "Ah");
-  console.details().line("  in " + std::to_string(result.statistics.steps) + " steps");
+  details.line("  in " + std::to_string(result.statistics.steps) + " steps");
   if (coupled.attitude_error_rad) {
     console.line("  the error of the table of light turns the body by less than " +
                  show(*coupled.attitude_error_rad / degree_rad) + " deg until then");
@@ -57,7 +58,7 @@ void print_run(const Console& console, const PropagationRun& run, const CoupledR
   if (!result.events.empty()) console.heading("Events");
   for (size_t i = 0; i < result.events.size(); ++i) {
     const Event& event = result.events[i];
-    (i < max_events ? console : console.details())
+    (i < max_events ? console : details)
         .line("  " + event.name + " at " + show(event.time_s) + " s");
   }
   if (result.events.size() > max_events) {
@@ -152,7 +153,7 @@ MotionRun run_propagate(const RunOptions& options, const Console& console,
   result.product = std::move(motion.product);
   add_light(console, *coupled, *run, result.product);
   const Product pointing = pointing_product(motion.states);
-  print_pointing(console, pointing);
+  print_pointing(coupled->beside ? console.details() : console, pointing);
   append(result.product, pointing);
   result.files = trajectory_files(run, coupled, result.provenance.one_line(),
                                   options.experiment.stem().string());

@@ -52,16 +52,13 @@ typedef struct {
 
 typedef struct {
   photorque_header header;
-  uint64_t now_tick;         /* at which this packet arrives; header.tick unless a link delays */
-  uint64_t command_sequence; /* of the last command that acts; 0: none yet */
-  uint64_t command_sent_ns;  /* its sent_ns, for the time there and back */
-  double t_s;                /* of header.tick */
-  double attitude[4];        /* of the camera; NaN in ticks without a reading */
-  double gyro_rad_s[3];      /* body axes; NaN likewise */
-  union {
-    double yaw_rad;     /* azimuth of body x by the encoder; NaN without one */
-    double heading_rad; /* the old name */
-  };
+  uint64_t now_tick;          /* at which this packet arrives; header.tick unless a link delays */
+  uint64_t command_sequence;  /* of the last command that acts; 0: none yet */
+  uint64_t command_sent_ns;   /* its sent_ns, for the time there and back */
+  double t_s;                 /* of header.tick */
+  double attitude[4];         /* of the camera; NaN in ticks without a reading */
+  double gyro_rad_s[3];       /* body axes; NaN likewise */
+  double yaw_rad;             /* azimuth of body x by the encoder; NaN without one */
   double battery_current_A;   /* until this tick */
   double array_power_W;       /* likewise */
   double command_body_N_m[3]; /* that acted until this tick */

@@ -113,7 +113,7 @@ class ShortText {
 
  private:
   void take_line(const std::string& line) {
-    constexpr int first = 22;
+    constexpr int first = 23;
     constexpr size_t last = 7;
     const size_t begin = std::min(line.find_first_not_of(' '), line.size());
     const bool warns =
@@ -274,8 +274,13 @@ void write_results(const CommandOptions& options, const Console& console, const 
   for (const auto& path : paths) {
     if (path.extension() == ".png") console.details().line("  " + path.filename().string());
   }
+  std::string names;
   for (const RunFile& file : result.files) {
-    console.line("  " + file.name + (file.remark.empty() ? "" : ": " + file.remark));
+    if (file.remark.empty()) names += (names.empty() ? "" : ", ") + file.name;
+  }
+  if (!names.empty()) console.line("  " + names);
+  for (const RunFile& file : result.files) {
+    if (!file.remark.empty()) console.line("  " + file.name + ": " + file.remark);
   }
 }
 

@@ -333,7 +333,7 @@ FoundEffect found_in_module(const ModuleAnswer& answer, size_t chosen, const Thr
   // A model of damage describes what the damage does to about 1 %, χ² to a ten-thousandth.
   constexpr double model_error = 1e-4;
   const double likely = answer.trials[chosen].log_evidence;
-  // What no model describes to the noise tells models apart the less.
+  // A residual above the noise that all models leave widens the limit.
   const double beyond_noise =
       std::max(1.0, joint.fit.data_chi2 / static_cast<double>(joint.fit.samples));
   const double within = std::max(limits.search.min_log_evidence_gain * beyond_noise,

@@ -16,7 +16,7 @@ Key count_key() {
       .range_that_varies();
 }
 
-// What shaded and cracked cells do in reverse.
+// Reverse conduction of shaded and cracked cells.
 std::vector<Key> breakdown_keys() {
   return {Key::number_or("breakdown_fraction", 0.0, {0.0, 7.0}, "a of the reverse conduction"),
           Key::number_or("breakdown_V", -15.0, {-1e308, 0.0, false, true}, "V_br of it"),
