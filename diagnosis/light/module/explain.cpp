@@ -1,0 +1,252 @@
+#include "diagnosis/light/module/explain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "core/parallel.h"
+#include "inference/whiteness.h"
+
+namespace photorque {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+
+// The points of a curve in segments of `block` of them for which `is_held` says no, and the others.
+std::pair<ModuleRun, ModuleRun> split_curve(const ModuleRun& run, size_t block,
+                                            const std::function<bool(size_t segment)>& is_held) {
+  ModuleRun train = run, held = run;
+  for (ModuleRun* r : {&train, &held}) {
+    r->sweep.voltage_V.clear();
+    r->sweep.current_A.clear();
+  }
+  for (size_t i = 0; i < run.sweep.voltage_V.size(); ++i) {
+    ModuleRun& to = is_held(i / block) ? held : train;
+    to.sweep.voltage_V.push_back(run.sweep.voltage_V[i]);
+    to.sweep.current_A.push_back(run.sweep.current_A[i]);
+  }
+  return {std::move(train), std::move(held)};
+}
+
+// χ² of segments of the curves, each predicted from a fit that left out a fifth of the segments.
+// A segment holds several parts of every curve, because damage changes a part of a curve.
+std::vector<double> chi2_of_segments(const ModuleFitter& fitter, const ModuleHypothesis& h,
+                                     const ModuleTrial& trial, const std::vector<ModuleRun>& runs,
+                                     const Thresholds& limits) {
+  constexpr size_t folds = 5, parts = 3;
+  const size_t count = limits.discrepancy.stretches;
+  std::vector<double> chi2(count, 0.0);
+  const auto block_of = [&](const ModuleRun& run) {
+    return std::max<size_t>(1, run.sweep.voltage_V.size() / (count * parts));
+  };
+  for (size_t fold = 0; fold < folds; ++fold) {
+    std::vector<ModuleRun> rest;
+    for (const ModuleRun& run : runs) {
+      rest.push_back(split_curve(run, block_of(run), [&](size_t segment) {
+                       return segment % count % folds == fold;
+                     }).first);
+    }
+    const ModuleTrial others = fitter.fit(h, rest, &trial.shared);
+    for (size_t run = 0; run < runs.size(); ++run) {
+      const VectorXd r = fitter.residuals(h, ModuleFitter::numbers_of(others, run), runs[run]);
+      for (Index i = 0; i < r.size(); ++i) {
+        const size_t segment = static_cast<size_t>(i) / block_of(runs[run]) % count;
+        if (segment % folds == fold) chi2[segment] += r[i] * r[i];
+      }
+    }
+  }
+  return chi2;
+}
+
+// Excess of the residuals of a fit over noise [sigma].
+double excess_of(const ModuleFitter& fitter, const ModuleHypothesis& h, const ModuleTrial& trial,
+                 const std::vector<ModuleRun>& runs, const Thresholds& limits) {
+  std::vector<inference::ChannelResiduals> channels;
+  for (size_t run = 0; run < runs.size(); ++run) {
+    const VectorXd r = fitter.residuals(h, ModuleFitter::numbers_of(trial, run), runs[run]);
+    channels.push_back({{r.data(), r.data() + r.size()}});
+  }
+  const double samples = static_cast<double>(trial.fit.samples);
+  return std::max(inference::whiteness(channels, limits.noise).excess_sigma,
+                  (trial.fit.data_chi2 / samples - 1.0) / std::sqrt(2.0 / samples));
+}
+
+// The χ² of what one diode and its translation leave of healthy curves: their errors, which the
+// standard deviations of the points count once in a length of correlation.
+double chi2_of_healthy(const ModuleNominal& nominal, const std::vector<ModuleRun>& runs) {
+  double chi2 = 0.0;
+  for (const ModuleRun& run : runs) {
+    chi2 += static_cast<double>(run.sweep.voltage_V.size()) *
+            std::pow(point_rms_A(nominal, run.sweep) / run.sigma_A, 2);
+  }
+  return chi2;
+}
+
+// Whether the largest number of cells of a kind that was tried is beyond doubt more likely than
+// fewer: then the effect spreads over the module in a way that this kind only imitates.
+bool is_at_largest_count(const ModuleAnswer& answer, const std::string& kind,
+                         double min_log_evidence_gain) {
+  double largest = -INFINITY, fewer = -INFINITY;
+  int most = 0;
+  for (size_t i = 0; i < answer.hypotheses.size(); ++i) {
+    const ModuleHypothesis& h = answer.hypotheses[i];
+    if (h.kind != kind || h.count == 0) continue;
+    most = h.largest_count;
+    double& best = h.count == h.largest_count ? largest : fewer;
+    best = std::max(best, answer.joint[i].log_evidence);
+  }
+  return most > 1 && largest > fewer + min_log_evidence_gain;
+}
+
+// The hypotheses of one kind, which differ in their number of cells, fitted to curves.
+struct Family {
+  std::vector<ModuleHypothesis> hypotheses;
+  std::vector<ModuleTrial> trials;
+};
+
+std::vector<Family> families_of(const std::vector<ModuleHypothesis>& hypotheses) {
+  std::vector<Family> families;
+  for (const ModuleHypothesis& h : hypotheses) {
+    const bool is_next =
+        !families.empty() && h.count > 0 && families.back().hypotheses.back().kind == h.kind;
+    if (!is_next) families.emplace_back();
+    families.back().hypotheses.push_back(h);
+  }
+  return families;
+}
+
+// By rising numbers of cells, until two in turn are hopeless beside the best.
+void fit_family(const ModuleFitter& fitter, const std::vector<ModuleRun>& runs, Family& family) {
+  double best = -INFINITY;
+  int behind = 0;
+  for (const ModuleHypothesis& h : family.hypotheses) {
+    family.trials.push_back(fitter.fit(h, runs));
+    const double evidence = family.trials.back().log_evidence;
+    best = std::max(best, evidence);
+    behind = evidence < best - hopeless_log_evidence ? behind + 1 : 0;
+    if (behind == 2) break;
+  }
+}
+
+const ModuleTrial& best_of(const Family& family) {
+  return *std::ranges::max_element(family.trials, {}, &ModuleTrial::log_evidence);
+}
+
+// Where shaded cells are no worse than `least`, cracked ones that look like them.
+void add_crack_like_shade(const ModuleFitter& fitter, const ModuleDesign& design,
+                          const ModuleNominal& nominal, const std::vector<ModuleRun>& runs,
+                          double least, std::vector<Family>& families) {
+  const auto of = [&](const std::string& kind) {
+    return std::ranges::find_if(families,
+                                [&](const Family& f) { return f.hypotheses.front().kind == kind; });
+  };
+  const auto shaded = of("cell_shaded"), cracked = of("cell_cracked");
+  if (shaded == families.end() || cracked == families.end()) return;
+  const ModuleTrial& trial = best_of(*shaded);
+  if (!(trial.log_evidence > least)) return;
+  const ModuleHypothesis& h =
+      shaded->hypotheses[static_cast<size_t>(&trial - shaded->trials.data())];
+  const size_t own = h.parameters.size();
+  const double* first = trial.shared.data() + trial.shared.size() - own;
+  Family like{{cracked_like(design, nominal, h, {first, own}, cracked->hypotheses.front())}, {}};
+  like.trials.push_back(fitter.fit(like.hypotheses.front(), runs));
+  families.push_back(std::move(like));
+}
+
+// Fits all hypotheses but the first, which is fitted, to the curves for training; the best of each
+// kind and those that are not hopeless beside the best of all then to all.
+void fit_effects(const ModuleFitter& fitter, const ModuleDesign& design,
+                 const ModuleNominal& nominal, const std::vector<ModuleHypothesis>& hypotheses,
+                 const std::vector<ModuleRun>& train, const std::vector<ModuleRun>& everything,
+                 int threads, ModuleAnswer& answer) {
+  std::vector<Family> families = families_of({hypotheses.begin() + 1, hypotheses.end()});
+  parallel_for(families.size(), threads, [&](size_t i) { fit_family(fitter, train, families[i]); });
+  double best = -INFINITY;
+  for (const Family& family : families) best = std::max(best, best_of(family).log_evidence);
+  add_crack_like_shade(fitter, design, nominal, train, best - hopeless_log_evidence, families);
+  for (Family& family : families) {
+    const double of_kind = best_of(family).log_evidence;
+    for (size_t i = 0; i < family.trials.size(); ++i) {
+      const double own = family.trials[i].log_evidence;
+      if (own < of_kind && own < best - hopeless_log_evidence) continue;
+      answer.hypotheses.push_back(std::move(family.hypotheses[i]));
+      answer.trials.push_back(std::move(family.trials[i]));
+    }
+  }
+  answer.joint.resize(answer.trials.size());
+  parallel_for(answer.trials.size() - 1, threads, [&](size_t i) {
+    answer.joint[i + 1] =
+        fitter.fit(answer.hypotheses[i + 1], everything, &answer.trials[i + 1].shared);
+  });
+}
+
+}  // namespace
+
+std::pair<ModuleRun, ModuleRun> split_curve(const ModuleRun& run) {
+  return split_curve(run, std::max<size_t>(1, run.sweep.voltage_V.size() / 40),
+                     [](size_t segment) { return segment % 4 == 2; });
+}
+
+ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nominal,
+                            const std::vector<ModuleHypothesis>& hypotheses, const ModuleData& data,
+                            int threads, const Thresholds& limits) {
+  ModuleAnswer answer;
+  const ModuleFitter fitter(design, nominal, limits);
+  std::vector<ModuleRun> everything = data.train;
+  everything.insert(everything.end(), data.held.begin(), data.held.end());
+  answer.hypotheses = {hypotheses.front()};
+  answer.trials = {fitter.fit(hypotheses.front(), data.train)};
+  answer.joint = {fitter.fit(hypotheses.front(), everything, &answer.trials.front().shared)};
+  // Within the error of one diode and of its translation nothing can be said to act: χ² up to one
+  // per point, or to four times what healthy curves leave.
+  constexpr double of_healthy = 4.0;
+  const inference::Fit& as_it_was = answer.joint.front().fit;
+  const bool leaves_more =
+      !(as_it_was.data_chi2 <= std::min(static_cast<double>(as_it_was.samples),
+                                        of_healthy * chi2_of_healthy(nominal, everything)));
+  if (leaves_more) {
+    fit_effects(fitter, design, nominal, hypotheses, data.train, everything, threads, answer);
+  }
+  const size_t count = answer.hypotheses.size();
+  std::vector<inference::CandidateTraits> traits(count);
+  for (size_t i = 0; i < count; ++i) {
+    const ModuleHypothesis& h = answer.hypotheses[i];
+    traits[i].name = h.kind.empty() ? h.label : h.kind;
+    traits[i].is_empirical =
+        h.is_empirical || is_at_largest_count(answer, h.kind, limits.search.min_log_evidence_gain);
+    traits[i].parameters = h.parameters.size();
+    if (i > 0) answer.trials[i].candidates = {i};
+  }
+  const inference::Fit &own = answer.trials.front().fit, &all = answer.joint.front().fit;
+  for (size_t i = 0; i < count; ++i) {
+    ModuleTrial &train = answer.trials[i], &joint = answer.joint[i];
+    const double held = static_cast<double>(joint.fit.samples - train.fit.samples);
+    inference::Predictive p;
+    p.chi2_per_sample = (joint.fit.chi2 - train.fit.chi2) / held;
+    p.log_score = joint.log_evidence - train.log_evidence;
+    p.expected_chi2_per_sample = inference::expected_chi2_per_sample(train.fit, joint.fit);
+    p.sigma = (p.chi2_per_sample - 1.0) /
+              std::sqrt(2.0 / held + 2.0 / static_cast<double>(train.fit.samples));
+    if (i > 0) {
+      train.significance = {std::sqrt(std::max(0.0, own.chi2 - train.fit.chi2))};
+      train.joint_significance = {std::sqrt(std::max(0.0, all.chi2 - joint.fit.chi2))};
+    }
+    train.holdout_chi2_per_sample = p.chi2_per_sample;
+    train.predictive = p;
+    train.log_evidence = joint.log_evidence;
+  }
+  const auto gain = [&](size_t trial, size_t) -> std::optional<double> {
+    const auto chi2 = [&](size_t of) {
+      return chi2_of_segments(fitter, answer.hypotheses[of], answer.joint[of], data.whole, limits);
+    };
+    return inference::gain_sigma(chi2(0), chi2(trial));
+  };
+  const auto excess = [&](size_t trial) {
+    return excess_of(fitter, answer.hypotheses[trial], answer.trials[trial], data.train, limits);
+  };
+  answer.decision = inference::decide({answer.trials.begin(), answer.trials.end()}, traits,
+                                      {excess, gain}, limits.decision);
+  return answer;
+}
+
+}  // namespace photorque

@@ -1,0 +1,326 @@
+#include "diagnosis/light/module/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "diagnosis/verdict.h"
+
+namespace photorque {
+namespace {
+
+double squares_of(const ModuleFitter& fitter, const ModuleAnswer& answer, size_t trial,
+                  const ModuleData& data) {
+  double squares = 0.0, points = 0.0;
+  for (size_t run = 0; run < data.held.size(); ++run) {
+    const ModuleSweep& sweep = data.held[run].sweep;
+    // Parts of curves that were fitted have their light and temperature.
+    const bool of_train =
+        data.held.size() == data.train.size() && data.train[run].sweep.name == sweep.name;
+    const auto curve = fitter.curve(answer.hypotheses[trial],
+                                    of_train ? answer.trials[trial] : answer.joint[trial],
+                                    of_train ? run : data.train.size() + run, data.held[run]);
+    for (size_t i = 0; i < curve.size(); ++i, ++points) {
+      squares += std::pow(curve[i].current_A - sweep.current_A[i], 2);
+    }
+  }
+  return std::sqrt(squares / std::max(1.0, points));
+}
+
+// Standard errors of the hypothesis' own parameters.
+std::vector<double> own_errors(const ModuleTrial& trial, size_t own) {
+  const Eigen::MatrixXd C = trial.fit.shared_posterior();
+  std::vector<double> errors;
+  for (size_t k = 0; k < own; ++k) {
+    const auto at = C.rows() - static_cast<Eigen::Index>(own) + static_cast<Eigen::Index>(k);
+    errors.push_back(std::sqrt(std::max(0.0, C(at, at))));
+  }
+  return errors;
+}
+
+FoundEffect found_in_module(const ModuleAnswer& answer, size_t chosen, const Thresholds& limits) {
+  const ModuleHypothesis& h = answer.hypotheses[chosen];
+  const ModuleTrial& joint = answer.joint[chosen];
+  FoundEffect effect;
+  effect.kind = h.kind;
+  effect.explanation = h.explanation;
+  if (h.count > 0) effect.parameters.push_back({"count", {static_cast<double>(h.count)}, {}});
+  const size_t own = h.parameters.size();
+  std::vector<double> x(joint.shared.data() + joint.shared.size() - own,
+                        joint.shared.data() + joint.shared.size());
+  const std::vector<double> errors = own_errors(joint, own);
+  for (const ModuleHypothesis::Number& number : h.numbers) {
+    double variance = 0.0;
+    for (size_t k = 0; k < own; ++k) {
+      std::vector<double> by = x;
+      const double step = 1e-4;
+      by[k] += step;
+      variance += std::pow((number.value(by) - number.value(x)) / step * errors[k], 2);
+    }
+    if (effect.parameters.empty() || effect.parameters.back().key != number.key) {
+      effect.parameters.push_back({number.key, {}, {}});
+    }
+    effect.parameters.back().value.push_back(number.value(x));
+    effect.parameters.back().sigma.push_back(std::sqrt(variance));
+  }
+  int fewest = h.count, most = h.count;
+  // A model of damage describes what the damage does to about 1 %, χ² to a ten-thousandth.
+  constexpr double model_error = 1e-4;
+  const double likely = answer.trials[chosen].log_evidence;
+  // A residual above the noise that all models leave widens the limit.
+  const double beyond_noise =
+      std::max(1.0, joint.fit.data_chi2 / static_cast<double>(joint.fit.samples));
+  const double within = std::max(limits.search.min_log_evidence_gain * beyond_noise,
+                                 model_error * (likely - answer.trials.front().log_evidence));
+  // A cell in the shade and one with a part cut off differ by some hundredths of a volt, which the
+  // model of the other cells does not describe.
+  constexpr double cut_off_or_dark = 5e-3;
+  const double between_them =
+      std::max(within, std::min(hopeless_log_evidence,
+                                cut_off_or_dark * (likely - answer.trials.front().log_evidence)));
+  const auto is_dim = [](const std::string& kind) {
+    return kind == "cell_shaded" || kind == "cell_cracked";
+  };
+  for (size_t i = 0; i < answer.trials.size(); ++i) {
+    const double behind = likely - answer.trials[i].log_evidence;
+    const bool are_dim = is_dim(h.kind) && is_dim(answer.hypotheses[i].kind);
+    if (behind > (are_dim ? between_them : within)) continue;
+    if (i == chosen || answer.hypotheses[i].kind.empty()) continue;
+    if (answer.hypotheses[i].kind == h.kind) {
+      if (behind > limits.search.min_log_evidence_gain) continue;
+      fewest = std::min(fewest, answer.hypotheses[i].count);
+      most = std::max(most, answer.hypotheses[i].count);
+      continue;
+    }
+    std::vector<std::string>& rivals = effect.indistinguishable_from;
+    const std::string& kind = answer.hypotheses[i].kind;
+    if (std::ranges::find(rivals, kind) == rivals.end()) rivals.push_back(kind);
+  }
+  if (most > fewest) {
+    effect.texts.emplace_back("count_between",
+                              std::to_string(fewest) + " and " + std::to_string(most));
+  }
+  effect.probability = answer.decision.names.front().probability;
+  return effect;
+}
+
+// One diode describes modules in even light to 0.1 to 0.5 % of their short-circuit current (curves
+// of docs/real_light.md and of measured modules of others), with a cell in the shade or a step to
+// 0.8 % and more.
+constexpr double even_misfit = 7e-3;
+
+// Whether a curve is both a reference and a recording. Its deviation from one diode would then
+// count as noise, so that no effect would be found.
+bool is_its_own_reference(const ModuleDesign& design,
+                          const std::vector<LightRecording>& recordings) {
+  return std::ranges::any_of(recordings, [&](const LightRecording& r) {
+    return std::ranges::any_of(design.references, [&](const LightRecording& reference) {
+      return r.voltage_V == reference.voltage_V && r.current_A == reference.current_A;
+    });
+  });
+}
+
+// Root of the mean square of two, of so many samples each.
+void add_rms(const Holdout& more, Holdout& all) {
+  const auto mean = [&](double a, double b) {
+    const auto m = static_cast<double>(all.samples), n = static_cast<double>(more.samples);
+    return (m * a + n * b) / (m + n);
+  };
+  for (const auto member : {&Holdout::rms_before, &Holdout::rms_after}) {
+    double& rms = (all.*member)["current_A"];
+    rms = std::sqrt(mean(rms * rms, std::pow((more.*member).at("current_A"), 2)));
+  }
+  all.chi2_per_sample_before = mean(all.chi2_per_sample_before, more.chi2_per_sample_before);
+  all.chi2_per_sample_after = mean(all.chi2_per_sample_after, more.chi2_per_sample_after);
+  const bool is_worse =
+      more.predictive && (!all.predictive || more.predictive->sigma > all.predictive->sigma);
+  if (is_worse) all.predictive = more.predictive;
+  all.samples += more.samples;
+}
+
+}  // namespace
+
+std::string module_sentence(const Diagnosis& d) {
+  if (d.verdict == Verdict::consistent) {
+    return "Nothing is missing: what differs is noise or lies within what one diode can describe.";
+  }
+  if (d.verdict == Verdict::unexplained) {
+    return "Something acts that no effect of the catalogue explains (" + d.because + ").";
+  }
+  std::string name = d.effects.front().kind;
+  std::ranges::replace(name, '_', ' ');
+  return "Missing: " + name + " (" + d.effects.front().explanation + ").";
+}
+
+Diagnosis described(const ModuleDesign& design, const ModuleNominal& nominal,
+                    const ModuleAnswer& answer, const ModuleData& data, const Thresholds& limits) {
+  const ModuleFitter fitter(design, nominal, limits);
+  Diagnosis d;
+  d.effect_table = "effect";
+  d.verdict = verdict_of(answer.decision.finding);
+  d.confidence = answer.decision.confidence;
+  d.because = answer.decision.because;
+  const size_t chosen = answer.decision.chosen;
+  if (d.verdict == Verdict::missing_physics) {
+    d.effects.push_back(found_in_module(answer, chosen, limits));
+  }
+  const double least = answer.trials.front().log_evidence;
+  for (size_t i = 0; i < answer.trials.size(); ++i) {
+    const ModuleHypothesis& h = answer.hypotheses[i];
+    Alternative a;
+    if (!h.kind.empty()) a.kinds = {h.kind};
+    a.label = h.label;
+    a.log_evidence_relative = answer.trials[i].log_evidence - least;
+    a.holdout_chi2_per_sample = answer.trials[i].holdout_chi2_per_sample;
+    a.remark = answer.trials[i].objection;
+    a.chosen = i == chosen;
+    d.alternatives.push_back(std::move(a));
+  }
+  std::ranges::stable_sort(d.alternatives, [](const Alternative& a, const Alternative& b) {
+    return a.log_evidence_relative > b.log_evidence_relative;
+  });
+  d.chi2_per_sample_before = answer.trials.front().fit.chi2_per_sample();
+  d.chi2_per_sample_after = answer.trials[chosen].fit.chi2_per_sample();
+  d.samples = answer.trials.front().fit.samples;
+  d.where.channels.push_back({"current_A", d.chi2_per_sample_before});
+  Holdout held;
+  held.samples = answer.joint.front().fit.samples - d.samples;
+  held.chi2_per_sample_before = answer.trials.front().predictive->chi2_per_sample;
+  held.chi2_per_sample_after = answer.trials[chosen].predictive->chi2_per_sample;
+  held.predictive = answer.trials[chosen].predictive;
+  held.rms_before["current_A"] = squares_of(fitter, answer, 0, data);
+  held.rms_after["current_A"] = squares_of(fitter, answer, chosen, data);
+  held.explained_fraction =
+      explained_fraction(held.chi2_per_sample_before, held.chi2_per_sample_after, held.samples);
+  d.holdout = held;
+  if (!answer.decision.held_out_tests_names) d.warnings.push_back(untested_names(held));
+  if (answer.decision.undecided) {
+    d.warnings.push_back("something is missing, but not which effect it is: see the alternatives");
+  }
+  return d;
+}
+
+Diagnosis of_all_curves(std::vector<Diagnosis> each) {
+  Diagnosis all;
+  all.effect_table = "effect";
+  all.confidence = 1.0;
+  all.holdout.emplace();
+  int64_t samples = 0;
+  size_t differing = 0;
+  for (Diagnosis& d : each) {
+    const auto n = static_cast<double>(d.samples), m = static_cast<double>(samples);
+    all.chi2_per_sample_before =
+        (m * all.chi2_per_sample_before + n * d.chi2_per_sample_before) / (m + n);
+    all.chi2_per_sample_after =
+        (m * all.chi2_per_sample_after + n * d.chi2_per_sample_after) / (m + n);
+    samples += d.samples;
+    add_rms(*d.holdout, *all.holdout);
+    all.confidence = std::min(all.confidence, d.confidence);
+    if (d.verdict == Verdict::consistent) continue;
+    ++differing;
+    all.sentence += (all.sentence.empty() ? "" : " ") + d.sentence;
+    if (d.verdict == Verdict::unexplained) {
+      all.verdict = Verdict::unexplained;
+      all.because = "of one curve or more: " + d.because;
+    } else if (all.verdict == Verdict::consistent) {
+      all.verdict = Verdict::missing_physics;
+    }
+    for (FoundEffect& effect : d.effects) all.effects.push_back(std::move(effect));
+    constexpr size_t most = 6;
+    d.alternatives.resize(std::min(most, d.alternatives.size()));
+    for (Alternative& a : d.alternatives) all.alternatives.push_back(std::move(a));
+    for (std::string& warning : d.warnings) all.warnings.push_back(std::move(warning));
+  }
+  all.samples = samples;
+  all.where.channels.push_back({"current_A", all.chi2_per_sample_before});
+  all.holdout->explained_fraction =
+      explained_fraction(all.holdout->chi2_per_sample_before, all.holdout->chi2_per_sample_after,
+                         all.holdout->samples);
+  const std::string count = std::to_string(each.size());
+  all.sentence = differing == 0
+                     ? "Nothing is missing in any of " + count +
+                           " curves: what differs is noise, or lies within what one diode and its "
+                           "translation to other light and temperature can describe."
+                     : std::to_string(differing) + " of " + count +
+                           " curves differ from the module as it was. " + all.sentence;
+  return all;
+}
+
+void compare_with_sensor(const ModuleDesign& design, const std::vector<ModuleRun>& curves,
+                         const std::vector<double>& light, Diagnosis& d) {
+  std::vector<double> order, ratio;
+  for (size_t i = 0; i < curves.size(); ++i) {
+    if (!(curves[i].irradiance_W_m2 > 0.0)) continue;
+    order.push_back(static_cast<double>(i));
+    ratio.push_back(std::log(light[i] / curves[i].irradiance_W_m2));
+  }
+  constexpr size_t fewest = 5;
+  if (ratio.size() < fewest) return;
+  const std::vector<double>& stated = design.reference_irradiances_W_m2;
+  const bool is_absolute = !stated.empty() && stated.front() > 0.0;
+  const double unit = is_absolute ? -std::log(stated.front()) : median_of(ratio);
+  std::vector<double> slopes, off;
+  for (size_t i = 0; i < ratio.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) {
+      slopes.push_back((ratio[i] - ratio[j]) / (order[i] - order[j]));
+    }
+  }
+  const double slope = median_of(slopes);
+  for (size_t i = 0; i < ratio.size(); ++i) off.push_back(ratio[i] - slope * order[i]);
+  const double level = median_of(off);
+  for (double& x : off) x = std::abs(x - level);
+  constexpr double of_median = 0.6745;  // of a normal variable's standard deviation
+  const double scatter = median_of(off) / of_median;
+  const auto at = [&](double i) { return std::exp(level + slope * i - unit); };
+  // The error of the slope of a line through n points, one apart: scatter √(12/n³).
+  const auto n = static_cast<double>(ratio.size());
+  const double sigma = std::abs(slope) / std::max(1e-9, scatter * std::sqrt(12.0 / (n * n * n)));
+  char text[400];
+  std::snprintf(
+      text, sizeof text,
+      "light over irradiance_W_m2%s goes from %.3f at the first curve to %.3f at the last "
+      "(a line over their order, %.1f standard errors), and scatters by %.2g %%: angle of "
+      "incidence, dirt, spectrum or the sensor, not the cells",
+      is_absolute ? "" : ", over its median,", at(order.front()), at(order.back()), sigma,
+      100.0 * scatter);
+  d.warnings.emplace_back(text);
+  constexpr double beyond_doubt = 4.0, far = 6.0;
+  if (sigma > beyond_doubt) {
+    const double moved = std::abs(slope) * (order.back() - order.front());
+    d.where.depends_on.push_back({"time", moved / (moved + scatter)});
+  }
+  for (size_t i = 0; i < ratio.size(); ++i) {
+    if (off[i] < far * scatter) continue;
+    const ModuleRun& curve = curves[static_cast<size_t>(order[i])];
+    std::snprintf(text, sizeof text, "%s: light over irradiance_W_m2 is %.3f, off that line",
+                  std::filesystem::path(curve.sweep.name).filename().string().c_str(),
+                  std::exp(ratio[i] - unit));
+    d.warnings.emplace_back(text);
+  }
+}
+
+void judge_references(const ModuleDesign& design, const ModuleNominal& nominal,
+                      const std::vector<LightRecording>& recordings, Diagnosis& d) {
+  const bool own = is_its_own_reference(design, recordings);
+  const bool uneven = !design.references.empty() && nominal.misfit > even_misfit;
+  char percent[40];
+  std::snprintf(percent, sizeof percent, "%.2g %%", 100.0 * nominal.misfit);
+  if (uneven) {
+    d.warnings.push_back(std::string("one diode leaves ") + percent +
+                         " of the short-circuit current of the reference itself, where even light "
+                         "on like cells leaves 0.1 to 0.5 %: part of it may be shaded or damaged, "
+                         "and what the recordings share with it cannot be found");
+  }
+  if (own) {
+    d.warnings.push_back(
+        "a recording is its own reference: what one diode cannot describe counts as noise, so that "
+        "only another curve or a datasheet can show missing effects");
+  }
+  if (!own || !uneven || d.verdict != Verdict::consistent) return;
+  d.verdict = Verdict::unexplained;
+  d.because = std::string("the curve is its own reference, and one diode describes it only to ") +
+              percent + " of its short-circuit current";
+}
+
+}  // namespace photorque
