@@ -41,7 +41,7 @@ FittedRun observed(const LightLab& lab, const LightBelief& nominal, LightRecordi
     const size_t every = (rows + most - 1) / most;
     std::vector<size_t> some;
     for (size_t i = 0; i < rows; i += every) some.push_back(i);
-    quality.rejected["left out of a long recording"] += static_cast<int64_t>(rows - some.size());
+    quality.rejected["thinning"] += static_cast<int64_t>(rows - some.size());
     recording = recording.part(some);
   }
   LightRun whole(lab, std::move(recording));

@@ -294,7 +294,8 @@ Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_
   const LightSeries& light = *recording.light;
   Plot plot;
   plot.name = "sweep_" + std::to_string(sweep) + "_of_" + recording.recording;
-  plot.title = "Curve " + std::to_string(sweep) + " of " + recording.recording +
+  const bool is_only = sweeps_of(light).size() == 1;
+  plot.title = (is_only ? "" : "Curve " + std::to_string(sweep) + " of ") + recording.recording +
                (recording.is_held_out ? ", never fitted" : "");
   plot.x_label = "Voltage [V]";
   plot.y_label = "Current [A]";
@@ -307,8 +308,8 @@ Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_
   measured.label = "measured";
   before.label = "nominal model";
   after.label = "improved model";
-  off_before.label = "measured minus nominal model";
-  off_after.label = "measured minus improved model";
+  off_before.label = "measured − nominal";
+  off_after.label = "measured − improved";
   std::vector<size_t> rows;
   for (size_t i = 0; i < light.measured.size(); ++i) {
     if (light.sweep.empty() || light.sweep[i] == sweep) rows.push_back(i);

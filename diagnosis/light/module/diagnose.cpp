@@ -28,7 +28,7 @@ ModuleRun run_of(const LightRecording& r, const ModuleDesign& design, const Modu
   quality.used += static_cast<int64_t>(run.sweep.voltage_V.size());
   const auto left =
       static_cast<int64_t>(r.rows()) - dropped - static_cast<int64_t>(run.sweep.voltage_V.size());
-  if (left > 0) quality.rejected["left out of a long recording"] += left;
+  if (left > 0) quality.rejected["thinning"] += left;
   return run;
 }
 

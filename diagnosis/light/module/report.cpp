@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 
 #include "diagnosis/verdict.h"
 
@@ -105,6 +106,31 @@ FoundEffect found_in_module(const ModuleAnswer& answer, size_t chosen, const Thr
   return effect;
 }
 
+// A curve beside the nominal model and the chosen one, each with the light and temperature that it
+// found for the run.
+RecordingSeries curve_of(const ModuleFitter& fitter, const ModuleAnswer& answer, size_t chosen,
+                         const ModuleRun& whole, size_t run) {
+  const auto currents = [&](size_t trial) {
+    std::vector<double> current_A;
+    for (const auto& point :
+         fitter.curve(answer.hypotheses[trial], answer.joint[trial], run, whole)) {
+      current_A.push_back(point.current_A);
+    }
+    return current_A;
+  };
+  LightSeries light;
+  light.name = "current_A";
+  light.voltage_V = whole.sweep.voltage_V;
+  light.measured = whole.sweep.current_A;
+  light.before = currents(0);
+  light.after = currents(chosen);
+  light.noise.assign(light.measured.size(), whole.sigma_A);
+  RecordingSeries series;
+  series.recording = std::filesystem::path(whole.sweep.name).filename().string();
+  series.light = std::move(light);
+  return series;
+}
+
 // One diode describes modules in even light to 0.1 to 0.5 % of their short-circuit current (curves
 // of docs/real_light.md and of measured modules of others), with a cell in the shade or a step to
 // 0.8 % and more.
@@ -194,6 +220,9 @@ Diagnosis described(const ModuleDesign& design, const ModuleNominal& nominal,
   held.explained_fraction =
       explained_fraction(held.chi2_per_sample_before, held.chi2_per_sample_after, held.samples);
   d.holdout = held;
+  for (size_t run = 0; run < data.whole.size(); ++run) {
+    d.series.push_back(curve_of(fitter, answer, chosen, data.whole[run], run));
+  }
   if (!answer.decision.held_out_tests_names) d.warnings.push_back(untested_names(held));
   if (answer.decision.undecided) {
     d.warnings.push_back("something is missing, but not which effect it is: see the alternatives");
@@ -208,6 +237,7 @@ Diagnosis of_all_curves(std::vector<Diagnosis> each) {
   all.holdout.emplace();
   int64_t samples = 0;
   size_t differing = 0;
+  constexpr size_t most_drawn = 12;  // of the curves that differ
   for (Diagnosis& d : each) {
     const auto n = static_cast<double>(d.samples), m = static_cast<double>(samples);
     all.chi2_per_sample_before =
@@ -219,6 +249,9 @@ Diagnosis of_all_curves(std::vector<Diagnosis> each) {
     all.confidence = std::min(all.confidence, d.confidence);
     if (d.verdict == Verdict::consistent) continue;
     ++differing;
+    if (all.series.size() < most_drawn) {
+      std::ranges::move(d.series, std::back_inserter(all.series));
+    }
     all.sentence += (all.sentence.empty() ? "" : " ") + d.sentence;
     if (d.verdict == Verdict::unexplained) {
       all.verdict = Verdict::unexplained;
@@ -232,6 +265,7 @@ Diagnosis of_all_curves(std::vector<Diagnosis> each) {
     for (Alternative& a : d.alternatives) all.alternatives.push_back(std::move(a));
     for (std::string& warning : d.warnings) all.warnings.push_back(std::move(warning));
   }
+  if (differing == 0) all.series = std::move(each.front().series);
   all.samples = samples;
   all.where.channels.push_back({"current_A", all.chi2_per_sample_before});
   all.holdout->explained_fraction =
