@@ -76,8 +76,9 @@ Pinhole camera_of(const Experiment& experiment, const std::vector<DrawnLamp>& la
   return framing(camera, points_m, static_cast<double>(given.height) / given.width);
 }
 
+// In strips of the picture: all points of a large one would need gigabytes.
 SceneView make_view(const OpticalRun& run, const TraceResult& result, const Pinhole& pinhole,
-                    int threads) {
+                    int threads, const std::function<void(double)>& progress) {
   const Experiment& experiment = run.experiment();
   const Camera& camera = experiment.camera;
   const RigidTransform body_from_lab = experiment.lab_from_body.inverse();
@@ -86,14 +87,12 @@ SceneView make_view(const OpticalRun& run, const TraceResult& result, const Pinh
   view.height = camera.height;
   view.oversampling = oversampling;
   const int columns = view.sample_columns(), rows = view.sample_rows();
+  const auto across = static_cast<size_t>(columns), samples = across * static_cast<size_t>(rows);
   const auto sight = [&](size_t i) {
-    const auto across = static_cast<size_t>(columns);
     const Vec3 direction =
         pinhole.direction(view, static_cast<int>(i % across), static_cast<int>(i / across));
     return Sight{body_from_lab.point(pinhole.position_m), body_from_lab.direction(direction)};
   };
-  const auto points =
-      look(run.scene(), static_cast<size_t>(columns) * static_cast<size_t>(rows), sight, threads);
 
   std::vector<std::pair<size_t, FluxMap>> maps;
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {
@@ -103,14 +102,25 @@ SceneView make_view(const OpticalRun& run, const TraceResult& result, const Pinh
   for (const Instance& instance : experiment.scene.instances) {
     view.part_colour.push_back(part_colour(experiment.scene.surfaces[instance.front_surface]));
   }
-  for (size_t i = 0; i < points.size(); ++i) {
-    const VisiblePoint& point = points[i];
-    view.depth_m.push_back(static_cast<float>(point.distance_m));
-    view.part.push_back(static_cast<int32_t>(point.instance));
-    view.normal_lab.push_back(experiment.lab_from_body.direction(point.normal).cast<float>());
-    view.cos_view.push_back(static_cast<float>(std::abs(point.normal.dot(sight(i).direction))));
-    view.irradiance_W_m2.push_back(point.hit ? irradiance_at(run, maps, point)
-                                             : std::numeric_limits<float>::quiet_NaN());
+  view.depth_m.resize(samples);
+  view.part.resize(samples);
+  view.normal_lab.resize(samples);
+  view.cos_view.resize(samples);
+  view.irradiance_W_m2.resize(samples, std::numeric_limits<float>::quiet_NaN());
+  constexpr size_t strip_rows = 64;
+  for (size_t begin = 0; begin < samples; begin += strip_rows * across) {
+    const size_t end = std::min(samples, begin + strip_rows * across);
+    const auto points = look(
+        run.scene(), end - begin, [&](size_t i) { return sight(begin + i); }, threads);
+    for (size_t i = begin; i < end; ++i) {
+      const VisiblePoint& point = points[i - begin];
+      view.depth_m[i] = static_cast<float>(point.distance_m);
+      view.part[i] = static_cast<int32_t>(point.instance);
+      view.normal_lab[i] = experiment.lab_from_body.direction(point.normal).cast<float>();
+      view.cos_view[i] = static_cast<float>(std::abs(point.normal.dot(sight(i).direction)));
+      if (point.hit) view.irradiance_W_m2[i] = irradiance_at(run, maps, point);
+    }
+    if (progress) progress(static_cast<double>(end) / static_cast<double>(samples));
   }
   return view;
 }
@@ -145,7 +155,8 @@ RenderRun run_render(const RunOptions& options, const Console& console) {
   const bool with_lamps = experiment.camera.lamps;
   const auto lamps = with_lamps ? drawn_lamps(experiment) : std::vector<DrawnLamp>();
   const Pinhole camera = camera_of(experiment, lamps);
-  SceneView view = make_view(*run, light, camera, options.threads);
+  SceneView view = make_view(*run, light, camera, options.threads, console.progress("drawing"));
+  console.done();
   if (with_lamps) {
     draw_lamps(view, camera, lamps);
     draw_rays(view, camera,
