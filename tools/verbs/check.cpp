@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <functional>
+#include <set>
 
 #include "attitude/camera/study.h"
 #include "attitude/disturbances/mass/moving_masses.h"
@@ -47,8 +48,9 @@ std::string table_of(const InputError& mistake) {
 // The mistakes, table by table, the first of each.
 class Checker {
  public:
-  Checker(const RunOptions& options, KeyCheck keys)
-      : options_(options), by_declaration_(keys == KeyCheck::by_declaration) {}
+  enum class Of { file, design_of_sweep };
+  Checker(const RunOptions& options, KeyCheck keys, Of of = Of::file)
+      : options_(options), by_declaration_(keys == KeyCheck::by_declaration), of_(of) {}
 
   CheckReport report() {
     if (by_declaration_) {
@@ -87,7 +89,7 @@ class Checker {
     if (file_->settings.has("platform")) check_motion();
     if (fits) check_fit();
     if (is_module) check_module();
-    if (file_->settings.has("sweep")) check_sweep();
+    if (file_->settings.has("sweep") && of_ == Of::file) check_sweep();
     if (!file_->scene_file && !file_->settings.has("platform") && !fits && !is_module) {
       add_mistake(file_->settings.error("", "nothing that a command starts from",
                                         "[scene], [platform], [module] or [fit]"));
@@ -267,25 +269,54 @@ class Checker {
     attempt([&] {
       const SweepPlan plan = read_sweep_plan(file_->others("sweep").front());
       const std::string lacks = lacks_for_search(plan);
-      if (lacks.empty()) {
-        add("optimise", "over " + counted(plan.axes.size(), "key") + " by " + plan.verb);
-      } else {
-        report_.impossible.push_back({"optimise", "[sweep] lacks " + lacks});
-      }
+      const bool can_run = check_designs(plan);
+      const std::string over = counted(plan.designs(), "design") + " by " + plan.verb;
+      std::string no_search, no_sweep;
+      if (!lacks.empty()) no_search = "[sweep] lacks " + lacks;
       if (plan.designs() == 0) {
-        report_.impossible.push_back(
-            {"sweep", "[sweep] lacks count, or values, of an axis with from and to"});
-        return;
+        no_sweep = "[sweep] lacks count, or values, of an axis with from and to";
       }
-      RunOptions first = options_;
-      for (const std::string& one : plan.overrides(0)) first.overrides.push_back(one);
-      read_experiment_text(first.experiment, first.experiment_text(), first.all_overrides());
-      add("sweep", counted(plan.designs(), "design") + " by " + plan.verb);
+      if (!can_run) no_search = no_sweep = plan.verb + " cannot run with its designs";
+      say("optimise", "over " + counted(plan.axes.size(), "key") + " by " + plan.verb, no_search);
+      say("sweep", over, no_sweep);
     });
+  }
+
+  void say(const std::string& command, const std::string& what, const std::string& why_not) {
+    if (why_not.empty()) {
+      add(command, what);
+    } else {
+      report_.impossible.push_back({command, why_not});
+    }
+  }
+
+  // Whether the verb of a sweep can run with the keys of its first and last design.
+  bool check_designs(const SweepPlan& plan) {
+    const KeyCheck keys = by_declaration_ ? KeyCheck::by_declaration : KeyCheck::by_readers;
+    std::set<size_t> designs = {0};
+    if (plan.designs() > 0) designs.insert(plan.designs() - 1);
+    for (const size_t design : designs) {
+      RunOptions options = options_;
+      if (plan.designs() > 0) {
+        for (const std::string& one : plan.overrides(design)) options.overrides.push_back(one);
+      }
+      const CheckReport report = Checker(options, keys, Of::design_of_sweep).report();
+      for (const InputError& mistake : report.mistakes) add_mistake(of_sweep(mistake));
+      const auto is_its_verb = [&](const auto& command) { return command.name == plan.verb; };
+      if (std::ranges::none_of(report.commands, is_its_verb)) return false;
+    }
+    return true;
+  }
+  // Keys of a design are changed as by --set.
+  InputError of_sweep(const InputError& mistake) const {
+    const std::string what = mistake.what(), set = "--set: ";
+    if (!what.starts_with(set) || !options_.overrides.empty()) return mistake;
+    return InputError({options_.experiment.string()}, "sweep: " + what.substr(set.size()), "", "");
   }
 
   const RunOptions& options_;
   bool by_declaration_;
+  Of of_;
   std::vector<Key> tables_ = experiment_keys();
   std::vector<std::string> misread_;  // tables with keys that are wrong
   std::optional<ExperimentFile> file_;
