@@ -85,8 +85,10 @@ ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known) {
   const Experiment& experiment = run.experiment();
   const auto tables = experiment.file.others("array");
   if (tables.size() != 1) {
-    throw InputError({experiment.file.path.string()}, "array",
-                     tables.empty() ? "no table" : "more than one table", "one table [array]");
+    throw InputError(
+        {experiment.file.path.string()}, "array",
+        tables.empty() ? "no table" : "more than one table",
+        "one table [array]: receiver, cells and cell at least (photorque schema --key array)");
   }
   for (const NamedReceiver& receiver : experiment.receivers) {
     if (!receiver.flux_map || receiver.name != "cells") continue;

@@ -18,15 +18,39 @@ struct FoundKey {
   const Key* key;
 };
 
+// "array.gap_mm" is the key "array.gap_m", in another unit.
+bool is_of_key(const std::string& name, const std::string& wanted) {
+  if (name == wanted) return true;
+  const KeyUnit unit = unit_of_key(name), other = unit_of_key(wanted);
+  return !unit.unit.empty() && !other.unit.empty() && unit.stem == other.stem;
+}
+
 void find(const std::vector<Key>& keys, const std::string& written, const std::string& path,
           const std::string& wanted, std::vector<FoundKey>& found) {
   for (const Key& key : keys) {
     const std::string name = written.empty() ? key.name : written + "." + key.name;
     const std::string full = path.empty() ? key.name : path + "." + key.name;
-    if (name == wanted) found.push_back({full, &key});
+    if (is_of_key(name, wanted)) found.push_back({full, &key});
     find(key.keys, name, full, wanted, found);
     for (const Key::Choice& choice : key.choices) {
       find(choice.keys, written, path + " (" + choice.name + ")", wanted, found);
+    }
+  }
+}
+
+// The keys of a table, a line each, and the words of a choice with theirs.
+void print_keys(const Key& table) {
+  for (const Key& key : table.keys) {
+    const std::string otherwise = default_in_words(key);
+    std::printf("  %-28s %s%s%s\n", key.name.c_str(), key.what.c_str(),
+                otherwise.empty() ? "" : "; ", otherwise.c_str());
+  }
+  for (const Key& key : table.keys) {
+    for (const Key::Choice& choice : key.choices) {
+      std::string names;
+      for (const Key& own : choice.keys) names += (names.empty() ? "" : ", ") + own.name;
+      if (names.empty()) continue;
+      std::printf("  with %s = \"%s\": %s\n", key.name.c_str(), choice.name.c_str(), names.c_str());
     }
   }
 }
@@ -40,6 +64,7 @@ void print_key(const std::string& wanted) {
   }
   for (const FoundKey& one : found) {
     std::printf("%s: %s\n", one.path.c_str(), description_of(*one.key).c_str());
+    print_keys(*one.key);
   }
 }
 
