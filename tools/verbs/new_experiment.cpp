@@ -60,6 +60,10 @@ noise_rad_s = 2e-4
 [propagate]
 duration_s = 600
 initial_tilt_deg = 1
+
+[budget]                              # the state of which budget prints the torques
+tilt_deg = 1
+spin_rpm = 1
 )";
 
 std::string quoted(const std::string& text) {

@@ -102,7 +102,8 @@ class ShortText {
   ShortText& operator=(const ShortText&) = delete;
   ~ShortText() {
     if (left_out_ > 0) {
-      print_("… " + std::to_string(left_out_) + " lines more with --verbose");
+      print_("… " + std::to_string(left_out_) + (left_out_ == 1 ? " line" : " lines") +
+             " more with --verbose");
     }
     for (const std::string& line : last_) print_(line);
   }

@@ -1,6 +1,8 @@
 // photorque budget: every disturbance torque at one state, ranked, beside the paper's figures.
 #include "tools/verbs/attitude/budget.h"
 
+#include <algorithm>
+
 #include "attitude/model/platform.h"
 #include "core/constants.h"
 #include "core/errors.h"
@@ -94,6 +96,12 @@ void run(const CommandOptions& options, const Program&) {
                {"paper [N m]", "paper_N_m"},
                {"ours/paper", "ratio"}},
               12);
+  const auto acts = [](const BudgetEntry& e) { return !e.torque_body_N_m.isZero(0.0); };
+  if (!std::ranges::any_of(found.budget.entries, acts)) {
+    console.line(
+        "No torque acts in this state: [budget] tilt_deg, spin_rpm, rate_rad_s or time_s "
+        "state another.");
+  }
   const Table* air = find_table(product, "external_air");
   if (air != nullptr) print_air(console.details(), *air);
   if (found.budget.beside_paper) print_paper(console.details(), product);
