@@ -7,6 +7,7 @@
 #include "core/settings/settings.h"
 #include "core/text/parse.h"
 #include "tools/sweeps/pictures.h"
+#include "tools/sweeps/spread.h"
 #include "tools/sweeps/tolerances.h"
 
 namespace photorque {
@@ -171,6 +172,8 @@ Product sweep_product(const SweepPlan& plan, const SweepResult& result) {
       std::ranges::count_if(result.designs, [](const Design& d) { return !d.error.empty(); }));
   count("designs", result.designs.size());
   if (failed > 0) count("failed_designs", failed);
+  const auto spread = spread_table(plan, result, figure_columns(plan, first_figures(result)));
+  if (spread) product.tables.push_back(*spread);
   if (!result.best) return product;
   count("best_design", *result.best + 1);
   const auto add = [&](const std::string& name, const Design& design, const std::string& column) {

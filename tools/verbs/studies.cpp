@@ -7,6 +7,7 @@
 #include "tools/runs/optical_run.h"
 #include "tools/runs/result.h"
 #include "tools/sweeps/report.h"
+#include "tools/sweeps/spread.h"
 
 namespace photorque {
 namespace {
@@ -88,6 +89,8 @@ void finish_study(Study study, bool may_run, Product more) {
   append(out.product, std::move(more));
   const Changes best = result.best ? study.plan.overrides(*result.best) : Changes{};
   print_best(study.console, study.plan, result, best);
+  const auto spread = std::ranges::find(out.product.tables, "spread", &Table::name);
+  if (spread != out.product.tables.end()) print_spread(study.console, study.plan, *spread);
   for (const std::string& warning : provenance.warnings) study.console.line("WARNING: " + warning);
   if (result.best) out.files.push_back(best_experiment(study, best));
   study.engine.database().write_designs(out.product.tables.front());
