@@ -19,7 +19,7 @@ Estimate estimate_from_replicates(std::span<const double> replicates) {
 
 namespace {
 
-// Of a table that may be constant; null if there is none.
+// The column of this name, of a const or mutable table; null if the table has none.
 template <class T>
 auto* column_in(T& table, std::string_view name) {
   const auto found = std::ranges::find(table.columns, name, &Table::Column::name);
@@ -33,17 +33,17 @@ NumericalError fault(const Table& table, std::string_view column, const std::str
 Table& append(Table& table, Table::Column column) {
   if (column_in(table, column.name) != nullptr) throw fault(table, column.name, "added twice");
   if (!table.columns.empty() && column.size() != table.columns.front().size()) {
-    throw fault(table, column.name, "not as long as the first column");
+    throw fault(table, column.name, "its length differs from that of the first column");
   }
   table.columns.push_back(std::move(column));
   return table;
 }
 
-// Of a table that may be constant.
+// The column of this name, of a const or mutable table; NumericalError if the table has none.
 template <class T>
 auto& required_column(T& table, std::string_view name) {
   auto* const found = column_in(table, name);
-  if (found == nullptr) throw fault(table, name, "there is none of this name");
+  if (found == nullptr) throw fault(table, name, "the table has no column of this name");
   return *found;
 }
 
@@ -65,20 +65,21 @@ Table& Table::add(std::string column_name, std::vector<std::string> texts) {
 
 Table::Column& Table::Row::cell_column(std::string_view column_name) const {
   Column& column = table_->column(column_name);
-  if (column.size() != index_) throw fault(*table_, column_name, "set twice, or left out before");
+  if (column.size() != index_)
+    throw fault(*table_, column_name, "set twice in one row, or not set in an earlier row");
   return column;
 }
 
 Table::Row& Table::Row::set(std::string_view column_name, double value) {
   Column& column = cell_column(column_name);
-  if (!column.texts.empty()) throw fault(*table_, column_name, "a number among texts");
+  if (!column.texts.empty()) throw fault(*table_, column_name, "a number in a column of texts");
   column.values.push_back(value);
   return *this;
 }
 
 Table::Row& Table::Row::set(std::string_view column_name, std::string text) {
   Column& column = cell_column(column_name);
-  if (!column.values.empty()) throw fault(*table_, column_name, "a text among numbers");
+  if (!column.values.empty()) throw fault(*table_, column_name, "a text in a column of numbers");
   column.texts.push_back(std::move(text));
   return *this;
 }

@@ -25,7 +25,7 @@ inline constexpr NumberKey intensity("intensity_W_sr", Range::positive(),
                                      {.optional = true});
 inline constexpr NumberKey half_angle(
     "half_angle_deg", {0.0, 0.5 * pi, true, true},
-    "at which it has fallen to half, by a power of the cosine: 60 is Lambert's law",
+    "angle of half the intensity, which is a power of the cosine; 60 is Lambert's law",
     {.optional = true});
 inline constexpr NumberKey wavelength("wavelength_nm", {1e-7, 2e-6}, "of the markers",
                                       {.optional = true});
@@ -78,16 +78,20 @@ inline constexpr ChoiceKey pose_weights("pose_weights",
 }  // namespace tracking_key
 
 namespace study_key {
-inline constexpr NumberKey max_tilt("max_tilt_deg", {0.0, 0.5 * pi, true, true}, "of the tables",
+inline constexpr NumberKey max_tilt("max_tilt_deg", {0.0, 0.5 * pi, true, true},
+                                    "largest tilt in the tables",
                                     {.usually = "the platform's stop, else 30"});
 inline constexpr Vec3Key rate("rate_rad_s", {0.0, 0.0, 0.0},
                               "of the platform while images are taken, body axes");
 inline constexpr NumberKey calibration("calibration_px", Range::positive(),
-                                       "error of calibration in the tables", {.optional = true});
+                                       "calibration error assumed in the tables",
+                                       {.optional = true});
 inline constexpr NumbersKey distortion_error(
-    "distortion_error", {-10.0, 10.0}, "[k1, k2, p1, p2] that no calibration knows, in the tables",
+    "distortion_error", {-10.0, 10.0},
+    "uncalibrated distortion assumed in the tables: [k1, k2, p1, p2]",
     {.usually = "[-0.1, 0, 1e-3, 1e-3]", .size = 4});
-inline constexpr IntegerKey images("images", 10, 1'000'000, "simulated at each of four attitudes",
+inline constexpr IntegerKey images("images", 10, 1'000'000,
+                                   "number of images simulated at each of four attitudes",
                                    {.optional = true});
 inline constexpr IntegerKey grid("grid", 5, 1000, "bins of the maps along a side",
                                  {.optional = true});
@@ -97,7 +101,7 @@ inline constexpr NumbersKey focal_length("focal_length_mm", Range::positive(),
 inline constexpr NumbersKey board_scale("board_scale", Range::positive(),
                                         "[from, to] of the same map",
                                         {.usually = "[0.5, 2]", .size = 2});
-inline constexpr TableKey camera_study("camera_study", "what `camera` looks at");
+inline constexpr TableKey camera_study("camera_study", "tables and maps of the command `camera`");
 }  // namespace study_key
 
 // read_tracking_camera().

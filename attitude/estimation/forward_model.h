@@ -1,9 +1,13 @@
-// The attitude as the estimator sees it: platforms that are propagated beside their recordings.
+// The forward model of attitude motion for the estimator. It propagates the motion of the platform
+// in each run and compares it with the recording of that run.
 //
-// A run's own parameters are its initial state, along the tangent of the attitude (rotation about
-// body axes, rate, the extra states of disturbances), and the per-run parameters of the hypothesis.
-// A point holds, for every run, the quaternion w, x, y, z, the rate, the extra states and the
-// per-run values; then the values of the shared parameters.
+// The parameters of a run are its initial state and the per-run parameters of the hypothesis. The
+// initial state is parametrised in the tangent space: rotation vector about body axes, angular
+// rate, extra states of disturbances.
+//
+// The vector of a point contains for every run: the quaternion w, x, y, z, the angular rate, the
+// extra states and the values of the per-run parameters. After all runs it contains the values of
+// the shared parameters.
 #pragma once
 
 #include "attitude/estimation/hypothesis.h"
@@ -14,17 +18,19 @@ namespace photorque {
 
 class AttitudeForwardModel final : public inference::ForwardModel {
  public:
-  // `nominal` holds everything that a point does not; the runs are those of nominal.runs. `extra`:
-  // parameters that are not free, differentiated after the shared ones, without prior. `runs` must
-  // outlive this.
+  // `nominal` supplies everything that a point does not contain. `runs` are the recordings of
+  // nominal.runs, in the same order, and must outlive this object. `extra`: parameters that the
+  // hypothesis does not vary. Derivatives by them follow those by the shared parameters; they have
+  // no prior.
   AttitudeForwardModel(Hypothesis nominal, const std::vector<Observation>& runs,
                        std::vector<Free> extra, double tolerance);
 
+  // The point of a hypothesis, and the hypothesis at a point.
   Eigen::VectorXd point_of(const Hypothesis& h) const;
   Hypothesis hypothesis_at(const Eigen::VectorXd& at) const;
 
   inference::Parameters parameters(const Eigen::VectorXd& at) const override;
-  // By a window of a run: its first blocks, 20 at least.
+  // request.window selects the first blocks of a run, at least 20.
   inference::NormalSums sums(const Eigen::VectorXd& at, Eigen::Index run,
                              const inference::Request& request) const override;
   Eigen::VectorXd stepped(const Eigen::VectorXd& at, const Eigen::VectorXd& step) const override;
@@ -34,7 +40,7 @@ class AttitudeForwardModel final : public inference::ForwardModel {
   const std::vector<Observation>& runs_;
   std::vector<Free> extra_;
   double tolerance_;
-  std::vector<Variable> variables_;  // of one run, in the order of its sums
+  std::vector<Variable> variables_;  // the parameters of one run, in the order of its sums
 };
 
 }  // namespace photorque

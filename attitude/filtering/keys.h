@@ -21,11 +21,13 @@ inline constexpr NumberKey disturbed_rate_walk("disturbed_rate_walk", Range::pos
                                                "likewise, in addition to the modelled torques",
                                                {.usually = "of maximum likelihood"});
 inline constexpr NumberKey rate_sigma("rate_sigma_rad_s", FilterSettings{}.rate_sigma_rad_s,
-                                      Range::positive(), "of the rate before the first reading");
+                                      Range::positive(),
+                                      "standard deviation of the rate before the first reading");
 inline constexpr IntegerKey search_readings("search_readings", 2000, 50, 100'000'000,
                                             "number of readings for the maximum-likelihood search");
-inline constexpr IntegerKey runs("runs", 20, 0, 100'000,
-                                 "simulated for the consistency, where there is no recording");
+inline constexpr IntegerKey runs(
+    "runs", 20, 0, 100'000,
+    "number of simulated runs for the consistency test, if no recording is given");
 inline constexpr TableKey estimate("estimate", "how the attitude is estimated");
 }  // namespace estimate_key
 Key estimate_table();

@@ -44,15 +44,16 @@ constexpr ChoiceKey topology(
     "kind of platform and its bearing");
 constexpr ChoiceKey axis("axis", {"x", "y", "z"}, 2, "axis of rotation");
 constexpr NumberKey tilt_limit("tilt_limit_deg", {0.0, pi, true, false},
-                               "the bearing's stop: a run ends there", {.usually = "none"});
+                               "tilt at the mechanical stop of the bearing; a run ends there",
+                               {.usually = "none"});
 constexpr NumberKey battery_capacity(
     "battery_capacity_Ah", Range::positive(),
-    "charge of the full battery: the event `battery_empty` is where it is drawn; with "
-    "`[array.day]` its energy is this times `battery_voltage_V`",
+    "charge of the full battery. The event `battery_empty` occurs when it is drawn. With "
+    "`[array.day]`, the energy of the battery is this times `battery_voltage_V`",
     {.usually = "none: never empty"});
 constexpr NumberKey battery_voltage("battery_voltage_V", usual_battery_voltage_V, Range::positive(),
                                     "nominal");
-constexpr TableKey platform("platform", "what turns");
+constexpr TableKey platform("platform", "the rotating body");
 }  // namespace platform_key
 
 // The table with value and sigma, or the platform's own.

@@ -24,31 +24,34 @@ constexpr NumberKey output_rate("output_rate_Hz", Range::positive(),
 constexpr IntegerKey history_rows("history_rows", 5000, 2, 20'000'000,
                                   "rows of `time_history.csv` at most");
 constexpr NumberKey tolerance("tolerance", PropagationOptions{}.tolerance,
-                              {1e-13, 1e-3, false, false}, "of a step");
+                              {1e-13, 1e-3, false, false},
+                              "estimated error of a step, relative to 1 rad and 1 rad/s");
 constexpr NumberKey longest_step("longest_step_s", Range::positive(), "of the integrator",
                                  {.usually = "none"});
 constexpr NumberKey tick_rate(
     "tick_rate_Hz", 0.0, {0.0, 1e6, false, false},
-    "steps also end at these ticks, as in a run in real time; 0: no ticks");
+    "integration steps also end at ticks of this rate, as in `serve`; 0: no ticks");
 constexpr IntegerKey seed("seed", 1, 0, INT64_MAX, "of the sensors' noise; also `--seed`");
 constexpr NumberKey initial_tilt("initial_tilt_deg", 0.0, {0.0, pi, false, false},
-                                 "leans by the tilt towards the heading; *or*");
+                                 "tilt at the start, towards `initial_heading_deg`; *or*");
 constexpr NumberKey initial_heading("initial_heading_deg", 0.0, {},
-                                    "azimuth of the direction it leans to");
+                                    "azimuth of the tilt direction at the start");
 constexpr NumberKey initial_yaw("initial_yaw_deg", {}, "azimuth of body x",
-                                {.usually = "that of a lean without a turn about body z"});
+                                {.usually = "that of a tilt without rotation about body z"});
 constexpr NumbersKey initial_attitude("initial_attitude", {},
                                       "[w, x, y, z], lab from body, unit to 1e-3",
                                       {.optional = true, .size = 4});
 constexpr Vec3Key initial_rate("initial_rate_rad_s", {0.0, 0.0, 0.0}, "body axes");
 constexpr NumbersKey initial_position("initial_position_m", {}, "of a planar platform, lab x and y",
                                       {.usually = "0, 0", .size = 2});
-constexpr NumbersKey initial_velocity("initial_velocity_m_s", {}, "the same",
+constexpr NumbersKey initial_velocity("initial_velocity_m_s", {},
+                                      "of a planar platform, lab x and y",
                                       {.usually = "0, 0", .size = 2});
-constexpr NumberKey initial_charge("initial_charge_Ah", 0.0, {}, "drawn before");
+constexpr NumberKey initial_charge("initial_charge_Ah", 0.0, {},
+                                   "charge drawn from the battery before the start");
 constexpr NumberKey initial_time(
     "initial_time_s", 0.0, {},
-    "of the first row; commands, measured series and laws in time count in it");
+    "of the first row; commands, measured series and functions of time use this time");
 constexpr TextKey commands(
     "commands",
     "CSV: `t_s` and any of `command_x_N_m`, `…_y_…`, `…_z_…`, `command_x_N`, `command_y_N` (of "

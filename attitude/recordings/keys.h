@@ -23,9 +23,10 @@ inline constexpr ChoiceKey angle_sequence(
      {"yxz", "q = Ry(pitch) Rx(roll) Rz(yaw)"},
      {"yzx", "q = Ry(pitch) Rz(yaw) Rx(roll)"},
      {"zxy", "q = Rz(yaw) Rx(roll) Ry(pitch)"}},
-    0, "in which roll, pitch and yaw are turned, about axes that turn along");
+    0, "order of the rotations by roll, pitch and yaw, each about an axis of the rotated frame");
 inline constexpr FlagKey remove_outliers(
-    "remove_outliers", true, "empties cells of attitude and gyro far from all neighbours");
+    "remove_outliers", true,
+    "removes readings of attitude and gyro that are far from all neighbours");
 inline constexpr TableKey recording("recording", "how files of recordings are read");
 }  // namespace recording_key
 

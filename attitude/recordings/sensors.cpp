@@ -27,8 +27,9 @@ constexpr TableKey gyro("gyro", "angular rate",
                         {.usually = "without any `[sensors]` an ideal one"});
 constexpr NumberKey accelerometer_noise("noise_m_s2", 0.0, Range::not_negative(),
                                         "per reading and axis; 0: found in the readings");
-constexpr Vec3Key position("position_m", {0.0, 0.0, 0.0},
-                           "from the centre of rotation (of mass, where nothing carries it)");
+constexpr Vec3Key position(
+    "position_m", {0.0, 0.0, 0.0},
+    "from the centre of rotation; of a platform without bearing, from the centre of mass");
 constexpr Vec3Key bias("bias_m_s2", {0.0, 0.0, 0.0}, "offset of the readings");
 constexpr TableKey accelerometer("accelerometer", "specific force; for `diagnose`");
 constexpr NumberKey magnetometer_noise("noise_T", 0.0, Range::not_negative(),

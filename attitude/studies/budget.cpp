@@ -33,22 +33,23 @@ constexpr TextKey name("name", "of the bearing");
 constexpr NumberKey radius("radius_m", Range::positive(), "of the ball");
 constexpr NumberKey half_angle("half_angle_deg", {0.0, 0.5 * pi, true, false}, "of the socket");
 constexpr NumberKey gap("gap_m", Range::positive(), "of the film");
-constexpr NumberKey inlet("inlet_Pa", Range::positive(), "absolute");
-constexpr NumberKey load("load_N", Range::positive(), "rated");
-constexpr NumberKey drag("drag_N_m", 0.0, Range::not_negative(), "0: not printed");
+constexpr NumberKey inlet("inlet_Pa", Range::positive(), "absolute pressure of the air supply");
+constexpr NumberKey load("load_N", Range::positive(), "rated load");
+constexpr NumberKey drag("drag_N_m", 0.0, Range::not_negative(),
+                         "drag torque in the catalogue; 0: not given");
 constexpr NumberKey drag_rate("drag_rate_rpm", usual.drag_rate_rad_s, Range::positive(),
-                              "load at which the drag was measured");
+                              "rate at which the drag was measured");
 constexpr TablesKey bearing("bearing", "a bearing of a catalogue, compared with the paper's model");
 constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi, false, false}, "attitude, as in `[propagate]`");
-constexpr NumberKey heading("heading_deg", 0.0, {}, "where it leans to");
+constexpr NumberKey heading("heading_deg", 0.0, {}, "azimuth of the tilt direction");
 constexpr NumberKey spin("spin_rpm", 0.0, {}, "about the lab's vertical");
-constexpr Vec3Key rate("rate_rad_s", {0.0, 0.0, 0.0}, "body axes, added");
+constexpr Vec3Key rate("rate_rad_s", {0.0, 0.0, 0.0}, "body axes, added to `spin_rpm`");
 constexpr NumberKey state_of_charge("state_of_charge", Range::fraction(),
                                     "below 1 needs `platform.battery_capacity_Ah`; *or*",
                                     {.usually = "1"});
 constexpr NumberKey charge_drawn("charge_drawn_Ah", 0.0, Range::not_negative(),
                                  "since the battery was full");
-constexpr NumberKey time("time_s", 0.0, {}, "of laws in time");
+constexpr NumberKey time("time_s", 0.0, {}, "for torques that depend on time");
 constexpr TableKey budget("budget", "the state at which torques are compared");
 }  // namespace budget_key
 

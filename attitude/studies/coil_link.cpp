@@ -12,11 +12,11 @@ namespace photorque {
 
 namespace {
 
-// A point in the cylindrical coordinates of a filament.
+// A point in the cylindrical coordinates of a circular filament, with z along its axis.
 struct FromFilament {
   double z = 0.0, rho = 0.0;
-  Vec3 outward = Vec3::Zero();  // the part across the axis, not normalised: length rho
-  double q = 0.0;               // square of the largest distance to the wire
+  Vec3 outward = Vec3::Zero();  // component perpendicular to the axis, of length rho
+  double q = 0.0;               // square of the largest distance to the wire, m²
   EllipticIntegrals elliptic;
 };
 
@@ -33,14 +33,14 @@ FromFilament seen_from(const CircularFilament& filament, const Vec3& at_m) {
   return seen;
 }
 
-// So near the axis that the limit is right to rounding.
+// Whether the point is so close to the axis that the limit for rho → 0 is exact to rounding errors.
 bool on_axis(const FromFilament& seen, double radius_m) {
   return seen.rho < 1e-8 * radius_m;
 }
 
 constexpr double scale_T_m_A = vacuum_permeability_N_A2 / (2.0 * pi);
 
-// The circle as points and tangents, of unit length round the whole circle.
+// A point of a circle, and the derivative of the point by the angle (a tangent of length radius).
 struct OnCircle {
   Vec3 point_m, tangent_m;  // d point / d angle
 };
@@ -59,8 +59,9 @@ class Circle {
   Vec3 u_, v_;
 };
 
-// The mean of a periodic function over a turn, by the trapezoidal rule, whose error falls
-// exponentially: nodes are doubled until the mean has settled. `size` is a norm.
+// The mean of a periodic function over one turn by the trapezoidal rule. The error of this rule
+// decreases exponentially with the number of nodes. The number is doubled until the mean has
+// converged. `size` is a norm of Value, and `scale` a typical size of the function.
 template <class Value, class Function, class Size>
 Value mean_over_turn(const Function& f, const Size& size, double scale) {
   constexpr int most = 1 << 15;
@@ -74,7 +75,8 @@ Value mean_over_turn(const Function& f, const Size& size, double scale) {
     const double change = size(Value(sum - between)) / count;
     sum += between;
     count *= 2;
-    // The change is the error of half as many nodes, whose square the error now is of.
+    // The change estimates the error of the previous mean. Doubling the nodes of a rule with
+    // exponential convergence squares the relative error.
     if (change <= 1e-7 * scale && change * change <= settled * scale * scale) return sum / count;
     if (count >= most) throw NumericalError("two coils touch");
   }
@@ -109,7 +111,8 @@ double mutual_inductance_H(const CircularFilament& a, const CircularFilament& b)
     const OnCircle here = circle.at(angle_rad);
     return filament_potential_T_m_A(a, here.point_m).dot(here.tangent_m);
   };
-  // Of fully coupled coils; much weaker coupling has correspondingly fewer correct digits.
+  // The inductance of strongly coupled coils. If the coupling is much weaker, the result has
+  // correspondingly fewer correct digits.
   const double distance_m = (a.centre_m - b.centre_m).norm() + a.radius_m + b.radius_m;
   const double scale = scale_T_m_A * a.radius_m * a.radius_m * b.radius_m * b.radius_m /
                        (distance_m * distance_m * distance_m);
@@ -270,7 +273,8 @@ double best_link_efficiency(const CoilCircuit& circuit) {
   return x2 / (sum * sum);
 }
 
-// −jωM I₁ = (R₂ + R_L + jX) I₂. What the first coil takes is R₁ |I₁|²/2 and what the second does.
+// Kirchhoff's law of the second coil: −jωM I₁ = (R₂ + R_L + jX) I₂. The source supplies the losses
+// R₁ |I₁|²/2 of the first coil and the power (R₂ + R_L) |I₂|²/2 of the second one.
 CoilCurrents currents_for(const CoilCircuit& circuit, double load_ohm, double power_W) {
   const std::complex<double> loop(circuit.resistance_2_ohm + load_ohm, circuit.reactance_2_ohm);
   const std::complex<double> induced(0.0, -circuit.angular_frequency_rad_s * circuit.mutual_H);

@@ -1,5 +1,6 @@
-// Recordings of motion as a domain of the search for missing effects (inference/domain.h): runs are
-// observations, candidates are effects of the catalogue and empirical laws.
+// The domain of attitude motion for the search for missing effects. It implements the interface of
+// inference/domain.h, where the functions are described. Runs are observations of recordings of
+// motion. Candidates are the effects of the catalogue and empirical torques.
 #pragma once
 
 #include "diagnosis/attitude/effects/scan.h"
@@ -17,7 +18,7 @@ class AttitudeDomain {
   using Runs = std::vector<Observation>;
   using Effort = inference::Effort;
 
-  // `all` must outlive this.
+  // `all` must outlive this object.
   explicit AttitudeDomain(const Candidates& all);
 
   const std::vector<inference::CandidateTraits>& candidates() const { return traits_; }
@@ -49,7 +50,8 @@ class AttitudeDomain {
                                          const Runs& runs, const Runs& averages, int threads) const;
 
   Runs average(const Trial& about, const Runs& runs, size_t blocks) const;
-  // Each piece has enough complete attitudes for its own initial conditions.
+  // Cuts each run into `pieces` parts. Parts with too few complete attitudes to fit initial
+  // conditions are left out.
   Runs cut(const Runs& runs, size_t pieces) const;
   double excess_sigma(const Trial& trial, const Runs& runs) const;
 

@@ -10,8 +10,9 @@ namespace {
 
 constexpr size_t folds = 5;
 
-// The segment of each row. Rows of a scan that follow each other lie side by side and share no
-// error; those of a curve or of a run over time may, and stay together by blocks.
+// The segment of each row. Neighbouring rows of a scan have independent errors and go to different
+// segments. The errors of neighbouring rows of a curve or of a run over time may be correlated.
+// These rows are therefore assigned to segments in blocks.
 std::vector<size_t> segments_of(const LightRun& run, size_t count) {
   constexpr size_t blocks_of_a_segment = 4;
   const bool is_scan = run.recording().kind == LightRecording::Kind::scan;
@@ -22,7 +23,7 @@ std::vector<size_t> segments_of(const LightRun& run, size_t count) {
   return segment;
 }
 
-// χ² of every segment, each predicted from a fit without it.
+// χ² of every segment. Each segment is predicted by a fit to the rows of the other folds.
 class Segments {
  public:
   Segments(const LightCandidates& all, const std::vector<FittedRun>& runs, int threads)
@@ -65,8 +66,8 @@ class Segments {
   const std::vector<FittedRun>& runs_;
   int threads_;
   size_t count_;
-  std::vector<std::vector<size_t>> segment_;    // of each run's rows
-  std::vector<std::vector<FittedRun>> fitted_;  // of each fold
+  std::vector<std::vector<size_t>> segment_;    // [run][row]: the segment of a row
+  std::vector<std::vector<FittedRun>> fitted_;  // [fold][run]: the rows that are fitted
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
-// How well explanations of light predict segments of recordings that their fits left out.
+// Cross-validation of models of light: prediction of segments of recordings that a fit left out.
 //
-// A segment holds rows from everywhere in a recording: a cell or a shadow changes a part of a curve
-// or a scan, and every segment has to show it.
+// The rows of a segment are spread over the whole recording. A cell or a shadow changes only a part
+// of a curve or scan, and this change must be visible in every segment.
 #pragma once
 
 #include <optional>
@@ -11,9 +11,9 @@
 
 namespace photorque {
 
-// Standard errors by which segments of the runs are predicted better with the candidate at `which`
-// of the trial than without it; a fifth of the segments is left out of the fits in turn. Nothing
-// where the runs have too few rows.
+// The gain of the candidate `which` of the trial in five-fold cross-validation, in standard errors:
+// positive if the trial predicts left-out segments of the runs better with the candidate than
+// without it. Each fit leaves out a fifth of the segments. nullopt if a run has too few rows.
 std::optional<double> gain_over_segments(const LightTrial& trial, size_t which,
                                          const LightCandidates& all,
                                          const std::vector<FittedRun>& runs, int threads);

@@ -23,21 +23,24 @@ constexpr Range temperatures{1.0, 1000.0};
 constexpr NumberKey air("air_K", temperatures, "of the air around",
                         {.usually = "`environment.air_temperature_K`, else 293.15"});
 constexpr NumberKey surroundings(
-    "surroundings_K", temperatures, "that the faces radiate to",
+    "surroundings_K", temperatures, "temperature of the surroundings to which the faces radiate",
     {.usually = "`air_K`; with a disturbance `\"orbit\"` 2.725, deep space"});
 constexpr NumberKey convection(
     "convection_W_m2_K", Range::not_negative(),
-    "of each face; 0: a vacuum; wind adds about 4 W/m²K for each m/s (McAdams)",
+    "heat transfer coefficient of each face; 0: vacuum; wind adds about 4 W/m²K per m/s (McAdams)",
     {.usually = "natural convection in still air; with a disturbance `\"orbit\"` 0"});
 constexpr NumberKey emissivity("emissivity", usual.emissivity, Range::fraction(),
                                "of each face in the infrared (cover glass 0.84)");
-constexpr NumberKey absorptance("absorptance", usual.absorptance, Range::fraction(),
-                                "of the light on the cells; at least what they deliver");
+constexpr NumberKey absorptance(
+    "absorptance", usual.absorptance, Range::fraction(),
+    "absorbed fraction of the light on the cells; at least their efficiency");
 constexpr IntegerKey faces("faces", usual.faces, 1, 2,
-                           "that give off heat; 1: the back is insulated");
-constexpr NumberKey capacity("capacity_J_m2_K", usual.capacity_J_m2_K, Range::positive(),
-                             "of runs over time, per area of the cells; about 1 mm of glass");
-constexpr NumberKey start("start_K", temperatures, "of the cells where a run over time begins",
+                           "number of faces that give off heat; 1: the back is insulated");
+constexpr NumberKey capacity(
+    "capacity_J_m2_K", usual.capacity_J_m2_K, Range::positive(),
+    "heat capacity per area of the cells, for simulations over time; about 1 mm of glass");
+constexpr NumberKey start("start_K", temperatures,
+                          "initial temperature of the cells in simulations over time",
                           {.usually = "`air_K`; with a disturbance `\"orbit\"` 293.15"});
 }  // namespace thermal_key
 

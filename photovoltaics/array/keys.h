@@ -57,26 +57,29 @@ inline constexpr NumberKey photocurrent_slope("photocurrent_slope_per_K", {},
                                               "fraction per kelvin; about 4e-4 in sunlight");
 inline constexpr IntegerKey index("index", 0, most_cells - 1, "row · columns + column",
                                   {.varies = true});
-inline constexpr NumberKey photocurrent_factor("photocurrent_factor", 1.0, {0.0, 1e6, false, false},
-                                               "of what its light would give");
+inline constexpr NumberKey photocurrent_factor(
+    "photocurrent_factor", 1.0, {0.0, 1e6, false, false},
+    "multiplies the photocurrent that follows from the light on the cell");
 }  // namespace cell_key
 
 namespace array_key {
-inline constexpr Word diodes[] = {{"none", "none"},
-                                  {"ideal", "no current back, exactly `drop_V` on"},
-                                  {"junction", "an exponential with a series resistance"}};
+inline constexpr Word diodes[] = {
+    {"none", "none"},
+    {"ideal", "no reverse current; exactly `drop_V` when it conducts"},
+    {"junction", "an exponential with a series resistance"}};
 
 inline constexpr ChoiceKey series("series", {"columns", "rows"}, 0,
-                                  "serpentine in which cells follow each other");
-inline constexpr IntegerKey strings("strings", 1, 1, most_cells,
-                                    "equal parts of the serpentine, in parallel; divides the cells",
-                                    {.varies = true});
+                                  "order of the cells: a serpentine along columns or rows");
+inline constexpr IntegerKey strings(
+    "strings", 1, 1, most_cells,
+    "number of equal parts of the serpentine, in parallel; must divide the number of cells",
+    {.varies = true});
 inline constexpr IntegerKey bypass_every(
     "bypass_every", 1, most_cells,
-    "cells per bypass diode, at most those of a string, the last group shorter",
+    "number of cells per bypass diode, at most that of a string; the last group may have fewer",
     {.usually = "a whole string", .varies = true});
 inline constexpr FlagKey cross_tied("cross_tied", false,
-                                    "ties cells of equal place in all strings");
+                                    "connects cells at equal positions of all strings in parallel");
 inline constexpr TextsKey circuit(
     "circuit",
     "instead of `strings`, `bypass_every` and `cross_tied`: the serpentine in equal parts, the "
@@ -86,56 +89,61 @@ inline constexpr TextsKey circuit(
     {.optional = true});
 inline constexpr OtherKey wiring(
     "wiring", Key::an_array,
-    "instead of the five keys above: `[string, …]`, a string `[substring, …]` with a "
-    "bypass diode each, a substring `[cell, …]`, each cell at most once; `[cell, …]` in "
-    "place of a cell is cells in parallel, a list in place of one of those is cells in series, "
-    "and so on by turns; `\"bypass\"` at the head of such a list is a diode beside it",
+    "instead of the five keys above: `[string, …]`. A string is `[substring, …]`, each with a "
+    "bypass diode; a substring is `[cell, …]`, each cell at most once. A list in place of a cell "
+    "contains cells in parallel, a list inside that list cells in series, and so on alternately. "
+    "`\"bypass\"` at the head of such a list adds a diode in parallel with it",
     {.optional = true});
-inline constexpr ChoiceKey bypass("bypass", diodes, 1, "the diode over every substring");
-inline constexpr ChoiceKey blocking("blocking", diodes, 0, "the diode in every string");
-inline constexpr TableKey bypass_diode("bypass_diode", "what the bypass diodes are");
-inline constexpr TableKey blocking_diode("blocking_diode", "what the blocking diodes are");
+inline constexpr ChoiceKey bypass("bypass", diodes, 1,
+                                  "bypass diode in parallel with every substring");
+inline constexpr ChoiceKey blocking("blocking", diodes, 0,
+                                    "blocking diode in series with every string");
+inline constexpr TableKey bypass_diode("bypass_diode", "parameters of the bypass diodes");
+inline constexpr TableKey blocking_diode("blocking_diode", "parameters of the blocking diodes");
 inline constexpr OtherKey cells(
     "cells", Key::an_array | Key::a_text,
     "[columns, rows], at most 100000, along u and v of the map: cell number = row · columns + "
     "column, from 0; or `\"mesh\"`: every connected piece of the surface under the map is a cell "
-    "(triangles that share an edge, on one instance of a mesh); the receiver's node holds the "
-    "cells alone. A lattice is numbered as above; others stand in one row in their order, with "
-    "their centres in `cells.csv`");
+    "(triangles that share an edge, on one instance of a mesh). The receiver's node must then "
+    "contain cells only. Cells on a lattice are numbered as above, others in their order in the "
+    "mesh, as one row; `cells.csv` has their centres");
 inline constexpr NumbersKey low("low_m", {}, "[u, v] of its lower corner", {.size = 2});
 inline constexpr NumbersKey high("high_m", {}, "[u, v] of its upper corner", {.size = 2});
 inline constexpr TablesKey rectangle(
     "rectangle",
-    "one per cell, instead of `cells`, anywhere on the map (in the coordinates of the "
-    "irradiance map; on a map over `\"uv\"` those)",
+    "one rectangle per cell, instead of `cells`, anywhere on the irradiance map, in the "
+    "coordinates u and v of the map",
     {.completes = true});
 inline constexpr NumberKey gap("gap_m", 0.0, Range::not_negative(),
-                               "between cells; on a map over `\"uv\"` a fraction of it");
-inline constexpr NumberKey margin("margin_m", 0.0, Range::not_negative(), "around them, likewise");
+                               "gap between cells; on a map over `\"uv\"` a fraction of the map");
+inline constexpr NumberKey margin("margin_m", 0.0, Range::not_negative(),
+                                  "margin around the cells, in the same unit");
 inline constexpr NumberKey temperature(
     "temperature_K", {1.0, 1000.0},
-    "of cells and diodes, in every run; the diodes' `saturation_A` is the one at this temperature, "
-    "or at 298.15 K, and does not change with that of the cells",
+    "of cells and diodes, in every run. The `saturation_A` of the diodes is valid at this "
+    "temperature, or at 298.15 K if it is not given, and does not follow the cells' temperature",
     {.usually = "the steady state of `[array.thermal]`, over time its balance; `diagnose` 298.15"});
 inline constexpr NumberKey rated_temperature(
     "rated_temperature_K", ArrayDesign{}.rated_temperature_K, {1.0, 1000.0},
-    "of the cells, above which there is a warning: 85 °C, the hot end of the thermal cycles that "
-    "modules pass (IEC 61215)");
+    "of the cells; warmer cells give a warning. 85 °C is the maximum of the thermal cycling test "
+    "of modules (IEC 61215)");
 inline constexpr TableKey thermal(
-    "thermal", "what the cells' temperature follows from, where `temperature_K` is not stated");
-inline constexpr TableKey cell_parameters("cell_parameters",
-                                          "single numbers of it replaced, for one area");
+    "thermal", "heat balance of the cells, used if `temperature_K` is not given");
+inline constexpr TableKey cell_parameters(
+    "cell_parameters", "parameters that replace those of `cell`, for one reference area");
 inline constexpr TablesKey cell_override(
     "cell_override",
-    "a cell that differs from the others; its photocurrent grows with the temperature as theirs");
+    "a cell that differs from the others; its photocurrent has their temperature coefficient");
 inline constexpr NumberKey quantum_efficiency_peak(
     "quantum_efficiency_peak", 0.95, Range::fraction(),
-    "of the default shape, at 800 nm; or `[array.quantum_efficiency]`");
+    "external quantum efficiency at 800 nm, with the default shape; or "
+    "`[array.quantum_efficiency]`");
 inline constexpr NumbersKey wavelength("wavelength_nm", Range::positive(), "at least two, rising");
 inline constexpr NumbersKey efficiency("efficiency", Range::fraction(),
-                                       "electrons per photon at each");
-inline constexpr TableKey quantum_efficiency("quantum_efficiency", "as measured");
-inline constexpr TableKey cover("cover", "the glass over the cells, where their material has none",
+                                       "electrons per photon at each wavelength");
+inline constexpr TableKey quantum_efficiency("quantum_efficiency",
+                                             "measured external quantum efficiency");
+inline constexpr TableKey cover("cover", "cover glass, if the material of the cells has none",
                                 {.usually = "none"});
 }  // namespace array_key
 

@@ -17,17 +17,18 @@ constexpr Tracker usual;
 constexpr TextsKey kinds(
     "kinds",
     "of `\"perturb_and_observe\"`, `\"incremental_conductance\"`, `\"global_scan\"`, "
-    "`\"periodic_sweep\"`; the first counts in the losses",
+    "`\"periodic_sweep\"`; the list of losses uses the first",
     {.usually = "all four"});
 constexpr NumberKey period("period_s", usual.period_s, Range::positive(), "between decisions");
 constexpr NumberKey step_fraction("step_fraction", usual.step_fraction, {0.0, 0.5, true, false},
-                                  "step, of the range of voltages");
-constexpr NumberKey start_fraction("start_fraction", usual.start_fraction, {0.0, 1.0, true, false},
-                                   "where those begin that do not scan");
+                                  "voltage step, as a fraction of the voltage range");
+constexpr NumberKey start_fraction(
+    "start_fraction", usual.start_fraction, {0.0, 1.0, true, false},
+    "initial voltage of trackers that do not scan, as a fraction of the voltage range");
 constexpr IntegerKey sweep_points("sweep_points", usual.sweep_points, 2, 10000,
-                                  "of a sweep, one period each");
+                                  "number of points of a sweep; each point takes one period");
 constexpr NumberKey sweep_every("sweep_every_s", usual.sweep_every_s, Range::positive(),
-                                "of `periodic_sweep`");
+                                "of `periodic_sweep`: time from one sweep to the next");
 constexpr NumberKey rescan_fraction("rescan_fraction", usual.rescan_fraction, Range::positive(),
                                     "of `global_scan`: change of power that starts a sweep");
 }  // namespace tracker_key

@@ -1,12 +1,13 @@
-// The diode voltage of a cell as a table.
+// The diode voltage of a cell as a function of its dark current, tabulated.
 //
-// The function of diode_voltage.h is tabulated once per cell type and temperature, and every
-// voltage in a network is then an explicit expression.
+// The function of diode_voltage.h is tabulated once per cell type and temperature. Every voltage in
+// a network then follows without a search.
 //
-// Pieces are quintic and match value, slope and curvature at their ends, in s = |j| + j₀. Their
-// widths are binary fractions of an octave of s, halved until the error, measured as the residual
-// of (2) over D′, is below 1e-12 n₁V_t (2.6e-14 V for one diode at room temperature). Beyond the
-// table the exact solution is used.
+// The interpolation is piecewise in s = |j| + j₀, with j the dark current. Each piece is a quintic
+// polynomial that matches value, slope and curvature at both ends. The width of a piece is a binary
+// fraction of an octave of s. It is halved until the error is below 1e-12 n₁V_t (2.6e-14 V for one
+// diode at room temperature). The error is the residual of eq. 2 of cell.h divided by D′. Beyond
+// the table the exact solution is used.
 #pragma once
 
 #include <bit>
@@ -20,15 +21,15 @@
 
 namespace photorque {
 
-// As DiodeVoltage, of four dark currents.
+// The diode voltage and its derivatives (see DiodeVoltage) at four dark currents.
 struct QuadVoltage {
   Quad value_V, slope_ohm, curvature_V_A2, third_V_A3;
-  QuadBits outside;  // lanes beyond the table, whose numbers mean nothing: not zero
+  QuadBits outside;  // non-zero in lanes beyond the table, whose numbers are invalid
 };
 
 class DiodeVoltageTable final : public DiodeVoltageLaw {
  public:
-  // Covers currents up to `largest_A` in size (> 0) in both directions.
+  // Tabulates dark currents from −`largest_A` to `largest_A` (> 0).
   DiodeVoltageTable(const CellCurve& curve, double largest_A);
 
   DiodeVoltage at(double dark_A) const override {
@@ -37,7 +38,7 @@ class DiodeVoltageTable final : public DiodeVoltageLaw {
     if (bin >= bins_) return solved_diode_voltage(curve(), dark_A);
     const Piece& p = pieces_[piece_of_bin_[dark_A < 0 ? bin + bins_ : bin]];
     const double t = (s - p.start_A) * p.per_A;
-    // Horner's scheme for the polynomial and its derivatives over their factorials.
+    // Horner's scheme for the polynomial and its k-th derivatives divided by k!.
     double value = p.c[5], first = 0.0, second = 0.0, third = 0.0;
     for (int k = 4; k >= 0; --k) {
       third = third * t + second;
@@ -49,7 +50,7 @@ class DiodeVoltageTable final : public DiodeVoltageLaw {
     return {value, per_A * first, 2 * per_A2 * second, 6 * per_A2 * per_A * third};
   }
 
-  // Four of at() side by side.
+  // at() for four dark currents at once, without the exact solution beyond the table.
   QuadVoltage quad_at_dark(Quad dark_A) const;
 
   DiodeVoltage series_at(std::span<const double> photocurrents_A, std::span<const double> copies,
@@ -64,7 +65,7 @@ class DiodeVoltageTable final : public DiodeVoltageLaw {
   struct alignas(64) Piece {
     double start_A = 0.0;
     double per_A = 0.0;  // 1/width
-    double c[6] = {};    // powers of (s − start)/width
+    double c[6] = {};    // coefficients of the powers of (s − start)/width
   };
   void tabulate(double sign, int octaves);
   Piece fit(double sign, double low_s, double high_s) const;
@@ -73,9 +74,9 @@ class DiodeVoltageTable final : public DiodeVoltageLaw {
   double origin_A_;  // j₀: a power of two near the current scale of D at zero voltage
   uint64_t first_bin_;
   double largest_slope_ohm_;
-  uint64_t bins_ = 0;  // of each direction
+  uint64_t bins_ = 0;  // number of bins for each sign of the dark current
   std::vector<Piece> pieces_;
-  std::vector<uint32_t> piece_of_bin_;  // forwards, then backwards
+  std::vector<uint32_t> piece_of_bin_;  // positive dark currents, then negative ones
 };
 
 inline QuadVoltage DiodeVoltageTable::quad_at_dark(Quad dark_A) const {
@@ -86,7 +87,7 @@ inline QuadVoltage DiodeVoltageTable::quad_at_dark(Quad dark_A) const {
                        static_cast<int64_t>(first_bin_);
   const QuadBits outside = bin >= bins;
   const QuadBits place = (bin + ((sign == sign_bit) & bins)) & ~outside;
-  // A piece is eight numbers in a row: start, 1/width and the six coefficients.
+  // A piece is stored as eight consecutive numbers: start, 1/width and the six coefficients.
   const auto piece = [&](size_t lane) {
     return &pieces_[piece_of_bin_[static_cast<size_t>(place[lane])]].start_A;
   };

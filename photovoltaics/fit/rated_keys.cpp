@@ -5,19 +5,19 @@ namespace {
 
 namespace rated_key {
 constexpr NumberKey irradiance("irradiance_W_m2", RatedPoint{}.irradiance_W_m2, Range::positive(),
-                               "of the light");
+                               "irradiance of the light");
 constexpr NumberKey temperature("temperature_K", RatedPoint{}.temperature_K, {1.0, 1000.0},
-                                "of the cells");
+                                "temperature of the cells");
 constexpr NumberKey short_circuit("short_circuit_A", Range::positive(), "current at 0 V");
 constexpr NumberKey open_circuit("open_circuit_V", Range::positive(), "voltage at 0 A");
 constexpr NumberKey maximum_current("maximum_A", Range::positive(), "current at the maximum power");
-constexpr NumberKey maximum_voltage("maximum_V", Range::positive(), "voltage there");
+constexpr NumberKey maximum_voltage("maximum_V", Range::positive(), "voltage at the maximum power");
 constexpr NumberKey short_circuit_slope(
     "short_circuit_slope_per_K", 5e-4, {},
-    "of the short-circuit current, as a fraction; with a datasheet");
+    "temperature slope of the short-circuit current, as a fraction; with a datasheet");
 constexpr NumberKey open_circuit_slope(
     "open_circuit_slope_per_K", -3e-3, {},
-    "of the open-circuit voltage, as a fraction; with a datasheet");
+    "temperature slope of the open-circuit voltage, as a fraction; with a datasheet");
 }  // namespace rated_key
 
 }  // namespace

@@ -39,12 +39,15 @@ size_t index_of(const Settings& effect, const LightEffectKind& kind, const Light
         if (parts.walls[w].node == node) return w;
         nodes.insert(parts.walls[w].node);
       }
-      throw effect.error("node", "\"" + node + "\"",
-                         "a node of the scene beside the receiver: " + listed_names(nodes, node));
+      throw effect.error(
+          "node", "\"" + node + "\"",
+          "a node of the scene other than the receiver: " + listed_names(nodes, node));
     }
   }
   if (count == 0) {
-    throw effect.error("kind", "\"" + kind.name + "\"", "an effect on what the experiment has");
+    throw effect.error(
+        "kind", "\"" + kind.name + "\"",
+        "an effect on lamps, cells, strings or bypass diodes that the experiment has");
   }
   return static_cast<size_t>(effect.integer("index", 0, static_cast<int64_t>(count) - 1));
 }
@@ -59,22 +62,24 @@ std::vector<double> numbers_of(const Settings& effect, const EffectParameter& pa
   return numbers;
 }
 
-// Kinds that share a name differ in their parameters.
+// Whether the effect has all parameters of the kind. Kinds with the same name differ in their
+// parameters.
 bool is_meant(const LightEffectKind& kind, const Settings& effect) {
   return std::ranges::all_of(kind.parameters,
                              [&](const EffectParameter& p) { return effect.has(p.key); });
 }
 
-// A width, times a factor, that a lamp can have: no value is stated beyond.
+// The value of a key of a lamp profile when its angular width is multiplied by a factor. The result
+// is limited to widths that a lamp can have.
 double widened(const std::string& key, double value, double factor) {
   if (key == "exponent") return std::min(value / (factor * factor), std::max(value, 1e9));
-  constexpr double below = 1.0 - 1e-6;  // 180 deg itself are too many
+  constexpr double below = 1.0 - 1e-6;  // full widths must be below 180 deg
   const KeyUnit unit = unit_of_key(key);
   const double widest_rad = unit.stem == "half_angle" ? 0.5 * pi : below * pi;
   return std::min(value * factor, std::max(value, widest_rad / unit.to_SI));
 }
 
-// The keys of a source with all angular widths multiplied.
+// Multiplies all angular widths among the keys of a source by `scale`.
 void widen(SettingsNode& source, double scale) {
   auto* table = std::get_if<SettingsNode::Table>(&source.value);
   if (table == nullptr) return;
@@ -89,7 +94,7 @@ void widen(SettingsNode& source, double scale) {
   }
 }
 
-// An emitter that gives a fraction of its power.
+// An emitter with a fraction of the power of another one.
 class DimmedEmitter final : public Emitter {
  public:
   DimmedEmitter(std::shared_ptr<const Emitter> full, double share)
@@ -107,7 +112,7 @@ class DimmedEmitter final : public Emitter {
   double share_;
 };
 
-// Effects that a trace does not show, one line for each.
+// Notices for the user: one line for each effect that a trace does not include.
 std::vector<std::string> notices_of(const Experiment& experiment,
                                     const std::vector<Settings>& effects) {
   std::set<std::string> traced = {"led_failed"};
@@ -119,14 +124,14 @@ std::vector<std::string> notices_of(const Experiment& experiment,
     const std::string kind = effect.text("kind");
     if (traced.contains(kind)) continue;
     notices.push_back(effect.name() + ": " + kind +
-                      " acts in diagnose alone; a trace is without it");
+                      " is used by diagnose only; a trace does not include it");
   }
   for (const Settings& effect : effects) {
     if (effect.text("kind") != "attitude_bias" || !experiment.file.settings.has("torque_map"))
       continue;
     notices.push_back(effect.name() +
-                      ": attitude_bias acts at [attitude]; the attitudes of a torque map, of "
-                      "[array.tracker] and of [light] are as they are stated");
+                      ": attitude_bias acts at [attitude] only; the attitudes of a torque map, of "
+                      "[array.tracker] and of [light] are used without it");
   }
   return notices;
 }
@@ -146,8 +151,8 @@ std::vector<Beam> beams_under(const Experiment& experiment, const LightState& st
     beams.push_back(std::move(beam));
   }
   if (beams.empty()) {
-    throw InputError({experiment.file.path.string()}, "effect", "no lamp that gives light",
-                     "at least one");
+    throw InputError({experiment.file.path.string()}, "effect", "no lamp with power",
+                     "at least one lamp that the effects leave on");
   }
   return beams;
 }
@@ -226,7 +231,7 @@ LightState stated_effects(const Experiment& experiment, const LightParts& parts)
       }
     }
     meant->act(state, index_of(effect, *meant, parts), x);
-    // Numbers of a diagnosis that have no effect on a run.
+    // Further results of a diagnosis; reading them has no effect on a run.
     for (const char* said : {"u_m", "v_m", "darkest"}) {
       if (effect.has(said)) effect.raw(said);
     }

@@ -13,20 +13,21 @@
 
 namespace photorque {
 
-// The state that all of them make together; InputError for unknown kinds, keys and indices.
+// The light state with all effects of the experiment. InputError for unknown kinds, keys and
+// indices.
 LightState stated_effects(const Experiment& experiment, const LightParts& parts);
 
-// Changes beams and attitude of the experiment to what its effects make of them, for a trace: power
-// and aim of single LEDs, power, width and place of all, bias of the attitude. Returns one line for
-// each effect that a trace cannot show, because it acts on instruments or on the array's circuit,
-// or is not traced. InputError as light_parts() and stated_effects().
+// Applies the effects of the experiment to its beams and its attitude, for a trace: power and aim
+// of single LEDs; power, beam width and position of all LEDs; attitude bias. Returns one line for
+// each effect that a trace does not include, because it acts on instruments or on the circuit of
+// the array, or is not traced. InputError as light_parts() and stated_effects().
 std::vector<std::string> apply_stated_effects(Experiment& experiment);
 
 // The experiment's beams with their angular widths multiplied by `scale` > 0.
 std::vector<Beam> beams_with_divergence(const Experiment& experiment, double scale);
-// Where a lamp stands in the lab, displaced by `shift_m` and turned by the tangents `aim`.
+// The pose of a lamp in the lab, displaced by `shift_m` and rotated by angles with tangents `aim`.
 RigidTransform displaced_pose(const Beam& beam, const Vec2& aim, const Vec3& shift_m);
-// An attitude turned by a rotation vector about lab x and y.
+// An attitude rotated by a rotation vector about lab x and y.
 Quat biased_attitude(const Quat& lab_from_body, const Vec2& bias_rad);
 
 }  // namespace photorque

@@ -8,7 +8,7 @@
 namespace photorque {
 namespace {
 
-// ---- Shapes: one function reads the lengths of one shape and checks that they make a solid.
+// ---- Shapes: each function reads the lengths of one shape and checks that they form a solid.
 
 Mesh box_from(const Settings& part, int segments) {
   const Vec3 size_m = part.vector3("size_m");
@@ -74,7 +74,7 @@ Mesh solid_from(const Settings& part, int segments) {
 
 struct Material {
   GltfWriterMaterial look;
-  double density_kg_m3 = 0.0;  // 0: not given
+  double density_kg_m3 = 0.0;  // 0: no density is given
 };
 
 Material material_from(const Settings& table) {
@@ -102,7 +102,7 @@ RigidTransform turned_about_z(double angle_rad, const RigidTransform& placed) {
 std::vector<RigidTransform> placements_of(const Settings& part) {
   const Vec3 position_m = part.vector3_or("position_m", Vec3::Zero());
   const Vec3 axis = part.vector3_or("axis", Vec3::UnitZ());
-  if (axis.norm() < 1e-9) throw part.error("axis", "no direction", "a vector of some length");
+  if (axis.norm() < 1e-9) throw part.error("axis", "a zero vector", "a vector of non-zero length");
   const RigidTransform placed = axis.isApprox(Vec3::UnitZ())
                                     ? RigidTransform{Quat::Identity(), position_m}
                                     : frame_looking_along(axis, position_m);
@@ -135,9 +135,10 @@ void add_part(const Settings& table, const std::vector<Material>& materials, int
   for (size_t i = 0; i < placements.size(); ++i) {
     const std::string suffix = table.has("copies_deg") ? "_" + std::to_string(i + 1) : "";
     for (const PlatformPart& other : platform.parts) {
-      if (other.node == node + suffix) throw table.error("node", "a second " + other.node, "one");
+      if (other.node == node + suffix)
+        throw table.error("node", "a second " + other.node, "a name that no other part has");
       if (other.node.starts_with(node + suffix + "/")) {
-        throw table.error("node", "a part after its own " + other.node, "parents first");
+        throw table.error("node", "a part after its child " + other.node, "parents first");
       }
     }
     platform.parts.push_back(

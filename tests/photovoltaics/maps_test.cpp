@@ -39,7 +39,7 @@ class ReferenceMaps : public testing::TestWithParam<const char*> {
   std::vector<double> suns_;
 };
 
-// README.md of tests/data, section B: power to 1e-6 W and the number of local maxima.
+// Maxima by the nested solver of tests/data/README.md: power to 1e-6 W, number of local maxima.
 TEST_P(ReferenceMaps, SeriesStringWithClampsHasTheExactMaxima) {
   const std::map<std::string, std::tuple<double, double, size_t>> exact = {
       {"uniform", {334.668071, 56.5756, 1}},
@@ -55,8 +55,8 @@ TEST_P(ReferenceMaps, SeriesStringWithClampsHasTheExactMaxima) {
   EXPECT_EQ(curve.maxima().size(), count);
 }
 
-// README.md of tests/data, section C: every maximum with real diodes, to the printed 1e-5 W and
-// 1e-3 V.
+// Every maximum with real diodes by the nested solver of tests/data/README.md, to the printed
+// 1e-5 W and 1e-3 V.
 TEST_P(ReferenceMaps, SeriesStringWithRealDiodesHasTheExactMaxima) {
   const std::map<std::string, std::vector<std::array<double, 2>>> exact = {
       {"uniform", {{334.66790, 56.576}}},
@@ -93,7 +93,7 @@ TEST_P(ReferenceMaps, PowersMatchPlainBisectionTo1e9) {
   std::printf("    %s: powers within %.1e\n", GetParam(), worst);
 }
 
-// README.md of tests/data, section C: the best point of a grid of 10 mV as ngspice found it.
+// The best point of the ngspice curve on a grid of 10 mV (tests/data/README.md).
 // ngspice's currents are good to 1e-7 of themselves.
 TEST_P(ReferenceMaps, ParallelStringsHaveNgspicesGridMaximum) {
   const std::map<std::string, std::array<double, 2>> ngspice = {{"uniform", {308.104080, 5.230}},

@@ -20,9 +20,10 @@ constexpr NumberKey converter("converter_efficiency", efficiency, "after the arr
 }  // namespace chain_key
 
 namespace target_key {
-constexpr NumberKey power("power_W", Range::positive(), "what the array is to give",
+constexpr NumberKey power("power_W", Range::positive(), "required power of the array",
                           {.usually = "`array_power_W` of `[[published]]` at zero tilt"});
-constexpr NumberKey cell_efficiency("efficiency", efficiency, "of light on the cells",
+constexpr NumberKey cell_efficiency("efficiency", efficiency,
+                                    "required efficiency from light on the cells to power",
                                     {.usually = "`array_efficiency` of `[[published]]`"});
 }  // namespace target_key
 
@@ -36,25 +37,28 @@ constexpr NumbersKey heading("heading_deg", {-2.0 * pi, 2.0 * pi}, "one per inst
 }  // namespace motion_key
 
 namespace report_key {
-constexpr TextKey receiver("receiver", "the map whose light the cells take",
+constexpr TextKey receiver("receiver", "irradiance map with the light on the cells",
                            {.usually = "the first `flux_map`"});
-constexpr TableKey chain("chain", "stages before and after the array in the list of losses");
+constexpr TableKey chain("chain",
+                         "efficiencies before and after the array, for the list of losses");
 constexpr TableKey target(
     "target",
-    "what these require: EQE · V_oc · FF, light on the cells, what each known cell reaches, how "
-    "the power changes with light, temperature, resistances; and what the published powers at "
-    "other tilts need beyond the cosine");
+    "requirements of a power and an efficiency: EQE · V_oc · FF and light on the cells. Also the "
+    "efficiency of each known cell, the sensitivity of the power to light, temperature and "
+    "resistances, and the factor beyond the cosine in published powers at other tilts");
 constexpr TableKey tracker(
-    "tracker", "four trackers on the exact curves while the platform moves through these instants");
+    "tracker",
+    "four maximum power point trackers on the exact curves, while the attitude changes over time");
 constexpr TableKey day("day",
-                       "array and battery over time; with the first tracker's efficiency if there "
-                       "is an `[array.tracker]`");
+                       "array and battery over time; with the efficiency of the first tracker if "
+                       "there is an `[array.tracker]`");
 constexpr IntegerKey most_tried(
     "most_tried", 2000, 1, 10000000,
-    "assignments of cells to strings: every one if there are few, else exchanges of pairs");
-constexpr TableKey layout("layout",
-                          "a better wiring for the attitudes of the motion, with the bound that "
-                          "none exceeds. Not with `cross_tied`");
+    "number of assignments of cells to strings: all if there are few, else exchanges of pairs");
+constexpr TableKey layout(
+    "layout",
+    "search for a better wiring over the attitudes of the motion, and an upper "
+    "bound of the power of all wirings. Not with `cross_tied`");
 constexpr TableKey array("array", "cells and wiring on a flux map");
 }  // namespace report_key
 

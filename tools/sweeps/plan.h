@@ -1,4 +1,5 @@
-// The designs of a sweep: the values of the experiment's keys, objectives and constraints.
+// The plan of a sweep: the values that the designs give to keys of the experiment, objectives and
+// constraints.
 #pragma once
 
 #include <cstdint>
@@ -12,29 +13,32 @@
 
 namespace photorque {
 
-// One key of the experiment and its values in turn, as TOML ("3.5", "\"gaussian\"").
+// One key of the experiment and a list of its values, as TOML text ("3.5", "\"gaussian\"").
 struct SweepAxis {
   std::string key;
-  std::vector<std::string> values = {};  // of each design of a random plan, of each step of a grid
-  std::string name = {};                 // as printed; empty: from the key
-  // Where an optimisation may look; nothing where the plan gives single values or a distribution.
+  // One value per design of a random plan, or one per step of a grid.
+  std::vector<std::string> values = {};
+  std::string name = {};  // name in output; empty: derived from the key
+  // Bounds for an optimisation; empty if the plan gives single values or a distribution.
   std::optional<double> low = {}, high = {};
 };
 
-// A key that takes several values within one design: figures are their weighted mean.
+// A key that takes several values within one design. Figures are the weighted mean over these
+// values.
 struct MeanOver {
   std::string key;
   std::vector<std::string> values;
   std::vector<double> weights;  // sum to one
 };
-// A worst case over several values.
+// A key that takes several values within one design. Objectives and constraints use the worst case
+// over these values.
 struct WorstOver {
   std::string key;
   std::vector<std::string> values;
 };
 
-// A figure of the summary, or its absolute value: written "|torque_y_body_N_m|", in tables
-// abs_torque_y_body_N_m.
+// A figure of summary.json, or its absolute value. Users write the absolute value as
+// "|torque_y_body_N_m|"; its column in tables is abs_torque_y_body_N_m.
 struct SweepFigure {
   std::string name;
   bool absolute = false;
@@ -46,42 +50,44 @@ struct Objective {
   bool maximise = true;
 };
 
-// A constraint on a design, in the figure's unit.
+// Bounds on a figure of a design, in the unit of the figure.
 struct Constraint {
   SweepFigure figure;
   double at_least = -std::numeric_limits<double>::infinity();
   double at_most = std::numeric_limits<double>::infinity();
 };
 
-// A manufacturing tolerance: a key, and how far it is off.
+// A manufacturing tolerance: the random error of the numbers of one key.
 struct Tolerance {
   enum class Law { normal, uniform, seed };
   std::string key;
   Law law = Law::normal;
-  double width = 0.0;     // standard deviation, or half of the whole; in the key's unit
-  bool relative = false;  // of the value itself
+  // Standard deviation (normal) or half width (uniform), in the unit of the key.
+  double width = 0.0;
+  bool relative = false;  // whether `width` is relative to the value
 };
 
-// Copies of a design as they would be built. The n-th has the same draws in every design, so that
-// the comparison of designs does not depend on chance.
+// Random copies of a design within its tolerances. The n-th copy has the same random draws in every
+// design, so that the comparison of designs does not depend on chance.
 struct BuiltCopies {
   std::vector<Tolerance> tolerances;
   size_t copies = 0;
-  double fraction = 0.95;  // that are to be at least as good as the stated figure
-  bool of_every = false;   // design; else of the best and of the experiment as it stands
+  double fraction = 0.95;  // fraction of the copies that reach the reported value
+  bool of_every = false;  // true: copies of every design; false: of the best and the nominal design
   uint64_t seed = 1;
 };
 
-// How a search for the best goes: see Optimiser.
+// Options of an optimisation: see Optimiser.
 struct SearchPlan {
-  size_t global = 0, local = 0;  // evaluations
-  double precision = 1e-3;       // of each axis' range
+  size_t global = 0, local = 0;  // numbers of evaluations
+  double precision = 1e-3;  // step at which the search ends, relative to the range of each axis
 };
 
 struct SweepPlan {
   std::string verb;                  // the command that every design runs
-  std::vector<std::string> figures;  // of its summary; empty: all
-  bool grid = true;                  // every combination; otherwise row by row
+  std::vector<std::string> figures;  // names in the command's summary; empty: all
+  // true: every combination of the axes' values; false: design n has the n-th value of every axis.
+  bool grid = true;
   std::vector<SweepAxis> axes;
   std::vector<MeanOver> mean_over;
   std::vector<WorstOver> worst_over;
@@ -90,31 +96,33 @@ struct SweepPlan {
   BuiltCopies built;
   SearchPlan search;
 
-  // None where an axis is a range without steps: for a search alone.
+  // The number of designs; 0 if an axis is a range without steps, which only an optimisation can
+  // use.
   size_t designs() const;
-  // The value of an axis in a design. In a grid the last axis runs fastest.
+  // The value of an axis in a design. In a grid the last axis varies fastest.
   const std::string& value(size_t design, size_t axis) const;
-  // "KEY=VALUE" of every axis.
+  // The changes "KEY=VALUE" of a design, one per axis.
   Changes overrides(size_t design) const;
 
+  // Number of combinations of the values of mean_over, and of worst_over.
   size_t mean_points() const;
   size_t worst_points() const;
-  // The runs of one design: the changes of each, those of mean_over running fastest.
+  // The changes of each run of one design. The values of mean_over vary fastest.
   std::vector<Changes> runs_of(const Changes& design) const;
   // The weight of each point of mean_over in the mean.
   std::vector<double> mean_weights() const;
 
-  // The column by which designs are judged: that of the figure, or of what the stated fraction of
-  // built copies reaches, "p95_array_power_W".
+  // The column by which designs are ranked: that of the figure, or that of the value which the
+  // stated fraction of the built copies reaches, "p95_array_power_W".
   std::string judged_column(const Objective& objective) const;
   std::string built_column(const SweepFigure& figure) const;
 };
 
-// Reads the table [sweep]; every key in docs/experiment.md. Numbers are in the unit of the axis'
-// key.
+// Reads the table [sweep], whose keys are listed in docs/experiment.md. Numbers are in the unit of
+// the key of their axis.
 SweepPlan read_sweep_plan(const Settings& sweep);
 
-// The keys that a plan lacks for a search of the best design; empty: none.
+// The keys that a plan lacks for an optimisation; empty if it lacks none.
 std::string lacks_for_search(const SweepPlan& plan);
 
 }  // namespace photorque

@@ -11,11 +11,14 @@ namespace part_key {
 constexpr NumberKey radius("radius_m", Range::positive(), "of the disc");
 constexpr NumberKey length("length_m", Range::positive(), "along the flow");
 constexpr NumberKey area("area_m2", Range::positive(), "of a face");
-constexpr NumberKey distance("distance_m", Range::not_negative(), "of its centre from the axis");
-constexpr NumberKey inner("inner_m", 0.0, Range::not_negative(), "where it begins, from the axis");
-constexpr NumberKey outer("outer_m", Range::positive(), "where it ends, beyond `inner_m`",
+constexpr NumberKey distance("distance_m", Range::not_negative(),
+                             "distance of its centre from the axis");
+constexpr NumberKey inner("inner_m", 0.0, Range::not_negative(),
+                          "distance of its inner end from the axis");
+constexpr NumberKey outer("outer_m", Range::positive(),
+                          "distance of its outer end from the axis, above `inner_m`",
                           {.varies = true});
-constexpr IntegerKey faces("faces", 2, 1, 2, "of it that are wetted");
+constexpr IntegerKey faces("faces", 2, 1, 2, "number of faces in the air");
 constexpr NumberKey drag("drag_coefficient", {0.0, 1e3, false, false},
                          "referred to the area that meets the flow");
 constexpr NumberKey moment("moment_coefficient", sphere_moment_howarth, {0.0, 1e3, true, false},

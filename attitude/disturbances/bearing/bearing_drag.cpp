@@ -37,11 +37,13 @@ constexpr NumberKey sheared_share("sheared_share", 1.0, Range::fraction(),
                                   "fraction of the film that is thin (reduced by grooves)");
 constexpr NumberKey gap(
     "gap_m", Range::positive(),
-    "of the film under the platform's weight, *or* with the next two at the rated load",
+    "thickness of the film under the platform's weight; with the next two keys, at the rated load",
     {.optional = true});
-constexpr NumberKey rated_load("rated_load_N", Range::positive(), "of a spring",
+constexpr NumberKey rated_load("rated_load_N", Range::positive(),
+                               "load at which the film has the thickness `gap_m`",
                                {.optional = true});
-constexpr NumberKey stiffness("stiffness_N_m", Range::positive(), "of a spring, newton per metre",
+constexpr NumberKey stiffness("stiffness_N_m", Range::positive(),
+                              "of the film as a linear spring, newton per metre",
                               {.optional = true});
 constexpr NumberKey supply("supply_Pa", Range::positive(),
                            "instead of `gap_m`, absolute, above the ambient pressure: the "

@@ -17,8 +17,9 @@
 namespace photorque::kinds::helmholtz_cage {
 namespace {
 
-constexpr ScalarKey gain_error("gain_error", 0.0, {},
-                               "the coils give (1 + this) times the correction");
+constexpr ScalarKey gain_error(
+    "gain_error", 0.0, {},
+    "the coils produce (1 + this) times the difference to the field of `[environment]`");
 
 namespace key {
 constexpr Vec3Key field_lab("field_lab_T", {0.0, 0.0, 0.0},

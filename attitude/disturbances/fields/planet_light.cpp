@@ -38,12 +38,16 @@ constexpr NumberKey irradiance("irradiance_W_m2", solar_irradiance_W_m2, Range::
 constexpr Vec3Key sun_direction("sun_direction", "towards the Sun, any length",
                                 {.usually = "`propagate`: that of `orbit`"});
 constexpr NumberKey albedo("albedo", earth.albedo.mean, Range::fraction(), "mean over the planet");
-constexpr NumberKey emissivity("emissivity", earth.emissivity.mean, Range::fraction(),
-                               "likewise: of a quarter of the sunlight");
+constexpr NumberKey emissivity(
+    "emissivity", earth.emissivity.mean, Range::fraction(),
+    "mean over the planet: infrared exitance divided by `irradiance_W_m2`/4");
 constexpr FlagKey zonal(
-    "zonal", true, "with the Earth's belts of latitude: albedo + 0.29 P₂, emissivity − 0.18 P₂");
-constexpr NumberKey date_year("date_year", {1900.0, 2100.0, false, false},
-                              "and its seasons: ± 0.10 and ∓ 0.07 P₁", {.usually = "no season"});
+    "zonal", true,
+    "variation with latitude, as on the Earth: albedo + 0.29 P₂, emissivity − 0.18 P₂");
+constexpr NumberKey date_year(
+    "date_year", {1900.0, 2100.0, false, false},
+    "date, for the seasonal variation of the Earth: ± 0.10 P₁ and ∓ 0.07 P₁",
+    {.usually = "no season"});
 }  // namespace key
 
 struct PlanetOptions {

@@ -61,7 +61,8 @@ constexpr TextKey table("table",
                         {.optional = true});
 constexpr Vec3Key sun_direction_lab(
     "sun_direction_lab",
-    "towards the light, any length; only, and always, with elevation and azimuth",
+    "towards the light, any length; required for a table with elevation and azimuth, else not "
+    "allowed",
     {.optional = true});
 }  // namespace key
 

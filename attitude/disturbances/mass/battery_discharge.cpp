@@ -19,16 +19,19 @@ constexpr auto shift =
         .optional();
 
 namespace key {
-constexpr Vec3Key electrodes("electrodes_m",
-                             "displacement of the lithium from charged to empty, body axes; upper "
-                             "bound: half a cell's length; wound cells: 1/100 of it");
-constexpr NumberKey charge_share("charge_share", 1.0, Range::fraction(),
-                                 "1 in series, 1/n of n in parallel");
+constexpr Vec3Key electrodes(
+    "electrodes_m",
+    "displacement of the lithium from charged to empty, body axes; at most "
+    "half a cell's length, in wound cells about 1/100 of that");
+constexpr NumberKey charge_share(
+    "charge_share", 1.0, Range::fraction(),
+    "fraction of the battery's charge that flows through the cell: 1 in series, 1/n for n in "
+    "parallel");
 constexpr TablesKey cell("cell", "instead of `shift_m_per_Ah`: one table for every cell");
 constexpr ChoiceKey lithium("lithium",
                             {{"exact", "Faraday's mass per charge"},
                              {"rounded", "the paper's 0.3 g/Ah"}},
-                            0, "with cells: how much lithium moves");
+                            0, "with cells: mass of the lithium that moves");
 }  // namespace key
 
 struct BatteryDischarge final : LawOf<BatteryDischarge> {

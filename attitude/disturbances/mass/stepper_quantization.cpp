@@ -1,18 +1,18 @@
-// Balancing masses stop at whole steps: the centre of mass is off by up to half a step of each
-// (eq. 1).
+// Stepper motors place the balancing masses at whole steps only. Each mass is therefore displaced
+// from its target by up to half a step, which displaces the centre of mass of the platform (eq. 1).
 //
-// moving_mass_kg, lead_m, step_angle_deg (default 1.8), microsteps (default 1), directions
-// (default: the paper's eight masses, 2 + 2 + 4 along x, y, z): see moving_masses.h.
-// rounding_steps[N]: where each mass stands beside where it should, in steps, within ±½ of a
-// commanded step; default ½ for the first mass along each direction and 0 for its parallels, the
-// worst case of eq. 1.
+// Keys: moving_mass_kg, lead_m, step_angle_deg (default 1.8), microsteps (default 1), directions
+// (default: the eight masses of the paper, 2 + 2 + 4 along x, y, z): see moving_masses.h.
+// rounding_steps[N]: deviation of each mass from its target, in commanded steps, within ±½.
+// Default: the worst case of eq. 1, ½ for the first mass along each direction and 0 for masses
+// parallel to it.
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/mass/moving_masses.h"
 
 namespace photorque::kinds::stepper_quantization {
 namespace {
 
-// One number for each mass.
+// Deviation of each mass from its target, in steps: one number per mass.
 constexpr ScalarKey rounding("rounding_steps");
 
 class StepperQuantization final : public LawOf<StepperQuantization> {

@@ -35,8 +35,8 @@ void add_keys_of(const VariableKeys& variable, std::vector<Key>& keys) {
                                 Range::positive(), "where the powers are 1"));
   keys.push_back(
       Key::numbers(name + "_range" + unit, {},
-                   "[from, to], where it was measured: beyond, the variable is held at the end, "
-                   "which it passes smoothly by a twentieth of the range at most")
+                   "[from, to], range of the measurement. Beyond it the variable is held constant, "
+                   "after a smooth transition of at most a twentieth of the range")
           .of_size(2)
           .usually_is("everywhere; of a table its knots"));
 }
@@ -47,10 +47,11 @@ std::vector<Key> empirical_shape_keys() {
   std::vector<Key> keys = {
       Key::texts(
           "axes",
-          "any, each once: about `\"body\"` x, y, z; `\"lab\"` x, y, z; `\"vertical\"`; "
-          "`\"lean\"` (the axis about which it leans, positive rights); `\"rate\"` (positive "
-          "brakes); `\"rate_by_axis\"` (brakes about body x, y, z); `\"command\"`; "
-          "`\"cross_talk\"` (of the command about the other axes: xy, xz, yx, yz, zx, zy)"),
+          "axes of the torque, each at most once: `\"body\"` x, y, z; `\"lab\"` x, y, z; "
+          "`\"vertical\"`; `\"lean\"` (the tilt axis; positive: reduces the tilt); `\"rate\"` "
+          "(against the rate if positive); `\"rate_by_axis\"` (the same about body x, y, z); "
+          "`\"command\"`; `\"cross_talk\"` (of the command about the other axes: xy, xz, yx, yz, "
+          "zx, zy)"),
       Key::numbers("yaw_orders", {1.0, most_order},
                    "whole, rising: cos nψ, sin nψ of the yaw ψ (azimuth of body x) for each n")
           .optional()};

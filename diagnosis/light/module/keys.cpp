@@ -84,7 +84,8 @@ std::vector<Key::Choice> module_effects() {
        {Key::number("change", {-1.0, 1.0}, "from the first point to the last"),
         Key::number_or("bend", 0.0, {-1.0, 1.0}, "at the ends over the middle, two thirds of")}}};
   for (Key::Choice& kind : kinds) {
-    kind.keys.push_back(Key::text("curve", "on which alone it acts").usually_is("all curves"));
+    kind.keys.push_back(
+        Key::text("curve", "the only curve on which the effect acts").usually_is("all curves"));
   }
   return kinds;
 }
