@@ -1,19 +1,17 @@
 #include "core/errors.h"
 
-#include "core/text/format.h"
-
 namespace photorque {
 namespace {
 
-// User text may hold line breaks, control characters or bytes that are not UTF-8; an error message
-// is one printable line.
-std::string one_line(std::string_view text) {
+// User text may hold line breaks or control characters; an error message is one printable line.
+std::string one_line(const std::string& text) {
   constexpr size_t longest = 200;
-  const std::string line = clean_text(text);
-  if (line.size() <= longest) return line;
-  size_t bytes = 0;
-  while (bytes < longest) bytes += first_character_bytes(std::string_view(line).substr(bytes));
-  return line.substr(0, bytes) + "...";
+  std::string line;
+  for (const char c : text) {
+    if (line.size() >= longest) return line + "...";
+    line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+  }
+  return line;
 }
 
 std::string message(const InputLocation& where, const std::string& key, const std::string& found,

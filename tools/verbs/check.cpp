@@ -13,6 +13,7 @@
 #include "attitude/studies/budget.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/text/format.h"
 #include "diagnosis/light/model/lab.h"
 #include "diagnosis/light/module/design.h"
 #include "scenes/experiment/toml.h"
@@ -359,7 +360,7 @@ void run(const CommandOptions& options, const Program& program) {
   constexpr size_t most = 50;
   const size_t others = report.mistakes.size() - 1;
   for (size_t i = 0; i < std::min(others, most); ++i) {
-    std::fprintf(stderr, "%s\n", report.mistakes[i].what());
+    std::fprintf(stderr, "%s\n", clean_text(report.mistakes[i].what()).c_str());
   }
   if (others > most)
     std::fprintf(stderr, "and %zu more mistakes, of which the last:\n", others - most);
