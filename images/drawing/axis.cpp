@@ -184,7 +184,8 @@ AxisRange drawable(AxisRange interval) {
 
 double Axis::fraction(double value) const {
   if (!log) return (value - range.low) / (range.high - range.low);
-  return std::log(value / range.low) / std::log(range.high / range.low);
+  // A value far beyond the axis keeps a finite place.
+  return std::log(std::min(value / range.low, 1e300)) / std::log(range.high / range.low);
 }
 
 Axis horizontal_axis(AxisRange range, bool log, const std::string& label, double length) {

@@ -28,11 +28,14 @@ struct Extent {
 AxisRange padded(const Extent& extent, bool log, double margin) {
   if (extent.low > extent.high) return log ? AxisRange{1.0, 10.0} : AxisRange{0.0, 1.0};
   if (log) {
+    // Within these the ratio of two values is a finite number.
+    constexpr double least = 1e-150, most = 1e150;
+    const double low = std::clamp(extent.low, least, most);
+    const double high = std::clamp(extent.high, least, most);
     // As of drawable(): values that differ by rounding alone are one value.
-    const bool is_constant = extent.high <= (1.0 + 1e-9) * extent.low;
-    const double factor =
-        is_constant ? std::sqrt(10.0) : std::pow(extent.high / extent.low, margin);
-    return {extent.low / factor, extent.high * factor};
+    const bool is_constant = high <= (1.0 + 1e-9) * low;
+    const double factor = is_constant ? std::sqrt(10.0) : std::pow(high / low, margin);
+    return {low / factor, high * factor};
   }
   const AxisRange range = drawable({extent.low, extent.high});
   const double room = margin * (range.high - range.low);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "core/errors.h"
@@ -23,18 +24,21 @@ bool is_head(const std::string& name) {
   return std::ranges::find(heads, name) != std::end(heads);
 }
 
-// Lists of the files of commands, by command; empty where there is no readable list.
-Json read_lists(const fs::path& path) {
+// Lists of the files of commands, by command; nothing where no readable list is.
+std::optional<Json> lists_in(const fs::path& path) {
   std::error_code failure;
-  if (!fs::is_regular_file(path, failure)) return Json::object();
+  if (!fs::is_regular_file(path, failure)) return std::nullopt;
   const std::string text = read_file(path);
-  if (extent_of_json(text).depth > deepest_json) return Json::object();
+  if (extent_of_json(text).depth > deepest_json) return std::nullopt;
   const Json read = Json::parse(text, nullptr, false);
   // Whatever stands there, it is read as far as it has the form that is written here.
   const bool known = read.is_object() && read.contains("schema") &&
                      read["schema"] == "photorque.files/1" && read.contains("commands") &&
                      read["commands"].is_object();
-  return known ? read["commands"] : Json::object();
+  return known ? std::optional<Json>(read["commands"]) : std::nullopt;
+}
+Json read_lists(const fs::path& path) {
+  return lists_in(path).value_or(Json::object());
 }
 
 // Plain names alone: a list that was tampered with must not reach other folders.
@@ -65,10 +69,16 @@ void write_lists(const fs::path& path, Json lists, const std::string& command,
   write_file_whole(path, all.dump(2) + "\n");
 }
 
-// A file that no command lists is the user's: it goes out of the way of results of that name.
-void keep_own_files(const fs::path& folder, const Json& lists, const std::set<std::string>& now) {
-  std::set<std::string> results = {list_name};
-  for (const auto& [command, list] : lists.items()) results.merge(listed(lists, command));
+// A file that no command lists is the user's, and so is a list of another form: it goes out of the
+// way of results of that name.
+void keep_own_files(const fs::path& folder, std::set<std::string> now) {
+  const std::optional<Json> lists = lists_in(folder / list_name);
+  std::set<std::string> results;
+  if (lists) {
+    for (const auto& [command, list] : lists->items()) results.merge(listed(*lists, command));
+    results.insert(list_name);
+  }
+  now.insert(list_name);
   std::error_code failure;
   for (const std::string& name : now) {
     const fs::path place = folder / name;
@@ -145,10 +155,10 @@ std::vector<fs::path> StagedFiles::publish() {
 std::vector<fs::path> StagedFiles::publish_as(const std::string& command,
                                               const Provenance& provenance) {
   const fs::path list_path = folder_ / list_name;
-  const Json lists = read_lists(list_path);
   const std::vector<std::string> all = names();
   const std::set<std::string> now(all.begin(), all.end());
-  keep_own_files(folder_, lists, now);
+  keep_own_files(folder_, now);
+  const Json lists = read_lists(list_path);
   std::set<std::string> ever = listed(lists, command);
   ever.insert(now.begin(), now.end());
   // A run killed from here on leaves a list of everything that may stand here.

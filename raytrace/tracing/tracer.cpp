@@ -395,7 +395,8 @@ void check(const TraceOptions& options, std::span<const Beam> beams) {
   if (!(options.cutoff >= 0.0 && options.cutoff < 1.0)) refuse("cutoff", options.cutoff, "0 to 1");
   for (const Beam& beam : beams) {
     if (!(beam.emitter->power_W() > 0.0)) {
-      refuse(beam.name + " power_W", beam.emitter->power_W(), "a positive power");
+      throw InputError({"trace"}, "source \"" + beam.name + "\"", "light of no power",
+                       "a larger power_W or irradiance_W_m2");
     }
   }
 }

@@ -25,6 +25,7 @@
 
 #include "core/constants.h"
 #include "core/numerics/vector_math.h"
+#include "core/text/parse.h"
 #include "raytrace/parallel_light.h"
 #include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
@@ -52,7 +53,9 @@ constexpr NumbersKey limb_darkening(
     "[u1, u2]: radiance 1 − u1 (1 − μ) − u2 (1 − μ)², μ = √(1 − r²) at r radii from the "
     "middle; [0.47, 0.23] in visible light",
     {.usually = "none", .size = 2});
-constexpr NumberKey sigma("sun_shape_sigma_mrad", {1e-9, pi / 24.0},
+// Of shapes that are integrated: the squares of smaller angles fade to zero.
+constexpr double least_rad = 1e-9;
+constexpr NumberKey sigma("sun_shape_sigma_mrad", {least_rad, pi / 24.0},
                           "σ, the standard deviation of angles along each of two axes");
 constexpr NumberKey circumsolar_ratio("circumsolar_ratio", {1e-4, 0.84, false, false},
                                       "flux of the aureole over that of disc and aureole");
@@ -120,8 +123,9 @@ std::optional<SunShape> read_limb_darkening(const Settings& settings, double ang
                              : std::to_string(u.size()) + " numbers",
                          "[u1, u2] with u1 >= 0, u1 + 2 u2 >= 0 and u1 + u2 <= 1");
   }
-  if (!(angular_radius_rad > 0.0)) {
-    throw settings.error(key::limb_darkening, "a Sun without a disc", "angular_radius_deg above 0");
+  if (angular_radius_rad < key::least_rad) {
+    throw settings.error(key::limb_darkening, "a Sun without a disc",
+                         "angular_radius_deg of at least 1e-7");
   }
   return limb_darkened_disc(angular_radius_rad, u[0], u[1]);
 }
@@ -138,6 +142,10 @@ SunShape read_table(const Settings& settings) {
   if (angle_rad.front() != 0.0 ||
       std::ranges::adjacent_find(angle_rad, std::greater_equal()) != angle_rad.end()) {
     throw settings.error(key::table_angle, "angles that do not rise from 0", "0 and rising angles");
+  }
+  if (angle_rad[1] < key::least_rad) {
+    throw settings.error(key::table_angle, shortest(1e3 * angle_rad[1]),
+                         "a first angle after 0 of at least 1e-6 mrad");
   }
   if (radiance.size() != angle_rad.size()) {
     throw settings.error(key::table_radiance, count(radiance),

@@ -232,8 +232,12 @@ TEST(PlotPicture, SurvivesEveryDegeneratePlot) {
   Plot rounded_on_log = constant_plot();
   rounded_on_log.y_log = true;
   rounded_on_log.curves[0].y = {1e-6, std::nextafter(1e-6, 1.0)};
-  for (const Plot& plot :
-       {nothing, empty_curve, negative_on_log, one_point_on_log, huge, infinite, rounded_on_log}) {
+  // Ratios beyond floating point were an invalid matrix for cairo.
+  Plot ends_on_log = rounded_on_log, least_on_log = rounded_on_log;
+  ends_on_log.curves[0].y = {5e-324, 1.7e308};
+  least_on_log.curves[0].y = {5e-324, 5e-324};
+  for (const Plot& plot : {nothing, empty_curve, negative_on_log, one_point_on_log, huge, infinite,
+                           rounded_on_log, ends_on_log, least_on_log}) {
     EXPECT_GT(plot_picture(plot, {}).height, 100);
     EXPECT_THAT(plot_svg(plot, {}), ::testing::HasSubstr("</svg>"));
   }

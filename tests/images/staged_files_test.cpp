@@ -68,6 +68,16 @@ TEST_F(Staged, FilesOfTheUserWithTheNamesOfResultsAreKept) {
   EXPECT_FALSE(is_result_of(folder_, "propagate", "recording.csv~"));
 }
 
+TEST_F(Staged, AListOfTheUserIsKept) {
+  fs::create_directories(folder_);
+  write_file_whole(folder_ / "files.json", "[\"mine\"]");
+  run("trace", {"a.csv"});
+  run("trace", {"a.csv"});
+  EXPECT_THAT(there(), testing::UnorderedElementsAre("a.csv", "files.json", "files.json~"));
+  EXPECT_EQ(read_file(folder_ / "files.json~"), "[\"mine\"]");
+  EXPECT_TRUE(is_result_of(folder_, "trace", "a.csv"));
+}
+
 TEST_F(Staged, ListsThatWereTamperedWithReachNoOtherFolder) {
   const fs::path outside = folder_.string() + "_outside.csv";
   write_file_whole(outside, "precious");

@@ -1,6 +1,7 @@
 // Effects of hostile numbers and names on a run: nothing but a result or one line.
 #include <algorithm>
 
+#include "core/text/format.h"
 #include "tests/tools/command_test.h"
 
 namespace photorque {
@@ -57,6 +58,32 @@ TEST_F(Boundaries, NamesReachTerminalsAndTablesClean) {
     EXPECT_THAT(text, testing::Not(testing::HasSubstr("\n="))) << file;
     EXPECT_THAT(text, testing::Not(testing::HasSubstr(",="))) << file;
   }
+}
+
+// Nor are command lines, files' names and the lists of check for terminals to obey.
+TEST_F(Boundaries, ErrorsReachTerminalsCleanAndShort) {
+  const std::string experiment = plate("lamp", "");
+  const std::string name = "$(printf '\\033[31m\\233\\377')";
+  for (const std::string& command :
+       {"\"" + name + "\"", "trace \"--" + name + "\"", "trace " + experiment + " \"" + name + "\"",
+        "trace \"" + at("") + name + ".toml\"", "schema --key \"" + name + "\"",
+        "trace " + experiment + " --set \"" + name + "=1\"",
+        "trace " + experiment + " --set \"source[0].name='" + name + "'\"",
+        "trace " + experiment + " --out \"/etc/" + name + "\""}) {
+    const Outcome outcome = run(command);
+    EXPECT_EQ(outcome.status, 2) << command;
+    EXPECT_EQ(clean_text(outcome.err), outcome.err.substr(0, outcome.err.size() - 1) + " ")
+        << command;
+  }
+  const Outcome twice = run("check " + experiment + " --set receiver[0].bins=[0,0]");
+  EXPECT_EQ(twice.status, 2);
+  EXPECT_EQ(std::ranges::count(twice.err, '\n'), 1) << twice.err;
+  std::string unknown;
+  for (int i = 0; i < 2000; ++i) unknown += "[t" + std::to_string(i) + "]\n";
+  const Outcome many = run("check " + plate("lamp", unknown));
+  EXPECT_EQ(many.status, 2);
+  EXPECT_THAT(many.err, testing::HasSubstr("more mistakes"));
+  EXPECT_LT(std::ranges::count(many.err, '\n'), 60);
 }
 
 // 88 W of light over 5e-324 were infinitely many watts in losses.csv, with exit status 0.

@@ -83,9 +83,10 @@ TEST_F(OutputFolders, WhoseResultIsTheInputAreFoundBeforeTheWork) {
 }
 
 TEST_F(OutputFolders, ThatCannotBeWrittenAreFoundBeforeTheWork) {
-  const Outcome kernel = run("trace " + lit_platform + endless + " --out /sys/kernel/photorque");
-  EXPECT_EQ(kernel.status, 2);
-  EXPECT_THAT(kernel.err, HasSubstr("expected a folder that can be made"));
+  fs::create_directory_symlink("loop", at("loop"));
+  const Outcome loop = run("trace " + lit_platform + endless + " --out " + at("loop"));
+  EXPECT_EQ(loop.status, 2);
+  EXPECT_THAT(loop.err, HasSubstr("expected a folder that can be made"));
   fs::create_directories(at("locked"));
   fs::permissions(at("locked"), fs::perms::owner_read | fs::perms::owner_exec);
   if (::access(at("locked").c_str(), W_OK) == 0) GTEST_SKIP() << "the superuser may write anywhere";
@@ -95,8 +96,32 @@ TEST_F(OutputFolders, ThatCannotBeWrittenAreFoundBeforeTheWork) {
 }
 
 TEST_F(OutputFolders, AreNotLeftBehindByRunsThatAreRefused) {
-  EXPECT_EQ(run("trace " + at("none.toml") + " --out " + at("a/b/c")).status, 2);
-  EXPECT_FALSE(fs::exists(at("a")));
+  for (const char* out : {"a/b/c", "a/./b/.", "a/b/../b/"}) {
+    EXPECT_EQ(run("trace " + at("none.toml") + " --out " + at(out)).status, 2);
+    EXPECT_FALSE(fs::exists(at("a"))) << out;
+  }
+  // The default folder is out/EXPERIMENT/trace.
+  const std::string inside = "/photorque trace . 2>" + at("said");
+  EXPECT_NE(std::system(("cd " + at("") + " && " + PHOTORQUE_BINARY_DIR + inside).c_str()), 0);
+  EXPECT_FALSE(fs::exists(at("out")));
+}
+
+// As the superuser, who may write anywhere, too.
+TEST_F(OutputFolders, OfTheSystemAndOfOtherUsersAreRefused) {
+  fs::create_directory_symlink("/etc", at("link"));
+  for (const std::string& out :
+       {std::string("/"), std::string("//"), std::string("/usr/bin"), std::string("/usr/bin/../.."),
+        std::string("/dev"), std::string("/tmp"), at("link"), at("link") + "/photorque"}) {
+    const Outcome got = run("trace " + lit_platform + endless + " --out " + out);
+    EXPECT_EQ(got.status, 2) << out;
+    EXPECT_THAT(got.err, HasSubstr("--out: found a folder of the system")) << out;
+  }
+  fs::create_directories(at("theirs"));
+  if (::chown(at("theirs").c_str(), 12345, 12345) != 0) GTEST_SKIP() << "no right to give away";
+  const Outcome got = run("trace " + lit_platform + endless + " --out " + at("theirs"));
+  EXPECT_EQ(got.status, 2);
+  EXPECT_THAT(got.err, HasSubstr("--out: found a folder of user 12345"));
+  EXPECT_TRUE(fs::is_empty(at("theirs")));
 }
 
 TEST_F(OutputFolders, BelongToOneRunAtATime) {

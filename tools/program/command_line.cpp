@@ -8,6 +8,7 @@
 
 #include "core/provenance.h"
 #include "core/settings/settings.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -248,7 +249,7 @@ std::string unknown_command(const std::string& word, const std::vector<Verb>& ve
 }
 
 CommandLine refused(const std::string& mistake, const std::string& verb = "") {
-  std::fprintf(stderr, "photorque: %s (see photorque %s--help)\n", mistake.c_str(),
+  std::fprintf(stderr, "photorque: %s (see photorque %s--help)\n", clean_text(mistake).c_str(),
                verb.empty() ? "" : (verb + " ").c_str());
   return {2};
 }

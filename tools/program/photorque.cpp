@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <string>
 #include <string_view>
 #include <system_error>
 
@@ -26,6 +27,11 @@
 
 namespace photorque {
 namespace {
+
+// One line on standard error. Names in it may come from hostile files and command lines.
+void print_error(const std::string& line) {
+  std::fprintf(stderr, "%s\n", clean_text(line).c_str());
+}
 
 // In the command's output folder, which signals leave clean.
 void run_in_folder(const Command& command, const Program& program) {
@@ -59,7 +65,7 @@ int run_command(const Command& command, const Program& program) {
   } catch (const InputError& error) {
     const std::string what = error.what();
     if (error.names_file() || experiment.empty() || what.starts_with("--")) throw;
-    std::fprintf(stderr, "%s: %s\n", experiment.c_str(), what.c_str());
+    print_error(experiment.string() + ": " + what);
     return 2;
   }
 }
@@ -139,17 +145,17 @@ int main(int argc, char** argv) {
     }
     return status;
   } catch (const photorque::InputError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
+    photorque::print_error(error.what());
     return 2;
   } catch (const photorque::NumericalError& error) {
-    std::fprintf(stderr, "numerical failure: %s\n", error.what());
+    photorque::print_error(std::string("numerical failure: ") + error.what());
     return 3;
   } catch (const std::bad_alloc&) {
     // Threads of libraries that are short of memory may never be ready to be joined.
     std::fputs("numerical failure: not enough memory\n", stderr);
     std::_Exit(3);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "numerical failure: %s\n", error.what());
+    photorque::print_error(std::string("numerical failure: ") + error.what());
     return 3;
   }
 }

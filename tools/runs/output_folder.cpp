@@ -6,9 +6,11 @@
 #include <sys/types.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <string_view>
 
 #include "core/errors.h"
 #include "core/files.h"
@@ -36,9 +38,49 @@ bool take_lock(int descriptor, int how, bool waits) {
 
 constexpr int stop_waiting = SIGUSR2;  // from the destructor
 
+// The folder itself, without links and dots: what is made of it can be removed again.
+fs::path place_of(const fs::path& folder) {
+  std::error_code failure;
+  const fs::path place = fs::weakly_canonical(fs::absolute(folder), failure);
+  if (failure) return fs::absolute(folder);
+  return place.has_filename() ? place : place.parent_path();  // without a slash at the end
+}
+
+// Folders that belong to the system or to all users.
+// Source: Filesystem Hierarchy Standard 3.0, sections 3 and 4.
+bool is_of_the_system(const fs::path& place) {
+  constexpr std::array<std::string_view, 14> shared = {
+      "/",    "/dev", "/dev/shm", "/home", "/media", "/mnt",       "/opt",
+      "/run", "/srv", "/tmp",     "/usr",  "/var",   "/usr/local", "/var/tmp"};
+  constexpr std::array<std::string_view, 14> with_all_below = {
+      "/bin", "/boot",    "/etc",         "/lib",     "/lib64",     "/proc",     "/sbin",
+      "/sys", "/usr/bin", "/usr/include", "/usr/lib", "/usr/lib64", "/usr/sbin", "/usr/share"};
+  const std::string name = place.string();
+  return std::ranges::find(shared, name) != shared.end() ||
+         std::ranges::any_of(with_all_below, [&](std::string_view tree) {
+           return name == tree || name.starts_with(std::string(tree) + "/");
+         });
+}
+
+// Results do not spill into folders of others. Those of earlier runs may: some file systems give
+// every file to one user.
+void require_own(const fs::path& place) {
+  if (is_of_the_system(place)) {
+    throw refused(place, "a folder of the system", "a folder of your own, or a new one");
+  }
+  struct stat had {};
+  std::error_code failure;
+  if (::stat(place.c_str(), &had) == 0 && had.st_uid != ::geteuid() &&
+      !fs::exists(place / "files.json", failure)) {
+    throw refused(place, "a folder of user " + std::to_string(had.st_uid),
+                  "a folder of your own, or a new one");
+  }
+}
+
 }  // namespace
 
-OutputFolder::OutputFolder(const fs::path& path, Others others) : path_(fs::absolute(path)) {
+OutputFolder::OutputFolder(const fs::path& path, Others others) : path_(place_of(path)) {
+  require_own(path_);
   try {
     // The previous holder of the lock may have removed the folder meanwhile: then it is recreated.
     do make();
@@ -137,7 +179,7 @@ Interruption::~Interruption() {
 
 Interruption::Watch::Watch(Interruption& interruption, const fs::path& folder)
     : interruption_(interruption) {
-  InUse used{fs::absolute(folder)};
+  InUse used{place_of(folder)};
   std::error_code failure;
   for (fs::path p = used.folder; !fs::exists(p, failure) && p.has_relative_path();
        p = p.parent_path()) {

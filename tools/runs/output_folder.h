@@ -18,8 +18,9 @@ class OutputFolder {
   // wait until they are done.
   enum class Others { refuse, share, wait };
 
-  // InputError when `path` is no folder or cannot be one, when a file in it cannot be written, or
-  // when another run works there. (File systems without locks: no other is excluded.)
+  // InputError when `path` is no folder or cannot be one, when it belongs to the system or to
+  // another user, when a file in it cannot be written, or when another run works there. (File
+  // systems without locks: no other is excluded.)
   OutputFolder(const std::filesystem::path& path, Others others);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;

@@ -14,6 +14,7 @@
 #include "attitude/studies/budget.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/text/format.h"
 #include "diagnosis/light/model/lab.h"
 #include "diagnosis/light/module/design.h"
 #include "scenes/experiment/toml.h"
@@ -54,7 +55,13 @@ class Checker {
 
   CheckReport report() {
     if (by_declaration_) {
-      attempt([&] { report_.mistakes = misread_keys(written(), tables_); });
+      attempt([&] {
+        report_.mistakes = misread_keys(written(), tables_);
+        // The numbers of an array share one line.
+        const auto line = [](const InputError& mistake) { return std::string(mistake.what()); };
+        const auto again = std::ranges::unique(report_.mistakes, {}, line);
+        report_.mistakes.erase(again.begin(), again.end());
+      });
       for (const InputError& mistake : report_.mistakes) misread_.push_back(table_of(mistake));
     }
     attempt([&] {
@@ -381,9 +388,13 @@ void run(const CommandOptions& options, const Program& program) {
   }
   for (const std::string& note : report.notes) console.line("note: " + note);
   if (report.mistakes.empty()) return;
-  for (size_t i = 0; i + 1 < report.mistakes.size(); ++i) {
-    std::fprintf(stderr, "%s\n", report.mistakes[i].what());
+  constexpr size_t most = 50;
+  const size_t others = report.mistakes.size() - 1;
+  for (size_t i = 0; i < std::min(others, most); ++i) {
+    std::fprintf(stderr, "%s\n", clean_text(report.mistakes[i].what()).c_str());
   }
+  if (others > most)
+    std::fprintf(stderr, "and %zu more mistakes, of which the last:\n", others - most);
   throw InputError(report.mistakes.back());
 }
 
