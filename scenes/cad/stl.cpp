@@ -104,7 +104,7 @@ class TextReader {
         begin();
       } else if (is_next("endsolid")) {
         end();
-        read_name("solid");
+        read_name(false);
       } else if (is_next("facet")) {
         read_facet();
       } else {
@@ -137,11 +137,20 @@ class TextReader {
     ++word_;
   }
 
-  // The text that follows a keyword on its line, up to `end` or the end of the solid.
-  std::string read_name(std::string_view end) {
+  // Whether a word on this line begins a facet, rather than belong to a name.
+  bool begins_facet(size_t word) const {
+    return same_word(words_[word], "facet") && word + 1 < words_.size() &&
+           (same_word(words_[word + 1], "normal") || same_word(words_[word + 1], "outer"));
+  }
+
+  // The text that follows a keyword: the rest of its line, or in a file of one line what is before
+  // the next facet or solid.
+  std::string read_name(bool opens) {
+    const auto ends = [&](size_t word) {
+      return opens ? begins_facet(word) : same_word(words_[word], "solid");
+    };
     std::string name;
-    for (++word_; word_ < words_.size(); ++word_) {
-      if (same_word(words_[word_], end) || same_word(words_[word_], "endsolid")) break;
+    for (++word_; word_ < words_.size() && !ends(word_); ++word_) {
       name += (name.empty() ? "" : " ") + std::string(words_[word_]);
     }
     return name;
@@ -149,7 +158,7 @@ class TextReader {
 
   void begin() {
     end();
-    const std::string name = read_name("facet");
+    const std::string name = read_name(true);
     part_.emplace(Part{name.empty() ? name_ : name, name_, {}});
     pool_.emplace(part_->mesh);
   }
@@ -198,10 +207,13 @@ class TextReader {
   std::vector<Part> parts_;
 };
 
-// Text begins with "solid", as many binary files do too: those hold zeros.
+// Text begins with "solid", as many binary files do too: those hold zeros, which text may have at
+// its end alone.
 bool is_text(std::string_view bytes) {
   const std::string_view start = bytes.substr(0, 1000);
-  return start.find('\0') == std::string_view::npos &&
+  const size_t zero = start.find('\0');
+  return (zero == std::string_view::npos ||
+          bytes.find_first_not_of('\0', zero) == std::string_view::npos) &&
          same_word(trimmed(start).substr(0, 5), "solid");
 }
 
@@ -211,10 +223,15 @@ std::vector<Part> read_stl(std::string_view bytes, const std::string& file,
                            const std::string& name) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
+    throw InputError({file}, "", "text in UTF-16", "text in ASCII or UTF-8, or binary STL");
+  }
   std::vector<Part> parts;
   if (has_binary_length(bytes)) {
     parts = read_binary(bytes, file, name);
   } else if (is_text(bytes)) {
+    constexpr std::string_view ends_of_text = std::string_view("\0\x1A", 2);
+    bytes = bytes.substr(0, bytes.find_first_of(ends_of_text));
     parts = TextReader(bytes, file, name).read();
   } else {
     const bool has_count = bytes.size() >= header_bytes + count_bytes;

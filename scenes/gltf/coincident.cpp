@@ -16,6 +16,7 @@ namespace photorque {
 namespace {
 
 constexpr double tolerance = 1e-6, step = 2e-6;  // of the scene's size
+constexpr double slight = 2.5e-3;                // angle between faces that meet [rad]
 
 struct Face {
   uint32_t instance, triangle;
@@ -34,10 +35,19 @@ struct KeyedFace {
   Face face;
 };
 
+// How two faces that overlap lie to each other, if not in each other.
+enum class Relation {
+  coincident,  // within the tolerance, all over the overlap
+  touching,    // within it at one end; `front` lies before `behind`
+  parted,      // so too, with the fronts towards each other
+  crossing,
+};
+
 // `front` comes before `behind` where both face alike; neither where they face opposite ways.
 struct Pair {
   Face front, behind;
   bool opposite;
+  Relation relation;
 };
 
 std::optional<PlacedFace> placed(const Scene& scene, const Face& face) {
@@ -63,7 +73,7 @@ std::optional<PlacedFace> placed(const Scene& scene, const Face& face) {
 // belongs to both; the borders avoid 0 and 1, where most faces are.
 void add_keys(const PlacedFace& face, const Vec3& centre_m, double size_m,
               std::vector<KeyedFace>& keyed) {
-  constexpr double cells = 512.0, shift = 0.37, margin = 0.02;  // of a cell
+  constexpr double cells = 64.0, shift = 0.37, margin = 1.01 * slight * cells;  // of a cell
   const double distance = face.normal.dot(face.corner_m[0] - centre_m) / size_m;
   std::vector<uint64_t> keys = {0};
   for (const double value : {face.normal.x(), face.normal.y(), face.normal.z(), distance}) {
@@ -77,6 +87,21 @@ void add_keys(const PlacedFace& face, const Vec3& centre_m, double size_m,
     }
   }
   for (const uint64_t key : keys) keyed.push_back({key, face.face});
+}
+
+// The part of a convex polygon on the side of a plane to which `normal` points.
+std::vector<Vec3> part_before(const std::vector<Vec3>& polygon, const Vec3& normal,
+                              const Vec3& point_m) {
+  std::vector<Vec3> part;
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double from = normal.dot(a - point_m), to = normal.dot(b - point_m);
+    if (from >= 0.0) part.push_back(a);
+    if ((from < 0.0 && to > 0.0) || (from > 0.0 && to < 0.0)) {
+      part.push_back(a + from / (from - to) * (b - a));
+    }
+  }
+  return part;
 }
 
 // Whether two triangles in one plane cover each other by more than `sliver_m` in every direction.
@@ -98,6 +123,27 @@ bool overlap(const PlacedFace& a, const PlacedFace& b, double sliver_m) {
     }
   }
   return true;
+}
+
+// How far `small` lies before the plane of `large`, where it covers it: least and most. The overlap
+// of two triangles in nearly one plane has at most six corners.
+std::optional<std::array<double, 2>> heights_over(const PlacedFace& large,
+                                                  const PlacedFace& small) {
+  std::vector<Vec3> polygon(small.corner_m.begin(), small.corner_m.end());
+  for (size_t k = 0; k < 3; ++k) {
+    const Vec3 edge = large.corner_m[(k + 1) % 3] - large.corner_m[k];
+    const Vec3 opposite = large.corner_m[(k + 2) % 3] - large.corner_m[k];
+    Vec3 inwards = large.normal.cross(edge);
+    if (inwards.dot(opposite) < 0.0) inwards = -inwards;
+    polygon = part_before(polygon, inwards, large.corner_m[k]);
+  }
+  if (polygon.empty()) return std::nullopt;
+  std::array<double, 2> heights = {INFINITY, -INFINITY};
+  for (const Vec3& corner : polygon) {
+    const double at = large.normal.dot(corner - large.corner_m[0]);
+    heights = {std::min(heights[0], at), std::max(heights[1], at)};
+  }
+  return heights;
 }
 
 class Search {
@@ -137,29 +183,36 @@ class Search {
 
  private:
   void compare(const PlacedFace& one, const PlacedFace& other) {
+    if (one.normal.cross(other.normal).norm() > slight) return;
+    const double near_m = tolerance * size_m_;
+    if (!overlap(one, other, 2.0 * near_m)) return;
     const bool is_larger =
         (one.high_m - one.low_m).squaredNorm() >= (other.high_m - other.low_m).squaredNorm();
     const PlacedFace &large = is_larger ? one : other, &small = is_larger ? other : one;
-    const double near_m = tolerance * size_m_;
-    double height_m = 0.0;
-    for (const Vec3& corner : small.corner_m) {
-      const double at = large.normal.dot(corner - large.corner_m[0]);
-      if (std::abs(at) > near_m) return;
-      height_m += at / 3.0;
-    }
-    if (!overlap(one, other, 2.0 * near_m)) return;
+    const auto heights = heights_over(large, small);
+    if (!heights) return;
+    const auto [low_m, high_m] = *heights;
+    if (low_m > near_m || high_m < -near_m) return;
     const bool opposite = one.normal.dot(other.normal) < 0.0;
     const bool two_parts = one.face.instance != other.face.instance;
     const bool solid = is_solid(one.face.instance), other_solid = is_solid(other.face.instance);
-    if (opposite && two_parts && solid && other_solid) return;
+    const bool coincident = low_m >= -near_m && high_m <= near_m;
+    if (opposite && solid && other_solid && (two_parts || !coincident)) return;
+    const double middle_m = 0.5 * (low_m + high_m);
     bool one_first = one.face < other.face;
-    if (std::abs(height_m) > 1e-3 * near_m) {
-      one_first = (height_m < 0.0) == is_larger;
+    if (std::abs(middle_m) > 1e-3 * near_m) {
+      one_first = (middle_m < 0.0) == is_larger;
     } else if (solid != other_solid) {
       one_first = !solid;
     }
+    Relation relation = Relation::coincident;
+    if (!coincident) {
+      relation = low_m < -near_m && high_m > near_m ? Relation::crossing
+                 : opposite && middle_m > 0.0       ? Relation::parted
+                                                    : Relation::touching;
+    }
     pairs_.push_back(
-        {one_first ? one.face : other.face, one_first ? other.face : one.face, opposite});
+        {one_first ? one.face : other.face, one_first ? other.face : one.face, opposite, relation});
   }
 
   bool is_solid(uint32_t instance) {
@@ -199,11 +252,13 @@ std::vector<Pair> find_pairs(const Scene& scene, const Vec3& centre_m, double si
   return search.pairs();
 }
 
-// How many steps each face moves: one before its opposite, one before each that faces alike.
+// How many steps each face moves: one before its opposite, one before each that faces alike, and
+// back from a face that its front looks at.
 std::map<Face, int> levels_of(const std::vector<Pair>& pairs) {
   constexpr int most = 100;  // faces in one place; an order that contradicts itself ends there
   std::map<Face, int> levels;
   for (const Pair& pair : pairs) {
+    if (pair.relation == Relation::parted) continue;
     for (const Face& face : {pair.front, pair.behind}) {
       int& level = levels[face];
       if (pair.opposite) level = std::max(level, 1);
@@ -220,26 +275,50 @@ std::map<Face, int> levels_of(const std::vector<Pair>& pairs) {
       level = std::max(level, least);
     }
   }
+  for (const Pair& pair : pairs) {
+    if (pair.relation != Relation::parted) continue;
+    int &one = levels[pair.front], &other = levels[pair.behind];
+    if (one + other < 0) continue;
+    if (one <= 0) {
+      one = -other - 1;
+    } else if (other <= 0) {
+      other = -one - 1;
+    }
+  }
   return levels;
 }
 
+// The meshes of some instances, copied where other instances have them too.
+class OwnMeshes {
+ public:
+  explicit OwnMeshes(Scene& scene) : scene_(scene), users_(scene.meshes.size(), 0) {
+    for (const Instance& instance : scene.instances) ++users_[instance.mesh];
+  }
+
+  Mesh& of(uint32_t index) {
+    Instance& instance = scene_.instances[index];
+    if (users_[instance.mesh] > 1) {
+      --users_[instance.mesh];
+      const Mesh copy = scene_.meshes[instance.mesh];
+      instance.mesh = static_cast<uint32_t>(scene_.meshes.size());
+      scene_.meshes.push_back(copy);
+      users_.push_back(1);
+    }
+    return scene_.meshes[instance.mesh];
+  }
+
+ private:
+  Scene& scene_;
+  std::vector<int> users_;
+};
+
 void move_faces(Scene& scene, const std::map<Face, int>& levels, double step_m) {
-  std::vector<int> users(scene.meshes.size(), 0);
-  for (const Instance& instance : scene.instances) ++users[instance.mesh];
-  uint32_t copied = UINT32_MAX;  // the last instance that was given a separate mesh
+  OwnMeshes meshes(scene);
   for (const auto& [face, level] : levels) {
     if (level == 0) continue;
     const PlacedFace at = *placed(scene, face);
-    Instance& instance = scene.instances[face.instance];
-    if (copied != face.instance && users[instance.mesh] > 1) {
-      --users[instance.mesh];
-      const Mesh copy = scene.meshes[instance.mesh];
-      instance.mesh = static_cast<uint32_t>(scene.meshes.size());
-      scene.meshes.push_back(copy);
-      users.push_back(1);
-    }
-    copied = face.instance;
-    Mesh& mesh = scene.meshes[instance.mesh];
+    Mesh& mesh = meshes.of(face.instance);
+    const Instance& instance = scene.instances[face.instance];
     const Vec3 by = instance.body_from_mesh.linear().inverse() * (level * step_m * at.normal);
     for (uint32_t& corner : mesh.triangles[face.triangle]) {
       const Vec3 moved = mesh.vertices_m[corner] + by;
@@ -250,10 +329,84 @@ void move_faces(Scene& scene, const std::map<Face, int>& levels, double step_m) 
   }
 }
 
+// Cuts a triangle of a mesh along a plane (of the mesh's frame): it and one or two new ones. Leaves
+// it whole where a side has less than a sliver.
+void cut_triangle(Mesh& mesh, uint32_t triangle, const Vec3& normal, const Vec3& point_m) {
+  constexpr double sliver = 1e-9;  // of the triangle's area
+  const std::array<uint32_t, 3> corners = mesh.triangles[triangle];
+  const auto area_m2 = [&](const std::array<uint32_t, 3>& of) {
+    const Vec3& a = mesh.vertices_m[of[0]];
+    return 0.5 * (mesh.vertices_m[of[1]] - a).cross(mesh.vertices_m[of[2]] - a).norm();
+  };
+  std::array<double, 3> side{};
+  for (size_t k = 0; k < 3; ++k) side[k] = normal.dot(mesh.vertices_m[corners[k]] - point_m);
+  std::array<std::vector<uint32_t>, 2> parts;  // before the plane, behind it
+  for (size_t k = 0; k < 3; ++k) {
+    const size_t next = (k + 1) % 3;
+    parts[side[k] < 0.0].push_back(corners[k]);
+    if ((side[k] < 0.0) == (side[next] < 0.0)) continue;
+    const double part = side[k] / (side[k] - side[next]);
+    const auto between = [&](const auto& values) {
+      return (values[corners[k]] + part * (values[corners[next]] - values[corners[k]])).eval();
+    };
+    const Vec3 at_m = between(mesh.vertices_m);
+    mesh.vertices_m.push_back(at_m);
+    if (!mesh.uv.empty()) {
+      const Vec2 uv = between(mesh.uv);
+      mesh.uv.push_back(uv);
+    }
+    for (auto& one : parts) one.push_back(static_cast<uint32_t>(mesh.vertices_m.size() - 1));
+  }
+  std::vector<std::array<uint32_t, 3>> pieces;
+  for (const auto& part : parts) {
+    const size_t before = pieces.size();
+    for (size_t k = 2; k < part.size(); ++k) {
+      const std::array<uint32_t, 3> piece = {part[0], part[k - 1], part[k]};
+      if (area_m2(piece) > sliver * area_m2(corners)) pieces.push_back(piece);
+    }
+    if (pieces.size() == before) return;
+  }
+  mesh.triangles[triangle] = pieces[0];
+  mesh.triangles.insert(mesh.triangles.end(), pieces.begin() + 1, pieces.end());
+}
+
+// Cuts faces along the lines on which they cross, after which the pieces touch there.
+bool cut_crossings(Scene& scene, const std::vector<Pair>& pairs) {
+  constexpr size_t most = 10000;  // cuts
+  struct Cut {
+    Face face;
+    Vec3 normal, point_m;
+  };
+  std::vector<Cut> cuts;
+  for (const Pair& pair : pairs) {
+    if (pair.relation != Relation::crossing || cuts.size() >= most) continue;
+    for (const auto& [face, by] :
+         {std::pair(pair.front, pair.behind), std::pair(pair.behind, pair.front)}) {
+      const PlacedFace plane = *placed(scene, by);
+      const auto& body_from_mesh = scene.instances[face.instance].body_from_mesh;
+      cuts.push_back({face, body_from_mesh.linear().transpose() * plane.normal,
+                      body_from_mesh.inverse() * plane.corner_m[0]});
+    }
+  }
+  OwnMeshes meshes(scene);
+  std::map<Face, std::vector<uint32_t>> pieces;  // of a face that is cut
+  for (const Cut& cut : cuts) {
+    std::vector<uint32_t>& of = pieces.try_emplace(cut.face, 1, cut.face.triangle).first->second;
+    Mesh& mesh = meshes.of(cut.face.instance);
+    for (size_t i = 0, before = of.size(); i < before; ++i) {
+      auto next = static_cast<uint32_t>(mesh.triangles.size());
+      cut_triangle(mesh, of[i], cut.normal, cut.point_m);
+      for (; next < mesh.triangles.size(); ++next) of.push_back(next);
+    }
+  }
+  return !cuts.empty();
+}
+
 std::vector<std::string> lines_about(const Scene& scene, const std::vector<Pair>& pairs) {
   constexpr size_t most_lines = 5;
   std::map<std::tuple<bool, uint32_t, uint32_t>, std::set<Face>> by_parts;
   for (const Pair& pair : pairs) {
+    if (pair.relation != Relation::coincident) continue;
     auto [first, second] = std::pair(pair.front.instance, pair.behind.instance);
     if (pair.opposite && first > second) std::swap(first, second);
     auto& faces = by_parts[{pair.opposite, first, second}];
@@ -275,11 +428,13 @@ std::vector<std::string> lines_about(const Scene& scene, const std::vector<Pair>
     const std::string b = "\"" + scene.instances[second].path + "\"";
     const std::string count = std::to_string(faces.size()) + " triangles of ";
     const std::string whose = first == second ? a : a + " and " + b;
-    lines.push_back(count + whose +
-                    (opposite ? " lie in each other back to back: light meets each on its front"
-                              : " lie in each other and face alike: only the first" +
-                                    (first == second ? std::string() : ", of " + a + ",") +
-                                    " meets light from the front"));
+    lines.push_back(
+        count + whose +
+        (opposite ? " lie in each other back to back: light meets each on its front; light that "
+                    "passes through meets both"
+                  : " lie in each other and face alike: only the first" +
+                        (first == second ? std::string() : ", of " + a + ",") +
+                        " meets light from the front; light that passes through meets both"));
   }
   return lines;
 }
@@ -295,7 +450,8 @@ std::vector<std::string> separate_coincident_faces(Scene& scene) {
   }
   if (box.isEmpty()) return {};
   const double size_m = 0.5 * box.diagonal().norm();
-  const std::vector<Pair> pairs = find_pairs(scene, box.center(), size_m);
+  std::vector<Pair> pairs = find_pairs(scene, box.center(), size_m);
+  if (cut_crossings(scene, pairs)) pairs = find_pairs(scene, box.center(), size_m);
   if (pairs.empty()) return {};
   std::vector<std::string> lines = lines_about(scene, pairs);
   move_faces(scene, levels_of(pairs), step * size_m);

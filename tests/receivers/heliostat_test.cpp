@@ -1,9 +1,10 @@
 // Heliostats in the Sun: totals, peaks and maps of the flux on a receiver, against five ray tracers
 // (SolTrace, Tonatiuh, Tracer, Solstice, Heliosim).
 //
-// Source of the cases and of every number in `cases`: github.com/anustg/optics-verification, commit
-// 6a119fd2; Y. Wang et al., Solar Energy 195 (2020) 461. Geometry in the comment on build(). The
-// maps, and the places of the 522 mirrors of case C, are read where third parties' files lie.
+// Source of the cases, of every number in `cases` and of tests/data/heliostats.csv:
+// github.com/anustg/optics-verification, commit 6a119fd2; Y. Wang et al., Solar Energy 195 (2020)
+// 461. Geometry in the comment on build(). The places of the 522 mirrors of case C are read where
+// third parties' files lie.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -24,28 +25,29 @@ using testing::number;
 using testing::text;
 
 // Means of the five programs with three standard deviations between them: absorbed power [kW] and
-// the brightest of 100 × 100 bins [kW/m²].
+// the brightest of 100 × 100 bins [kW/m²]; and peak_of() of their mean map.
 struct HeliostatCase {
   const char* name;
-  double absorbed_kW, absorbed_3sigma_kW, peak_kW_m2, peak_3sigma_kW_m2;
+  double absorbed_kW, absorbed_3sigma_kW, peak_kW_m2, peak_3sigma_kW_m2, map_peak_kW_m2;
 };
+// One of the five maps of A_1.1.2 is another's; there an even disc of 2 m holds all of 100 kW.
 constexpr HeliostatCase cases[] = {
-    {"A_1.1.2", 99.99758, 0.005633517, 8.073143, 0.09739896},
-    {"A_1.2.1", 99.98508, 0.00859127, 15.93244, 0.02939985},
-    {"A_1.2.3", 66.8369, 0.005165104, 1.795393, 0.02198667},
-    {"A_2.1", 100.0004, 0.009583849, 8.083774, 0.08859027},
-    {"A_2.3.1", 99.30486, 0.06890336, 6.90404, 0.09570854},
-    {"A_2.3.3", 97.97153, 0.05731756, 6.768785, 0.1143731},
-    {"B_1.1.1", 97.6562, 0.04090887, 68.66935, 0.1321962},
-    {"B_1.1.3", 50.88898, 0.0108549, 1.734949, 0.02563425},
-    {"B_1.2.2", 45.44831, 0.008599997, 1.690728, 0.02167538},
-    {"B_1.2.4", 11.51386, 0.006200869, 0.2823004, 0.008777287},
-    {"B_2.1.1", 97.41373, 0.04808915, 69.28184, 0.2173246},
-    {"B_2.1.3", 50.81719, 0.05970667, 1.756696, 0.02430461},
-    {"B_2.2.2", 45.32314, 0.05627249, 1.711636, 0.01965085},
-    {"B_2.2.4", 11.41448, 0.005947406, 0.2805586, 0.009679873},
-    {"C_1.1", 32857.13, 7.209712, 4180.032, 25.21735},
-    {"C_2.2", 22753.6, 35.34117, 1756.524, 42.883},
+    {"A_1.1.2", 99.99758, 0.005633517, 8.073143, 0.09739896, 100.0 / (4.0 * pi)},
+    {"A_1.2.1", 99.98508, 0.00859127, 15.93244, 0.02939985, 15.8700},
+    {"A_1.2.3", 66.8369, 0.005165104, 1.795393, 0.02198667, 1.7686},
+    {"A_2.1", 100.0004, 0.009583849, 8.083774, 0.08859027, 7.9584},
+    {"A_2.3.1", 99.30486, 0.06890336, 6.90404, 0.09570854, 6.8737},
+    {"A_2.3.3", 97.97153, 0.05731756, 6.768785, 0.1143731, 6.7278},
+    {"B_1.1.1", 97.6562, 0.04090887, 68.66935, 0.1321962, 68.5553},
+    {"B_1.1.3", 50.88898, 0.0108549, 1.734949, 0.02563425, 1.7072},
+    {"B_1.2.2", 45.44831, 0.008599997, 1.690728, 0.02167538, 1.6694},
+    {"B_1.2.4", 11.51386, 0.006200869, 0.2823004, 0.008777287, 0.2733},
+    {"B_2.1.1", 97.41373, 0.04808915, 69.28184, 0.2173246, 69.1772},
+    {"B_2.1.3", 50.81719, 0.05970667, 1.756696, 0.02430461, 1.7303},
+    {"B_2.2.2", 45.32314, 0.05627249, 1.711636, 0.01965085, 1.6900},
+    {"B_2.2.4", 11.41448, 0.005947406, 0.2805586, 0.009679873, 0.2706},
+    {"C_1.1", 32857.13, 7.209712, 4180.032, 25.21735, 4158.4479},
+    {"C_2.2", 22753.6, 35.34117, 1756.524, 42.883, 1737.0459},
 };
 
 struct Heliostat {
@@ -70,10 +72,8 @@ SettingsNode::Table buie_sun(double ratio) {
   return {{"sun_shape", text("buie")}, {"circumsolar_ratio", number(ratio)}};
 }
 
-const char* const places = "reference/optics_verification";
-
 std::vector<Heliostat> field() {
-  std::ifstream in(outside::third_party(places) / "field.csv");
+  std::ifstream in(outside::third_party("reference/optics_verification/field.csv"));
   std::vector<Heliostat> mirrors;
   for (std::string line; std::getline(in, line);) {
     Heliostat mirror;
@@ -249,48 +249,30 @@ Estimate peak_of(const std::vector<double>& bins) {
   return {peak, peak * std::sqrt(variance * there.dot(inverse * there))};
 }
 
-// Numbers of a text of rows with commas, comments apart.
-std::vector<double> numbers_in(const std::string& all) {
-  std::istringstream lines(all);
-  std::vector<double> numbers;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with('#')) continue;
-    std::istringstream values(line);
-    for (std::string value; std::getline(values, value, ',');) numbers.push_back(std::stod(value));
-  }
-  return numbers;
-}
-
-std::string output_of(const std::string& command) {
-  std::string all;
-  std::FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return all;
-  char some[4096];
-  while (const size_t read = std::fread(some, 1, sizeof some, pipe)) all.append(some, read);
-  pclose(pipe);
-  return all;
-}
-
-// The mean map of the five programs [W/m²] and their spread over blocks [kW/m²].
-struct OtherMaps {
-  std::vector<Estimate> bins;
-  std::vector<double> spread;
+// The mean map of the five programs and their spread over blocks [kW/m²].
+struct OtherMap {
+  std::vector<double> mean, spread;
 };
-OtherMaps others(const std::string& name) {
-  const std::string file = (outside::third_party(places) / "maps" / name).string();
-  OtherMaps found;
-  for (const double value : numbers_in(output_of("gzip -dc '" + file + ".csv.gz'"))) {
-    found.bins.push_back({1e3 * value, 0.0});
+OtherMap others(const std::string& name) {
+  std::ifstream in(outside::reference_data("heliostats.csv"));
+  OtherMap found;
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with(name + ",")) continue;
+    std::istringstream values(line.substr(name.size() + 1));
+    std::vector<double> numbers;
+    for (std::string value; std::getline(values, value, ',');) numbers.push_back(std::stod(value));
+    if (numbers.size() != 1 + 2 * block_side) return {};
+    const auto deviations = numbers.begin() + 1 + block_side;
+    found.mean.insert(found.mean.end(), numbers.begin() + 1, deviations);
+    found.spread.insert(found.spread.end(), deviations, numbers.end());
   }
-  found.spread = numbers_in(output_of("cat '" + file + ".spread.csv'"));
   return found;
 }
 
 // χ² per block between our map and the mean of the others, with their spread, that of a sixth
 // program about the mean of five, and our error; in the orientation that fits best.
-double map_chi2(const Flux& flux, const OtherMaps& theirs_all) {
-  const auto& [bins, spread] = theirs_all;
-  const std::vector<double> mean = blocks_of(bins);
+double map_chi2(const Flux& flux, const OtherMap& others) {
+  const auto& [mean, spread] = others;
   const double brightest = *std::max_element(mean.begin(), mean.end());
   double best = std::numeric_limits<double>::max();
   for (const bool flip_x : {false, true}) {
@@ -336,27 +318,19 @@ TEST_P(Heliostats, AgreeWithFiveRayTracers) {
   const double known = name == "A_2.3.3" ? 1.5 : 1.0;
   EXPECT_NEAR(absorbed_kW, truth.absorbed_kW,
               known * truth.absorbed_3sigma_kW + 3e-3 * flux.absorbed_W.standard_error);
-  double others_peak_kW_m2 = std::numeric_limits<double>::quiet_NaN(), chi2 = others_peak_kW_m2;
-  if (std::filesystem::exists(outside::third_party(places))) {
-    const OtherMaps maps = others(name);
-    ASSERT_EQ(maps.bins.size(), side * side);
-    ASSERT_EQ(maps.spread.size(), block_side * block_side);
-    chi2 = map_chi2(flux, maps);
-    std::vector<double> bins_kW_m2;
-    for (const Estimate& bin : maps.bins) bins_kW_m2.push_back(1e-3 * bin.value);
-    others_peak_kW_m2 = peak_of(bins_kW_m2).value;
-    EXPECT_LT(chi2, 1.5);
-    // One of the five maps of A_1.1.2 is another's; there an even disc of 2 m holds all of 100 kW.
-    const double expected = name == "A_1.1.2" ? 100.0 / (4.0 * pi) : others_peak_kW_m2;
-    EXPECT_NEAR(peak.value, expected, truth.peak_3sigma_kW_m2 + 3.0 * peak.standard_error);
-  }
+  const OtherMap map = others(name);
+  ASSERT_EQ(map.mean.size(), block_side * block_side);
+  const double chi2 = map_chi2(flux, map);
+  EXPECT_LT(chi2, 1.5);
+  EXPECT_NEAR(peak.value, truth.map_peak_kW_m2,
+              truth.peak_3sigma_kW_m2 + 3.0 * peak.standard_error);
   std::printf(
       "| `%s` | %.3f ± %.3f | %.3f ± %.3f | %+.2f | %.4f ± %.4f | %.4f | %.4f ± %.4f | %.2f | %.1f "
       "|\n",
       truth.name, absorbed_kW, 1e-3 * flux.absorbed_W.standard_error, truth.absorbed_kW,
       truth.absorbed_3sigma_kW, (absorbed_kW - truth.absorbed_kW) / truth.absorbed_3sigma_kW,
-      peak.value, peak.standard_error, others_peak_kW_m2, truth.peak_kW_m2, truth.peak_3sigma_kW_m2,
-      chi2, flux.seconds);
+      peak.value, peak.standard_error, truth.map_peak_kW_m2, truth.peak_kW_m2,
+      truth.peak_3sigma_kW_m2, chi2, flux.seconds);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, Heliostats, ::testing::ValuesIn(cases), [](const auto& tested) {

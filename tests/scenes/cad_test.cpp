@@ -110,8 +110,14 @@ TEST(Stl, DialectsOfTextAreTheSameSquare) {
   for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   std::ranges::replace(one_line, '\n', ' ');
   std::ranges::replace(two, '\n', ' ');
+  std::string carriage_returns = upper, named = plain;
+  std::ranges::replace(carriage_returns, '\n', '\r');
+  for (size_t at = 0; (at = named.find("square", at)) != std::string::npos; at += 6) {
+    named.replace(at, 6, "facet plate endsolid");
+  }
   for (const std::string& text :
-       {plain, upper, one_line, "\xEF\xBB\xBF" + plain, "\xEF\xBB\xBF" + upper, "\n " + plain}) {
+       {plain, upper, one_line, "\xEF\xBB\xBF" + plain, "\xEF\xBB\xBF" + upper, "\n " + plain,
+        carriage_returns, named, plain + "\x1A", plain + std::string(3, '\0')}) {
     const GltfModel model = stl(text);
     ASSERT_EQ(model.scene.meshes.size(), 1u) << text;
     EXPECT_EQ(model.scene.meshes[0].triangles.size(), 2u) << text;
@@ -119,6 +125,7 @@ TEST(Stl, DialectsOfTextAreTheSameSquare) {
     EXPECT_NEAR(extent_of(model.scene).area_m2, 1.0, 1e-12) << text;
   }
   EXPECT_EQ(stl(two).scene.instances.size(), 2u);
+  EXPECT_THAT(refusal_of([&] { stl(std::string("\xFF\xFEs\0o\0", 6)); }), HasSubstr("UTF-16"));
 }
 
 // A binary file may begin with "solid"; where its length is wrong, that is what is said.

@@ -2,6 +2,8 @@
 // that a rasteriser counts, which knows neither sides nor shadows.
 #include <gmock/gmock.h>
 
+#include <sstream>
+
 #include "core/constants.h"
 #include "receivers/gather/bodies/sunlit_body.h"
 #include "scenes/cad/model.h"
@@ -130,6 +132,29 @@ TEST(CoincidentFaces, FeelTheLightOnce) {
       const double area_m2 = silhouette_m2(scene, travel);
       EXPECT_NEAR(force_N.dot(travel) / pressure_Pa, area_m2, 4e-3) << what << towards;
       EXPECT_LT(force_N.cross(travel).norm(), 1e-4 * force_N.norm()) << what;
+    }
+  }
+}
+
+// Sheets that touch along an edge, or cross in the middle, at angles at which they are apart by
+// less than the rounding of rays over some or all of their width. Either is seen as one square.
+TEST(CoincidentFaces, AtASlightAngleFeelTheLightOnce) {
+  for (const double angle_rad : {1.2e-6, 1e-5, 1e-4, 2e-3}) {
+    for (const double axis_m : {-0.5, 0.1}) {
+      for (const char* face : {"f 5 6 7 8\n", "f 8 7 6 5\n"}) {
+        std::ostringstream tilted;
+        tilted.precision(12);
+        for (const auto& [x, y] : {std::pair(-0.5, -0.5), {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}) {
+          tilted << "v " << axis_m + (x - axis_m) * std::cos(angle_rad) << " " << y << " "
+                 << (x - axis_m) * std::sin(angle_rad) << "\n";
+        }
+        const Scene scene =
+            black(model_of(unit_square + "o a\nf 1 2 3 4\n" + tilted.str() + "o b\n" + face).scene);
+        for (const Vec3& travel : {Vec3(0, 0, -1), Vec3(0, 0, 1)}) {
+          const double force_N = sunlit(scene, travel).head<3>().matrix().dot(travel);
+          EXPECT_NEAR(force_N / pressure_Pa, 1.0, 3e-4) << angle_rad << " " << axis_m << face;
+        }
+      }
     }
   }
 }

@@ -28,6 +28,17 @@ TEST_F(OpticalTruth, EdgeOnLightRaisesNoWarning) {
   EXPECT_THAT(traced.out + traced.err, Not(HasSubstr("WARNING")));
 }
 
+// Sobol points meet the plate equally often in all replicates, each off by a fraction of a ray.
+TEST_F(OpticalTruth, CountsThatAgreeByChanceRaiseNoWarning) {
+  for (const char* rays : {"32768", "65536"}) {
+    const Outcome traced =
+        run("trace " + plate("[0, 0, -1]", std::string("[trace]\nrays = ") + rays) + " --out " +
+            at("o"));
+    ASSERT_EQ(traced.status, 0) << traced.err;
+    EXPECT_THAT(traced.out + traced.err, Not(HasSubstr("WARNING"))) << rays;
+  }
+}
+
 // The largest force is that of 1 m², and the torque is zero in every direction.
 TEST_F(OpticalTruth, ASheetDrawnFromBothSidesCountsOnceAndRaisesNoWarning) {
   const std::string file =

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -136,6 +137,74 @@ void forward(benchmark::State& state, const Case& which) {
   for (auto _ : state) rays += trace(scene, {}, which.beams, receivers, options).rays;
   state.counters["Mrays/s"] =
       benchmark::Counter(static_cast<double>(rays) / 1e6, benchmark::Counter::kIsRate);
+}
+
+// A Sun that the tracer does not know as parallel light: its rays fill the disc about the scene.
+class WholeDisc final : public Emitter {
+ public:
+  explicit WholeDisc(std::shared_ptr<const Emitter> sun) : sun_(std::move(sun)) {}
+  double power_W() const override { return sun_->power_W(); }
+  void emit(const SampleBlock& samples, RayBlock& rays) const override {
+    sun_->emit(samples, rays);
+  }
+  double relative_intensity(double angle_rad) const override {
+    return sun_->relative_intensity(angle_rad);
+  }
+
+ private:
+  std::shared_ptr<const Emitter> sun_;
+};
+
+// A mirror of 10 m × 10 m that faces the zenith, 500 m below a receiver of 8 m × 8 m that looks
+// down: with the Sun in the zenith, 1000 W/m² · 100 m² meet the mirror and 64 kW the receiver's
+// back, which lets them through.
+Case one_mirror(bool whole_disc) {
+  Case one;
+  one.scene.surfaces.push_back(grey_surface("mirror", 1.0, 0.0));
+  add_part(one.scene, plate(10.0, 1, 0.0), "mirror");
+  one.scene.surfaces.push_back(grey_surface("nothing", 0, 0, 1.0));
+  one.scene.surfaces.push_back(grey_surface("black", 0, 0));
+  Mesh receiver = plate(8.0, 1, 500.0);
+  for (auto& triangle : receiver.triangles) std::swap(triangle[1], triangle[2]);
+  add_part(one.scene, std::move(receiver), "receiver");
+  one.scene.instances.back().front_surface = 2;
+  one.scene.instances.back().back_surface = 1;
+  const Settings settings(std::make_shared<const SettingsNode>(SettingsNode{
+      SettingsNode::Table{{"direction", vector(Vec3(0, 0, -1))}, {"irradiance_W_m2", number(1000)}},
+      {}}));
+  for (const SourceKind& kind : all_source_kinds()) {
+    if (kind.name != "sun") continue;
+    one.beams = kind.make(settings, {.scene_radius_m = one.scene.radius_m(), .notice = {}});
+  }
+  if (whole_disc) one.beams[0].emitter = std::make_shared<WholeDisc>(one.beams[0].emitter);
+  return one;
+}
+
+// Sunlight on one mirror in a large scene: rays that meet the scene, and the error of what the
+// receiver gets from the mirror (64 kW but for the Sun's width).
+void sunlight(benchmark::State& state, const Case& which) {
+  const TraceableScene scene(which.scene);
+  const FluxMapReceiver map = flux_map(which.scene);
+  const Receiver* const receivers[] = {&map};
+  TraceOptions options;
+  options.rays = 1ull << state.range(1);
+  options.threads = static_cast<int>(state.range(0));
+  std::atomic<uint64_t> first_hits = 0;
+  options.observe = [&](const HitOrigin&, const Hits& hits) {
+    if (hits.depth[0] == 0) first_hits += static_cast<uint64_t>(hits.count);
+  };
+  uint64_t rays = 0;
+  Estimate received;
+  for (auto _ : state) {
+    const TraceResult result = trace(scene, {}, which.beams, receivers, options);
+    rays += result.rays;
+    received = result.power_balance.absorbed_by_instance_W[1];
+  }
+  state.counters["useful_%"] = 100.0 * static_cast<double>(first_hits) / static_cast<double>(rays);
+  state.counters["useful_Mrays/s"] =
+      benchmark::Counter(static_cast<double>(first_hits) / 1e6, benchmark::Counter::kIsRate);
+  state.counters["received_kW"] = 1e-3 * received.value;
+  state.counters["error_kW"] = 1e-3 * received.standard_error;
 }
 
 // Rays of one batch per beam, as they are made or in the order of their landing cells.
@@ -339,6 +408,24 @@ void case_b_sorted_embree(benchmark::State& state) {
   bare_embree(state, case_b(), true);
 }
 
+void one_mirror_sun(benchmark::State& state) {
+  sunlight(state, one_mirror(false));
+}
+void one_mirror_whole_disc(benchmark::State& state) {
+  sunlight(state, one_mirror(true));
+}
+
+// Threads, binary logarithm of the rays.
+BENCHMARK(one_mirror_sun)
+    ->Args({1, 18})
+    ->Args({1, 22})
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(one_mirror_whole_disc)
+    ->Args({1, 22})
+    ->Args({1, 26})
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
 // Threads, points per replicate in bins that may be shaded.
 BENCHMARK(case_a_gather)
     ->Args({1, 16})

@@ -6,6 +6,7 @@
 
 #include "core/constants.h"
 #include "receivers/gather/bodies/wrench.h"
+#include "tools/runs/counting_error.h"
 
 namespace photorque {
 namespace {
@@ -37,9 +38,9 @@ Estimate direct_bin_W(const FluxMapReceiver& map, const BinSums& sums, size_t bi
 // Rays are single precision: cancelling sums keep an error of this fraction of the emitted sum.
 constexpr double ray_rounding = 1e-7;
 
-// `ray_W`: of one ray, on the mean.
+// `ray_W`: of one ray, on the mean. `counting_W`: see counting_error_W().
 DirectLight compare(const FluxMapReceiver& map, const Gathered& gathered, const BinSums& rays,
-                    double ray_W, double emitted_W) {
+                    double ray_W, double counting_W, double emitted_W) {
   constexpr double few = 100.0;     // rays: their scatter is no estimate of their error
   constexpr double well_lit = 0.3;  // relative error of the rays' bin at most
   DirectLight light;
@@ -48,8 +49,8 @@ DirectLight compare(const FluxMapReceiver& map, const Gathered& gathered, const 
   light.rays_W = direct_total_W(map, rays);
   const double expected = light.gathered_W.value / ray_W;
   const double chance_W = expected < few ? std::sqrt(std::max(expected, 0.0)) * ray_W : 0.0;
-  const double sigma =
-      std::hypot(light.gathered_W.standard_error, light.rays_W.standard_error, chance_W);
+  const double sigma = std::hypot(light.gathered_W.standard_error, light.rays_W.standard_error,
+                                  std::max(chance_W, counting_W));
   const double difference = light.gathered_W.value - light.rays_W.value;
   light.difference_sigma = difference / (sigma + ray_rounding * emitted_W);
   int bins = 0;
@@ -95,14 +96,14 @@ std::array<Estimate, 3> total_N_m(const TorqueMapReceiver& map, const BinSums& s
   return total;
 }
 
-// `scale_N_m`: of all the light, at the largest arm.
+// `scale_N_m`: of all the light, at the largest arm. `counting_N_m`: counting_error_W(), there too.
 DirectTorque compare(const TorqueMapReceiver& map, const Gathered& gathered, const BinSums& rays,
-                     double scale_N_m) {
+                     double scale_N_m, double counting_N_m) {
   DirectTorque torque{map.name(), total_N_m(map, gathered.direct), total_N_m(map, rays)};
   for (size_t axis = 0; axis < 3; ++axis) {
     const Estimate &own = torque.gathered_N_m[axis], &by_rays = torque.rays_N_m[axis];
-    const double sigma =
-        std::hypot(own.standard_error, by_rays.standard_error) + ray_rounding * scale_N_m;
+    const double sigma = std::hypot(own.standard_error, by_rays.standard_error, counting_N_m) +
+                         ray_rounding * scale_N_m;
     torque.worst_sigma = std::max(torque.worst_sigma, std::abs(own.value - by_rays.value) / sigma);
   }
   return torque;
@@ -110,7 +111,7 @@ DirectTorque compare(const TorqueMapReceiver& map, const Gathered& gathered, con
 
 // `scale_N`: of all the light; `arm_m`: the largest.
 DirectWrench compare(const WrenchReceiver& receiver, const Gathered& gathered, const BinSums& rays,
-                     double scale_N, double arm_m) {
+                     double scale_N, double counting_N, double arm_m) {
   BinSums own = rays;
   replace_direct(gathered, own);
   DirectWrench wrench{receiver.name(), receiver.direct(own), receiver.direct(rays)};
@@ -122,9 +123,10 @@ DirectWrench compare(const WrenchReceiver& receiver, const Gathered& gathered, c
   const auto mine = values(wrench.gathered), theirs = values(wrench.rays);
   for (Eigen::Index k = 0; k < 6; ++k) {
     const double scale = k < 3 ? scale_N : scale_N * arm_m;
-    const double sigma =
-        std::sqrt(wrench.gathered.covariance(k, k) + wrench.rays.covariance(k, k)) +
-        ray_rounding * scale;
+    const double counting = counting_N * scale / scale_N;
+    const double sigma = std::sqrt(wrench.gathered.covariance(k, k) + wrench.rays.covariance(k, k) +
+                                   counting * counting) +
+                         ray_rounding * scale;
     wrench.worst_sigma = std::max(wrench.worst_sigma, std::abs(mine[k] - theirs[k]) / sigma);
   }
   return wrench;
@@ -152,7 +154,10 @@ struct Wanted {
   double ray_W;
   DirectRoute& route;
 
+  double counting_W;
+
   double force_N() const { return emitted_W / speed_of_light_m_s; }
+  double counting_N() const { return counting_W / speed_of_light_m_s; }
 
   // Whether it is worth while; otherwise prints a note.
   bool pays(const std::string& what, size_t pairs) const {
@@ -171,8 +176,9 @@ void gather_torques(const Wanted& wanted, const TorqueMapReceiver& map, BinSums&
   if (!wanted.pays("torque of direct light on " + map.name(), pairs)) return;
   const Gathered gathered =
       gather_torque(wanted.scene, wanted.lab_from_body, beams, map, wanted.options);
-  wanted.route.torques.push_back(
-      compare(map, gathered, sums, wanted.force_N() * wanted.experiment.scene.radius_m()));
+  wanted.route.torques.push_back(compare(map, gathered, sums,
+                                         wanted.force_N() * wanted.experiment.scene.radius_m(),
+                                         wanted.counting_N() * wanted.experiment.scene.radius_m()));
   replace_direct(gathered, sums);
 }
 
@@ -182,7 +188,8 @@ void gather_light(const Wanted& wanted, const FluxMapReceiver& map, size_t place
   if (!wanted.pays("direct light on " + map.name(), map.grid().bins() * beams.size())) return;
   const Gathered gathered =
       gather_direct(wanted.scene, wanted.lab_from_body, beams, map, wanted.options);
-  wanted.route.gathered.push_back(compare(map, gathered, sums, wanted.ray_W, wanted.emitted_W));
+  wanted.route.gathered.push_back(
+      compare(map, gathered, sums, wanted.ray_W, wanted.counting_W, wanted.emitted_W));
   wanted.route.gathered.back().receiver = place;
   replace_direct(gathered, sums);
 }
@@ -200,7 +207,7 @@ void gather_wrench(const Wanted& wanted, const WrenchGather& bodies, const Wrenc
   }
   const Gathered gathered = bodies.wrench(wanted.lab_from_body, receiver, wanted.options);
   wanted.route.wrenches.push_back(
-      compare(receiver, gathered, sums, wanted.force_N(),
+      compare(receiver, gathered, sums, wanted.force_N(), wanted.counting_N(),
               wanted.experiment.scene.radius_m() + receiver.about_body_m().norm()));
   replace_direct(gathered, sums);
 }
@@ -225,7 +232,8 @@ DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scen
                       result.rays,
                       result.power_balance.emitted_W,
                       result.sent_W / static_cast<double>(result.rays),
-                      route};
+                      route,
+                      counting_error_W(result, options.replicates)};
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {
     const NamedReceiver& receiver = experiment.receivers[i];
     BinSums& sums = result.sums[i];

@@ -14,6 +14,7 @@
 #include "receivers/gather/bodies/wrench.h"
 #include "scenes/effects/stated.h"
 #include "sources/profiles/beam_shape.h"
+#include "tools/runs/counting_error.h"
 #include "tools/runs/memory.h"
 
 namespace photorque {
@@ -75,20 +76,22 @@ size_t whole_wrench(Experiment& experiment) {
 
 // The largest disagreement, in standard errors, between the force and torque summed over surfaces
 // and the same from the rays alone.
-double momentum_disagreement(const PowerBalance& power_balance, const BinSums& sums,
-                             const WrenchReceiver& wrench, double radius_m) {
-  const WrenchEstimate surfaces = wrench_about(wrench.total(sums), Vec3::Zero());
+double momentum_disagreement(const OpticalRun& run, const OpticalResult& result) {
+  const PowerBalance& power_balance = result.power_balance;
+  const BinSums& sums = result.sums[run.wrench_index()];
+  const WrenchEstimate surfaces = wrench_about(run.wrench().total(sums), Vec3::Zero());
+  const double counting_N = counting_error_W(result, sums.replicates) / speed_of_light_m_s;
   double worst = 0.0;
   for (int k = 0; k < 3; ++k) {
     const auto i = static_cast<size_t>(k);
     const auto compare = [&](const Estimate& rays, double value, double error, double arm) {
-      const double sigma = std::hypot(rays.standard_error, error);
+      const double sigma = std::hypot(rays.standard_error, error, counting_N * arm);
       const double rounding = 1e-7 * arm * power_balance.emitted_W / speed_of_light_m_s;
       worst = std::max(worst, std::abs(rays.value - value) / (sigma + rounding));
     };
     compare(power_balance.force_N[i], surfaces.mean.force_N[k], surfaces.force_error_N()[k], 1.0);
     compare(power_balance.torque_N_m[i], surfaces.mean.torque_N_m[k],
-            surfaces.torque_error_N_m()[k], radius_m);
+            surfaces.torque_error_N_m()[k], run.experiment().scene.radius_m());
   }
   return worst;
 }
@@ -205,8 +208,7 @@ std::vector<std::string> OpticalRun::warnings(const OpticalResult& result) const
     lines.push_back("the power balance is off by " + show(power_balance.closure) +
                     " of what is emitted");
   }
-  const double momentum = momentum_disagreement(power_balance, result.sums[wrench_], wrench(),
-                                                experiment_.scene.radius_m());
+  const double momentum = momentum_disagreement(*this, result);
   if (momentum > loud_sigma) {
     lines.push_back("force or torque summed over surfaces and from the rays differ by " +
                     show(momentum) + " standard errors" + rarely_met);
@@ -285,10 +287,7 @@ Product OpticalRun::product(const OpticalResult& result) const {
       {"escaped_W", power_balance.escaped_W},
       {"truncated_W", power_balance.truncated_W},
       {"ledger_closure", {power_balance.closure, 0.0}},
-      {"momentum_disagreement_sigma",
-       {momentum_disagreement(power_balance, result.sums[wrench_], wrench(),
-                              experiment_.scene.radius_m()),
-        0.0}},
+      {"momentum_disagreement_sigma", {momentum_disagreement(*this, result), 0.0}},
   };
   for (const DirectLight& direct : result.direct.gathered) {
     product.quantities.push_back({"direct_on_" + direct.name + "_W", direct.gathered_W});
@@ -409,9 +408,7 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
   details.line("  power: emitted = absorbed + escaped + truncated to " +
                show_brief(power_balance.closure));
   details.line("  momentum: surfaces and rays differ by at most " +
-               show_brief(momentum_disagreement(power_balance, result.sums[run.wrench_index()],
-                                                run.wrench(), run.experiment().scene.radius_m())) +
-               " standard errors");
+               show_brief(momentum_disagreement(run, result)) + " standard errors");
   print_direct_checks(details, result);
   const std::string inside = run.inside_light(result);
   if (!inside.empty()) console.line("note: " + inside);
