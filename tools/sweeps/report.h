@@ -20,6 +20,17 @@ std::vector<std::string> figure_columns(const SweepPlan& plan, const std::vector
 // where asked for, `feasible` and `pareto` (1 or 0), and `error` where a design failed.
 Table sweep_table(const SweepPlan& plan, const SweepResult& result);
 
+// How far uncertain inputs spread the figures of a random plan without an objective.
+// "spread": a row per figure of `columns` with its mean, its standard deviation over the designs
+// that did not fail, and for every axis of numbers "from KEY", the fraction of the variance that it
+// causes: b² var(x)/var(y), b of the linear regression on all of them. The fractions sum to one
+// where the figure is linear in independent inputs. Nothing for a grid, a plan with an objective,
+// or fewer designs than the regression needs.
+std::optional<Table> spread_table(const SweepPlan& plan, const SweepResult& result,
+                                  const std::vector<std::string>& columns);
+
+void print_spread(const Console& console, const SweepPlan& plan, const Table& spread);
+
 // The table, pictures, and the best as headline figures.
 Product sweep_product(const SweepPlan& plan, const SweepResult& result);
 

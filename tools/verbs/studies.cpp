@@ -7,7 +7,6 @@
 #include "tools/runs/optical_run.h"
 #include "tools/runs/result.h"
 #include "tools/sweeps/report.h"
-#include "tools/sweeps/spread.h"
 
 namespace photorque {
 namespace {

@@ -22,8 +22,8 @@ Diagnosis of_all_curves(std::vector<Diagnosis> each);
 void compare_with_sensor(const ModuleDesign& design, const std::vector<ModuleRun>& curves,
                          const std::vector<double>& light, Diagnosis& d);
 
-// Warns of references that may hold what is missing. A curve that is its own reference, and that no
-// diode describes, is unexplained.
+// Warns of references that may contain the missing effects. A curve that is its own reference, and
+// that no diode describes, is unexplained.
 void judge_references(const ModuleDesign& design, const ModuleNominal& nominal,
                       const std::vector<LightRecording>& recordings, Diagnosis& d);
 
