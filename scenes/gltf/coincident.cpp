@@ -16,7 +16,7 @@ namespace photorque {
 namespace {
 
 constexpr double tolerance = 1e-6, step = 2e-6;  // of the scene's size
-constexpr double slight = 2.5e-3;                // angle between faces that meet [rad]
+constexpr double slight = 5e-4;                  // angle between faces that meet [rad]
 
 struct Face {
   uint32_t instance, triangle;
@@ -185,10 +185,16 @@ class Search {
   void compare(const PlacedFace& one, const PlacedFace& other) {
     if (one.normal.cross(other.normal).norm() > slight) return;
     const double near_m = tolerance * size_m_;
-    if (!overlap(one, other, 2.0 * near_m)) return;
     const bool is_larger =
         (one.high_m - one.low_m).squaredNorm() >= (other.high_m - other.low_m).squaredNorm();
     const PlacedFace &large = is_larger ? one : other, &small = is_larger ? other : one;
+    std::array<double, 3> corner_m{};
+    for (size_t k = 0; k < 3; ++k) {
+      corner_m[k] = large.normal.dot(small.corner_m[k] - large.corner_m[0]);
+    }
+    const auto [lowest_m, highest_m] = std::ranges::minmax(corner_m);
+    if (lowest_m > near_m || highest_m < -near_m) return;
+    if (!overlap(one, other, 2.0 * near_m)) return;
     const auto heights = heights_over(large, small);
     if (!heights) return;
     const auto [low_m, high_m] = *heights;

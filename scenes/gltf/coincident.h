@@ -9,7 +9,7 @@
 // - Facing alike: one of them comes first, and shades the others: the outer one where their
 //   distances differ, else an open sheet before a solid, else the first of the file.
 //
-// Faces that touch or cross at less than 2.5e-3 rad are apart by less than the rounding of rays
+// Faces that touch or cross at less than 5e-4 rad are apart by less than the rounding of rays
 // over some width. They are cut where they cross, and set apart in the same way.
 #pragma once
 
