@@ -60,25 +60,6 @@ TEST_F(SweepDesigns, SpreadIsThatOfTheUncertainInputs) {
   experiment(R"([sweep]
 verb = "trace"
 designs = 256
-figures = ["power_on_plate_W", "emitted_W"]
-[[sweep.axis]]
-key = "source[0].irradiance_W_m2"
-name = "irradiance"
-mean = 1000
-sigma = 30
-[[sweep.axis]]
-key = "scene.metres_per_unit"
-name = "scale"
-mean = 1
-sigma = 0.01
-[[sweep.axis]]
-key = "trace.seed"
-values = [1, 2]
-)");
-  EXPECT_EQ(sweep().status, 2);  // the values of a random plan have distributions
-  experiment(R"([sweep]
-verb = "trace"
-designs = 256
 figures = ["power_on_plate_W"]
 [[sweep.axis]]
 key = "source[0].irradiance_W_m2"
