@@ -130,6 +130,48 @@ TEST(Scan, TakesNoMirrorImageForALine) {
   for (const double line_Hz : line_frequencies_Hz(fit, runs, {})) EXPECT_LT(line_Hz, 2.0);
 }
 
+// An appendage of a twelfth of the platform's inertia that rings for 20 s: a fit finds it from
+// within its resonance alone, and from no axis at all. The platform moves as the law propagates it.
+TEST(Scan, StartsAnAppendageWithinItsResonance) {
+  constexpr double frequency_Hz = 0.93, damping = 0.009, appendage_kg_m2 = 0.01;
+  const Vec3 axis = Vec3(-0.44, -0.86, 0.25).normalized();
+  const NamedRecording still = recorded(8, nothing);
+  Observation seen = observe(still.recording, still.name);
+  const NominalModel nominal = nominal_model();
+  AttitudeModel truth = nominal.model;
+  const DisturbanceContext context{truth.platform, truth.environment};
+  truth.disturbances.push_back(make_disturbance_of("flexible_mode",
+                                                   {{"axis", {axis.x(), axis.y(), axis.z()}},
+                                                    {"frequency_Hz", {frequency_Hz}},
+                                                    {"damping", {damping}},
+                                                    {"inertia_kg_m2", {appendage_kg_m2}}},
+                                                   context));
+  const Dynamics dynamics(truth);
+  PlatformState initial = dynamics.initial_state(Vec3(0.03, -0.02, 0.08));
+  initial.lab_from_body = Eigen::AngleAxisd(0.12, Vec3::UnitX());
+  PredictionOptions options;
+  options.keep_residuals = true;
+  const Prediction moved = predict(dynamics, initial, seen, {}, options);
+  ASSERT_EQ(moved.states.size(), seen.blocks());
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    seen.attitude[i] = moved.states[i].lab_from_body;
+    seen.gyro_rad_s[i] = moved.states[i].rate_body_rad_s;
+  }
+  for (int channel = 0; channel < 6; ++channel) seen.noise.set(channel, {1e-7, 0.0, 0.0});
+  const std::vector<Observation> runs = {seen};
+  const Candidates all = all_candidates(nominal, runs);
+  const auto mode = std::ranges::find(all.list, "flexible_mode", &Candidate::label);
+  ASSERT_NE(mode, all.list.end());
+  const std::vector<Start> starts =
+      starts_of(*mode, nominal_trial(fit_nominal(nominal, runs), all), runs, runs, {}, {});
+  const auto best = std::ranges::max_element(starts, {}, &Start::gain);
+  ASSERT_NE(best, starts.end());
+  const Disturbance& d = best->disturbance;
+  EXPECT_NEAR(parameter_of(d, "frequency_Hz").value, frequency_Hz, 0.01 * frequency_Hz);
+  EXPECT_NEAR(parameter_of(d, "inertia_kg_m2").value, appendage_kg_m2, 0.3 * appendage_kg_m2);
+  EXPECT_GT(std::abs(vector_of(d, "axis").normalized().dot(axis)), 0.95);
+}
+
 // The torque equation is homogeneous: a third of the inertia explains a torque three times as
 // large.
 TEST(Trial, AThirdOfTheInertiaIsNoExplanation) {

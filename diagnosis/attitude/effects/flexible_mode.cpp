@@ -119,13 +119,14 @@ void set_axis(Disturbance& d, const Vec3& unit) {
 }
 
 // Light appendages of one frequency about six axes: their matrices J a aᵀ span the symmetric ones.
-ScoreGroup appendages(const Disturbance& start, double frequency_Hz) {
+ScoreGroup appendages(const Disturbance& start, double frequency_Hz,
+                      double damping = scanned_damping) {
   ScoreGroup group;
   group.parameters = {static_cast<int>(index_of(start, "inertia_kg_m2"))};
   for (const Vec3& axis :
        {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 1, 0), Vec3(1, 0, 1), Vec3(0, 1, 1)}) {
     Disturbance d = with_parameter(start, "frequency_Hz", frequency_Hz);
-    parameter_of(d, "damping").value = scanned_damping;
+    parameter_of(d, "damping").value = damping;
     parameter_of(d, "inertia_kg_m2").value *= 1e-3;
     set_axis(d, axis.normalized());
     group.disturbances.push_back(std::move(d));
@@ -151,7 +152,24 @@ Eigen::VectorXd as_six(const Vec3& axis) {
 struct Mode {
   double gain = 0.0;  // expected fall of χ²
   Disturbance start;
+  double scanned_Hz = 0.0;
 };
+
+// An appendage of `strength_kg_m2` about `axis`, as scored where it has no recoil on the platform.
+// With μ = J aᵀI⁻¹a its swing is that of frequency f/√(1 − μ), driven by 1/(1 − μ) times the
+// acceleration: of so much, the score finds J/(1 − μ) at f/√(1 − μ).
+Disturbance heavy(const Disturbance& light, const Vec3& axis, double strength_kg_m2,
+                  const Mat3& inertia_kg_m2) {
+  constexpr double most = 0.5;
+  const double scored = strength_kg_m2 * axis.dot(inertia_kg_m2.inverse() * axis);
+  const double fraction = std::min(scored / (1.0 + scored), most);
+  Disturbance d = light;
+  set_axis(d, axis);
+  parameter_of(d, "frequency_Hz").value *= std::sqrt(1.0 - fraction);
+  parameter_of(d, "damping").value *= std::sqrt(1.0 - fraction);
+  parameter_of(d, "inertia_kg_m2").value = fraction / axis.dot(inertia_kg_m2.inverse() * axis);
+  return d;
+}
 
 // The appendage with the largest part of the effect of all six: about an eigenvector of Σ J a aᵀ.
 Mode best_appendage(const ScoreGroup& group, const Score& score, const Mat3& inertia_kg_m2) {
@@ -171,14 +189,7 @@ Mode best_appendage(const ScoreGroup& group, const Score& score, const Mat3& ine
     if (!(along > 0.0 && curvature > 0.0)) continue;
     if (along * along < best.gain * curvature) continue;
     best.gain = along * along / curvature;
-    const double whole_kg_m2 = axis.dot(inertia_kg_m2 * axis);
-    const double fraction = std::min(along / curvature / whole_kg_m2, 0.5);
-    best.start = group.disturbances.front();
-    set_axis(best.start, axis);
-    // The platform's recoil makes a heavy appendage swing faster than with the platform held.
-    parameter_of(best.start, "frequency_Hz").value *= std::sqrt(1.0 - fraction);
-    parameter_of(best.start, "damping").value = 0.04;
-    parameter_of(best.start, "inertia_kg_m2").value = fraction * whole_kg_m2;
+    best.start = heavy(group.disturbances.front(), axis, along / curvature, inertia_kg_m2);
   }
   return best;
 }
@@ -189,6 +200,45 @@ Score together(const Score& a, const Score& b) {
   const Eigen::MatrixXd information = a.information + b.information;
   const Eigen::VectorXd gradient = a.information * a.estimate + b.information * b.estimate;
   return solve_score(information, gradient, information.diagonal());
+}
+
+// The score of appendages that swing far faster than the platform moves, from the score of the same
+// appendages at another such frequency: beside what is a part of the inertia, whatever it swings
+// with, the platform feels −J a (a·ω)''/(2πf)².
+Score carried_at(const Score& carried, double scored_Hz, double frequency_Hz) {
+  const double grows = scored_Hz * scored_Hz / (frequency_Hz * frequency_Hz);
+  Score at = carried;
+  at.estimate /= grows;
+  at.information *= grows * grows;
+  return at;
+}
+
+struct Tuned {
+  double frequency_Hz = 0.0, damping = scanned_damping;
+  Score ringing;
+};
+
+// Frequency and damping near `frequency_Hz` at which ringing gains most. An appendage that rings
+// long keeps its phase only where its frequency is right: a fit that starts farther off ends in
+// another minimum.
+Tuned tuned(const std::vector<PropagatedRun>& runs, const Mat3& inertia_kg_m2,
+            const std::vector<Vec3>& axes, double frequency_Hz) {
+  constexpr double first_reach = 0.1, least_damping = 0.004;
+  constexpr int steps = 2;
+  Tuned best{frequency_Hz, scanned_damping,
+             score_of_ringing(runs, inertia_kg_m2, axes, frequency_Hz, scanned_damping)};
+  double reach = first_reach;
+  // The steps stay about as wide as the resonance.
+  for (double damping = 0.5 * scanned_damping; damping > least_damping; damping *= 0.5) {
+    const double centre_Hz = best.frequency_Hz;
+    for (int k = -steps; k <= steps; ++k) {
+      const double f_Hz = centre_Hz * (1.0 + reach * k / steps);
+      Score ringing = score_of_ringing(runs, inertia_kg_m2, axes, f_Hz, damping);
+      if (ringing.gain > best.ringing.gain) best = {f_Hz, damping, std::move(ringing)};
+    }
+    reach *= 0.5;
+  }
+  return best;
 }
 
 }  // namespace
@@ -211,11 +261,32 @@ std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit
   std::vector<PropagatedRun> all;
   for (size_t run = 0; run < runs.size(); ++run) all.push_back({runs[run], propagated[run]});
   std::vector<Start> starts;
+  const std::vector<Vec3> axes = axes_of(appendages(start, slow_Hz));
+  // What swings fast turns along with slow motion, as a part of the inertia.
+  constexpr double stiff = 5.0;  // times slow_Hz
+  const Score carried = score(fit, slow_runs, {appendages(start, stiff * slow_Hz)}).front();
+  const auto at = [&](const Tuned& t) {
+    const ScoreGroup group = appendages(start, t.frequency_Hz, t.damping);
+    const Score alone =
+        t.frequency_Hz < slow_Hz
+            ? score(fit, slow_runs, {group}).front()
+            : together(carried_at(carried, stiff * slow_Hz, t.frequency_Hz), t.ringing);
+    return best_appendage(group, alone, inertia_kg_m2);
+  };
   const auto start_at_peaks = [&](const std::vector<Mode>& modes, size_t most) {
     std::vector<double> gain;
     for (const Mode& mode : modes) gain.push_back(mode.gain);
-    for (const size_t i : peaks(gain, most)) {
-      if (gain[i] > limits.min_scan_gain) starts.push_back({modes[i].start, gain[i]});
+    const std::vector<size_t> highest = peaks(gain, most);
+    for (const size_t i : highest) {
+      if (gain[i] <= limits.min_scan_gain) continue;
+      if (gain[i] < limits.min_start_fraction * gain[highest.front()]) {
+        starts.push_back({modes[i].start, gain[i]});
+        continue;
+      }
+      const Tuned near = tuned(all, inertia_kg_m2, axes, modes[i].scanned_Hz);
+      const Mode sharp = near.ringing.gain > limits.min_scan_gain ? at(near) : Mode{};
+      const Mode& best = sharp.gain > gain[i] ? sharp : modes[i];
+      starts.push_back({best.start, best.gain});
     }
   };
   std::vector<Mode> modes;
@@ -223,20 +294,15 @@ std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit
   for (; f_Hz < slow_Hz; f_Hz *= step) {
     const ScoreGroup group = appendages(start, f_Hz);
     modes.push_back(best_appendage(group, score(fit, slow_runs, {group}).front(), inertia_kg_m2));
+    modes.back().scanned_Hz = f_Hz;
   }
   start_at_peaks(modes, max_starts);
-  // An appendage that swings fast follows slow motion as a part of the inertia: its slow score is
-  // the same at all frequencies.
-  constexpr double stiff = 5.0;  // times slow_Hz
-  const Score carried = score(fit, slow_runs, {appendages(start, stiff * slow_Hz)}).front();
   modes.clear();
   for (; f_Hz < highest_Hz; f_Hz *= step) {
-    const ScoreGroup group = appendages(start, f_Hz);
-    const Score ringing =
-        score_of_ringing(all, inertia_kg_m2, axes_of(group), f_Hz, scanned_damping);
-    modes.push_back(ringing.gain < limits.min_scan_gain
-                        ? Mode{}
-                        : best_appendage(group, together(carried, ringing), inertia_kg_m2));
+    Tuned coarse{f_Hz, scanned_damping,
+                 score_of_ringing(all, inertia_kg_m2, axes, f_Hz, scanned_damping)};
+    modes.push_back(coarse.ringing.gain < limits.min_scan_gain ? Mode{} : at(coarse));
+    modes.back().scanned_Hz = f_Hz;
   }
   start_at_peaks(modes, max_fast_starts);
   return starts;
