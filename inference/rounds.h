@@ -40,7 +40,7 @@ class Rounds {
       // Slow effects may stand in for one that is fast: once the scan also starts without them.
       if (scan && !scans_base && may_be_stand_ins(at)) {
         scans_base = true;
-        for (Trial& t : scanned(trials_.front())) found.push_back(std::move(t));
+        for (Trial& t : scanned_alone(at)) found.push_back(std::move(t));
       }
       if (round == 0) {
         for (Trial& t : each_alone(at)) found.push_back(std::move(t));
@@ -65,7 +65,12 @@ class Rounds {
       // Pieces select the sets that are fitted to the whole.
       if (set_.pieces > 1 && explains(at)) {
         at = without_each(std::move(at));
-        if (!has_empirical(at)) break;
+        if (!has_empirical(at)) {
+          if (!scans_base && may_be_stand_ins(at)) {
+            for (Trial& t : scanned_alone(at)) keep(std::move(t));
+          }
+          break;
+        }
       }
       // Scans are slow: they start when no predicted candidate lowers χ² further.
       if (!gained && (scan || !scans || !is_worth_a_scan(at))) break;
@@ -400,6 +405,25 @@ class Rounds {
       }
     }
     return extend_by_tasks(domain_, at, tasks, set_.runs, threads_);
+  }
+
+  // What a scan finds beside the base alone: slow effects that stand in for one that is fast leave
+  // little of it. Where the best is most of what `at` is, with what goes with it.
+  std::vector<Trial> scanned_alone(const Trial& at) const {
+    const Trial& base = trials_.front();
+    std::vector<Trial> found = scanned(base);
+    if (found.empty()) return found;
+    sort_by_evidence(found);
+    Trial first =
+        domain_.refit(found.front(), set_.runs, domain_.begins_of(found.front()), patient(limits_));
+    if (first.log_evidence > found.front().log_evidence) found.front() = first;
+    first = found.front();
+    const bool is_most =
+        first.log_evidence - base.log_evidence > 0.5 * (at.log_evidence - base.log_evidence);
+    if (!is_most || explains(first) || !first.objection.empty()) return found;
+    for (Trial& t : predicted(first, false)) found.push_back(std::move(t));
+    for (Trial& t : scanned(first)) found.push_back(std::move(t));
+    return found;
   }
 
   void keep(Trial trial) {
