@@ -77,16 +77,44 @@ const std::string& strength_of(const Candidate& c) {
   return found->key;
 }
 
-// Starts of an effect that sets in at an instant: those of a grid with the largest gains.
+// How often the motion that the fit predicts repeats in its first run: turns of the body, or swings
+// of a component of its rate about the mean.
+double cycles(const Fit& fit, const Observation& seen) {
+  PredictionOptions options;
+  options.keep_residuals = true;
+  const Dynamics dynamics(fit.best.model_of(0, seen));
+  const Prediction p = predict(dynamics, fit.best.runs.front().initial, seen, {}, options);
+  Vec3 mean = Vec3::Zero();
+  for (const PlatformState& state : p.states) mean += state.rate_body_rad_s;
+  mean /= static_cast<double>(p.states.size());
+  double turned_rad = 0.0;
+  std::array<double, 3> crossings{};
+  for (size_t i = 1; i < p.states.size(); ++i) {
+    const Vec3 &before = p.states[i - 1].rate_body_rad_s, &after = p.states[i].rate_body_rad_s;
+    turned_rad += 0.5 * (before + after).norm() * (seen.time_s[i] - seen.time_s[i - 1]);
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const bool crosses = (before[k] < mean[k]) != (after[k] < mean[k]);
+      crossings[static_cast<size_t>(k)] += crosses ? 1.0 : 0.0;
+    }
+  }
+  return std::max(turned_rad / (2.0 * pi), 0.5 * std::ranges::max(crossings));
+}
+
+// Starts of an effect that sets in at an instant: those of a grid with the largest gains. A motion
+// that repeats makes a maximum of the gain each time, and a fit does not leave the one where it
+// starts: the grid has several instants in each.
 std::vector<Start> instant_starts(const Candidate& c, const Trial& parent,
                                   const std::vector<Observation>& runs,
                                   const Thresholds::Scoring& limits) {
-  constexpr size_t count = 30;
+  constexpr double least = 30.0, most = 240.0, per_cycle = 6.0;
+  const auto count =
+      static_cast<size_t>(std::clamp(per_cycle * cycles(parent.fit, runs.front()), least, most));
   const double last_s = last_reading_s(runs), first_s = runs.front().time_s.front();
   const std::string& strength = strength_of(c);
   std::vector<ScoreGroup> groups;
   for (size_t i = 1; i < count; ++i) {
-    const double at_s = first_s + (last_s - first_s) * static_cast<double>(i) / count;
+    const double at_s =
+        first_s + (last_s - first_s) * static_cast<double>(i) / static_cast<double>(count);
     groups.push_back({{with_parameter(c.start, "time_s", at_s)}, indices_of(c.start, strength, 3)});
   }
   const std::vector<Score> scores = score(parent.fit, runs, groups);
