@@ -189,9 +189,17 @@ class Judge {
     const Explanation &a = trials_[part], &b = trials_[whole];
     if (b.log_evidence < a.log_evidence + limits_.min_log_odds) return false;
     const auto &before = a.holdout_chi2_per_sample, &after = b.holdout_chi2_per_sample;
-    if (before && after && *after > limits_.max_held_out_growth * std::max(1.0, *before))
-      return false;
-    if (!a.predictive || !b.predictive) return true;
+    if (!a.predictive || !b.predictive) {
+      return !before || !after || *after <= limits_.max_held_out_growth * std::max(1.0, *before);
+    }
+    // The errors of its numbers let χ² grow on held-out data, too: that speaks against no name. Nor
+    // where all data together fit with the name alone: then they determine the numbers.
+    const double expected = b.predictive->expected_chi2_per_sample;
+    const bool grows = before && after &&
+                       *after > limits_.max_held_out_growth * std::max({1.0, *before, expected});
+    const bool fits_alone = b.predictive->sigma < limits_.max_predictive_sigma &&
+                            a.predictive->sigma > limits_.max_predictive_sigma;
+    if (grows && !fits_alone) return false;
     return b.predictive->log_score > a.predictive->log_score - limits_.max_predictive_loss;
   }
 

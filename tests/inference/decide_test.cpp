@@ -81,6 +81,26 @@ TEST(Decide, ANameThatPredictsWorseIsNotSaid) {
   EXPECT_EQ(decided(trials, mutant).chosen, 2u);
 }
 
+// The numbers of both names are known too poorly to predict: the held-out χ² grows as their errors
+// say. Or it grows by more, and a fit to all recordings agrees with the held-out ones only with
+// both.
+TEST(Decide, ANameWhoseNumbersAreOffIsSaid) {
+  std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
+                                     explanation({0, 1}, 120.0, 1.0)};
+  trials[0].holdout_chi2_per_sample = 9000.0;
+  trials[1].holdout_chi2_per_sample = 47.0;
+  trials[2].holdout_chi2_per_sample = 90.0;
+  EXPECT_EQ(decided(trials).chosen, 1u);
+  trials[2].predictive->expected_chi2_per_sample = 61.0;
+  EXPECT_EQ(decided(trials).chosen, 2u);
+  trials[2].predictive->expected_chi2_per_sample = 1.0;
+  trials[1].predictive->sigma = 6.0;
+  EXPECT_EQ(decided(trials).chosen, 2u);
+  Thresholds::Decision mutant;
+  mutant.max_predictive_sigma = 6.5;
+  EXPECT_EQ(decided(trials, mutant).chosen, 1u);
+}
+
 // A law without a name is a hundred times as likely, by less than it takes to say that there is
 // one: the name is a candidate and no more.
 TEST(Decide, ANameThatIsUnlikelyIsNotSaid) {
