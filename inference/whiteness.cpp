@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 
 namespace photorque::inference {
 
@@ -103,6 +105,33 @@ double mean_sigma(std::vector<double> differences) {
   return std::copysign(normal, t);
 }
 
+namespace {
+
+// The normal deviate that is exceeded with probability p ≤ 1/2.
+double deviate_exceeded_with(double p) {
+  double low = 0.0, high = 40.0;
+  for (int halving = 0; halving < 60; ++halving) {
+    const double middle = 0.5 * (low + high);
+    (0.5 * std::erfc(middle / std::numbers::sqrt2) > p ? low : high) = middle;
+  }
+  return low;
+}
+
+// Of all choices of signs, the fraction in which the ranks above zero add up to at most `sum`.
+// `doubled_ranks`: twice each rank, whole numbers also where equal sizes share a mean.
+double fraction_up_to(const std::vector<size_t>& doubled_ranks, double sum) {
+  const auto last = static_cast<size_t>(std::lround(2.0 * sum));
+  std::vector<double> ways(last + 1, 0.0);
+  ways[0] = 1.0;
+  for (const size_t rank : doubled_ranks) {
+    for (size_t total = last; total >= rank; --total) ways[total] += ways[total - rank];
+  }
+  return std::ldexp(std::accumulate(ways.begin(), ways.end(), 0.0),
+                    -static_cast<int>(doubled_ranks.size()));
+}
+
+}  // namespace
+
 double signed_rank_sigma(const std::vector<double>& differences) {
   std::vector<double> x;
   for (const double d : differences) {
@@ -111,14 +140,21 @@ double signed_rank_sigma(const std::vector<double>& differences) {
   if (x.empty()) return 0.0;
   std::sort(x.begin(), x.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
   double above = 0.0;
+  std::vector<size_t> doubled_ranks;
   for (size_t first = 0, last = 0; first < x.size(); first = last) {
     last = first;
     while (last < x.size() && std::abs(x[last]) == std::abs(x[first])) ++last;
     const double rank = 0.5 * static_cast<double>(first + 1 + last);
     for (size_t i = first; i < last; ++i) above += x[i] > 0.0 ? rank : 0.0;
+    doubled_ranks.resize(last, first + 1 + last);
   }
+  constexpr size_t most_counted = 50;
   const auto n = static_cast<double>(x.size());
-  return (above - n * (n + 1.0) / 4.0) / std::sqrt(n * (n + 1.0) * (2.0 * n + 1.0) / 24.0);
+  const double off = above - n * (n + 1.0) / 4.0;
+  if (x.size() > most_counted) return off / std::sqrt(n * (n + 1.0) * (2.0 * n + 1.0) / 24.0);
+  const double fewer = std::min(above, n * (n + 1.0) / 2.0 - above);
+  const double tail = std::min(0.5, fraction_up_to(doubled_ranks, fewer));
+  return std::copysign(deviate_exceeded_with(tail), off);
 }
 
 double gain_sigma(const std::vector<double>& chi2_of_worse,

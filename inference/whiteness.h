@@ -33,11 +33,12 @@ std::vector<size_t> outliers(const std::vector<double>& residuals, const Thresho
 // so that no single one decides. 0 for fewer than three.
 double mean_sigma(std::vector<double> differences);
 
-// Wilcoxon's signed-rank statistic (F. Wilcoxon, Biometrics Bulletin 1 (1945) 80) in its standard
-// errors: Σ of the ranks of the sizes of those above zero, less its mean n (n + 1)/4, over
-// √(n (n + 1) (2n + 1)/24). Of differences that lie about zero symmetrically it is standard normal,
-// to a few per cent from n = 20 on. Zeros are left out; equal sizes share the mean of their ranks.
-// 0 where nothing is left.
+// Wilcoxon's signed-rank statistic (F. Wilcoxon, Biometrics Bulletin 1 (1945) 80), Σ of the ranks
+// of the sizes of those above zero, as the normal deviate that is as probable. Up to 50 differences
+// all choices of signs are counted: its normal approximation, (Σ − n (n + 1)/4) over
+// √(n (n + 1) (2n + 1)/24), cannot exceed 3.5 with 16, of which one choice in 65,536 has no sign
+// below zero (4.2). Zeros are left out; equal sizes share the mean of their ranks. 0 where nothing
+// is left.
 double signed_rank_sigma(const std::vector<double>& differences);
 
 // Standard errors by which one explanation predicts segments better than another, from χ² of each
