@@ -266,9 +266,24 @@ std::vector<FoundEffect> unnamed_effects(const inference::Decision& decision,
                                          const std::vector<Trial>& trials, const Candidates& all,
                                          const std::vector<FoundEffect>& named) {
   std::vector<FoundEffect> effects = found_effects(decision, trials, all);
+  const std::vector<inference::Term<Start>> terms = terms_of(trials[decision.chosen]);
+  // A strength at its bound of zero acts nowhere, and not every kind can be stated with it.
+  const auto is_nothing = [&](const inference::Term<Start>& term) {
+    const Candidate& c = all[term.candidate];
+    bool has_strength = false;
+    for (size_t p = 0; p < c.scale.size(); ++p) {
+      if (!c.is_strength(p)) continue;
+      if (term.start.disturbance.parameters[p].value != 0.0) return false;
+      has_strength = true;
+    }
+    return has_strength;
+  };
   std::erase_if(effects, [&](const FoundEffect& effect) {
-    return std::any_of(named.begin(), named.end(),
-                       [&](const FoundEffect& other) { return other.kind == effect.kind; });
+    const bool is_named = std::ranges::any_of(
+        named, [&](const FoundEffect& other) { return other.kind == effect.kind; });
+    return is_named || std::ranges::any_of(terms, [&](const inference::Term<Start>& term) {
+             return all[term.candidate].effect.kind == effect.kind && is_nothing(term);
+           });
   });
   return effects;
 }
