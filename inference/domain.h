@@ -42,6 +42,8 @@ struct CandidateTraits {
   size_t parameters = 0;
   // Whether it stands at a place of which one recording alone may leave several open.
   bool has_place = false;
+  // Of candidates of one kind at different places (cells, lamps) the kind; empty: it has no place.
+  std::string kind_of_place = {};
   // Whether readings bend with it so much that no forecast is made about a model without it: each
   // is fitted alone, from all its starts, before sets are forecast.
   bool is_fitted_first = false;

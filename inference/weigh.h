@@ -56,15 +56,12 @@ class Weighing {
     learn();
     search_on();
     add_without_each();
+    exchange_places();
     bring_to_one_minimum();
     for (const Leader& leader : leaders_) {
       Trial& train = trials_[leader.at];
       train.predictive = predictive_of(train, leader.joint);
-      if constexpr (std::same_as<std::decay_t<decltype(train.fit)>, Fit>) {
-        if (!train.holdout_chi2_per_sample) continue;
-        train.held_out_sigma = inference::held_out_sigma(
-            train.fit, leader.joint.fit, *train.holdout_chi2_per_sample, noise_of(train));
-      }
+      train.held_out_sigma = sigma_of_prediction(train, leader.joint);
     }
     for (const Leader& leader : leaders_) {
       Trial& trial = trials_[leader.at];
@@ -138,18 +135,41 @@ class Weighing {
   }
 
   // More readings cannot lower χ²: where all runs leave less than some of them do, the fit to these
-  // ended in another minimum, and the held-out data would seem to be predicted too well. It starts
-  // again from where the fit to all ended.
+  // ended in another minimum, and the held-out data would seem to be predicted too well. Where they
+  // are predicted far worse than the errors of the numbers say, the train runs may have a second
+  // minimum that is as good. The fit starts again from where the fit to all ended.
   void bring_to_one_minimum() {
+    constexpr double as_good_chi2 = 9.0;
     parallel_for(leaders_.size(), threads_, [&](size_t k) {
       const Trial& joint = leaders_[k].joint;
       Trial& train = trials_[leaders_[k].at];
-      if (!(joint.fit.chi2 < train.fit.chi2 - limits_.leaders.worth_a_fit)) return;
+      const bool is_lower = joint.fit.chi2 < train.fit.chi2 - limits_.leaders.worth_a_fit;
+      if (!is_lower && !is_elsewhere(train, joint)) return;
       Trial again = assembled(joint, domain_.terms_of(joint), patient(limits_));
-      if (!(again.fit.chi2 < train.fit.chi2)) return;
+      if (!(again.fit.chi2 < train.fit.chi2 + (is_lower ? 0.0 : as_good_chi2))) return;
       predict_held(again);
+      if (!is_lower && !(again.holdout_chi2_per_sample < train.holdout_chi2_per_sample)) return;
       train = std::move(again);
     });
+  }
+
+  // Whether all runs agree with the explanation, but the held-out ones not with its fit to the
+  // train runs.
+  bool is_elsewhere(const Trial& train, const Trial& joint) const {
+    const double most = limits_.decision.max_predictive_sigma;
+    return sigma_of_prediction(train, joint) > most && predictive_of(train, joint).sigma < most;
+  }
+
+  // How far the train runs' prediction of those held out lies above what the errors of its numbers
+  // explain [sigma]; 0 where that is unknown.
+  double sigma_of_prediction(const Trial& train, const Trial& joint) const {
+    if constexpr (std::same_as<std::decay_t<decltype(train.fit)>, Fit>) {
+      if (train.holdout_chi2_per_sample) {
+        return inference::held_out_sigma(train.fit, joint.fit, *train.holdout_chi2_per_sample,
+                                         noise_of(train));
+      }
+    }
+    return 0.0;
   }
 
   // The most likely on all runs that physics allows.
@@ -234,6 +254,66 @@ class Weighing {
     }
   }
 
+  // The train runs may leave open at which place something acts, and what stood beside it may have
+  // moved it: on all runs each of the best explanation's candidates makes way in turn for every one
+  // that has a place, until nothing is better.
+  void exchange_places() {
+    constexpr int most_rounds = 3;
+    const std::vector<CandidateTraits>& all = domain_.candidates();
+    for (int round = 0; round < most_rounds; ++round) {
+      const Leader from = best();
+      const auto terms = domain_.terms_of(from.joint);
+      const bool has_places = std::ranges::any_of(
+          terms, [&](const auto& term) { return !all[term.candidate].kind_of_place.empty(); });
+      if (!has_places) return;
+      for (size_t which = 0; which < terms.size(); ++which) exchange(from, terms, which);
+      if (same_candidates(best().joint.candidates, from.joint.candidates)) return;
+      add_without_each();
+    }
+  }
+
+  // Adds the best explanation with another candidate in the place of number `which`, if it is
+  // better.
+  void exchange(const Leader& from, const Terms<D>& terms, size_t which) {
+    // A cell shows little until it limits its string.
+    constexpr double forecast_error = 20.0;
+    const std::vector<CandidateTraits>& all = domain_.candidates();
+    std::vector<size_t> rest = from.joint.candidates, others;
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(which));
+    const auto without = std::ranges::find_if(
+        leaders_, [&](const Leader& l) { return same_candidates(rest, trials_[l.at].candidates); });
+    if (without == leaders_.end()) return;
+    for (size_t c = 0; c < all.size(); ++c) {
+      if (all[c].kind_of_place.empty() || !all[c].is_linear) continue;
+      if (!acts_already(from.joint.candidates, c, all)) others.push_back(c);
+    }
+    const std::vector<double> gains =
+        domain_.gains(without->joint, others, slow_runs<D>(domain_, without->joint, {all_runs_}));
+    const Effort effort =
+        within_reach({.max_iterations = limits_.fitting.trial_iterations}, from.joint, limits_);
+    std::vector<Members<typename D::Start>> sets;
+    for (size_t i = 0; i < others.size(); ++i) {
+      const size_t c = others[i];
+      if (forecast_error * gains[i] < without->joint.fit.chi2 - from.joint.fit.chi2) continue;
+      Members<typename D::Start>& members = sets.emplace_back();
+      for (const auto& term : terms) members.push_back({term});
+      // One of the same kind starts from the other's numbers.
+      const bool is_alike = all[c].kind_of_place == all[terms[which].candidate].kind_of_place;
+      members[which].term = {c, is_alike ? terms[which].start : domain_.start_of(c)};
+    }
+    std::vector<Trial> tried(sets.size());
+    parallel_for(sets.size(), threads_, [&](size_t k) {
+      tried[k] = domain_.assemble(from.joint, sets[k], all_runs_, effort);
+    });
+    for (const size_t k : by_evidence(tried)) {
+      if (!(tried[k].log_evidence > from.joint.log_evidence)) return;
+      if (!tried[k].objection.empty() || leads(tried[k].candidates)) continue;
+      Trial train = assembled(tried[k], domain_.terms_of(tried[k]), patient(limits_));
+      add_leader(std::move(train), std::move(tried[k]));
+      return;
+    }
+  }
+
   void add_without(const Leader& from, const std::vector<Term<typename D::Start>>& terms,
                    size_t left_out) {
     Members<typename D::Start> members;
@@ -243,7 +323,9 @@ class Weighing {
       members.push_back({terms[i]});
       candidates.push_back(terms[i].candidate);
     }
-    if (leads(candidates)) return;
+    // A rest whose fit depends on where it starts may have led from elsewhere.
+    const auto is_bent = [&](size_t c) { return !domain_.candidates()[c].is_linear; };
+    if (leads(candidates) && std::ranges::none_of(candidates, is_bent)) return;
     // Without it the rest may have to go far: above all nominal values that it replaced.
     Effort growing = patient(limits_);
     growing.windows = limits_.fitting.diverged_windows;

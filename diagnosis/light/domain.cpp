@@ -19,6 +19,7 @@ inference::CandidateTraits traits_of_light(const LightCandidate& c) {
   traits.is_linear = c.is_linear() && c.has_strength();
   traits.has_strength = c.has_strength();
   traits.has_place = c.kind.scan == LightEffectKind::Scan::shadow;
+  if (c.kind.index != LightEffectKind::Index::none) traits.kind_of_place = c.kind.name;
   traits.parameters = c.fitted();
   traits.is_fitted_first = c.bends;
   return traits;
