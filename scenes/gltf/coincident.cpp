@@ -448,13 +448,13 @@ std::vector<std::string> lines_about(const Scene& scene, const std::vector<Pair>
     const std::string a = "\"" + scene.instances[first].path + "\"";
     const std::string b = "\"" + scene.instances[second].path + "\"";
     const std::string count = std::to_string(faces.size()) + " triangles of ";
-    const std::string whose = first == second ? a : a + " and " + b;
+    const std::string whose = a == b ? a : a + " and " + b;
     lines.push_back(
         count + whose +
         (opposite ? " lie in each other back to back: they are one sheet; light meets the one "
                     "whose front it comes to; if it passes through one, it passes both"
                   : " lie in each other and face alike: only the first" +
-                        (first == second ? std::string() : ", of " + a + ",") +
+                        (a == b ? std::string() : ", of " + a + ",") +
                         " meets light from the front; light that passes through one passes both"));
   }
   return lines;

@@ -306,6 +306,7 @@ TEST(CoincidentFaces, MoveTheInstanceThatLiesInAnother) {
 }
 
 // Models from elsewhere, in two directions: by rays and, up to 20,000 triangles, by quadrature.
+// That of 1900 instances is left out for its time, 40 s.
 class Silhouettes : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Silhouettes, OfModelsOfThirdPartiesAreThoseOfARasteriser) {
@@ -331,8 +332,7 @@ INSTANTIATE_TEST_SUITE_P(
                       "blender/02_node_hierarchy/02_node_hierarchy.gltf",
                       "blender/02_shared_mesh/02_shared_mesh.gltf",
                       "blender/15_transmission/15_transmission.gltf", "blender/17_ior/17_ior.gltf",
-                      "blender/24_gpu_instancing/24_gpu_instancing.gltf", "in/BoxMeshopt.glb",
-                      "in/TwoCubes.glb"));
+                      "in/BoxMeshopt.glb", "in/TwoCubes.glb"));
 
 }  // namespace
 }  // namespace photorque::coincidence
