@@ -31,6 +31,9 @@ struct Instance {
   // May mirror (negative determinant): the tracer then swaps the winding, so that the front stays
   // the front.
   Affine body_from_mesh = Affine::Identity();
+  // Below a face of this part, others within this distance belong to one sheet with it: light that
+  // passes through it passes them too [m]. See scenes/gltf/coincident.h.
+  double sheet_depth_m = 0.0;
 };
 
 // Everything is in the body frame: metres, origin at the centre of rotation, z up at zero tilt.

@@ -1,6 +1,7 @@
 // Functions of the cosine of an angle with the normal, as tables.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -10,7 +11,8 @@
 namespace photorque {
 
 // `Count` functions of a cosine in [0, 1], as Catmull-Rom cubics of the cosine's root between nodes
-// that are even in it, so that grazing angles have most of them.
+// that are even in it, so that grazing angles have most of them. The functions must be smooth in
+// the cosine: the sine is not at normal incidence, so that parts along it are tabled over the sine.
 template <size_t Count>
 class CosineTable {
  public:
@@ -28,8 +30,10 @@ class CosineTable {
     const Values &before = nodes_[i > 0 ? i - 1 : 0], &after = nodes_[std::min(i + 2, intervals)];
     Values values;
     for (size_t k = 0; k < Count; ++k) {
-      const double rise_a = i > 0 ? 0.5 * (b[k] - before[k]) : b[k] - a[k];
-      const double rise_b = i + 1 < intervals ? 0.5 * (after[k] - a[k]) : b[k] - a[k];
+      // A parabola in the first interval and in the last one.
+      double rise_a = 0.5 * (b[k] - before[k]), rise_b = 0.5 * (after[k] - a[k]);
+      if (i == 0) rise_a = 2.0 * (b[k] - a[k]) - rise_b;
+      if (i + 1 == intervals) rise_b = 2.0 * (b[k] - a[k]) - rise_a;
       const double bend = rise_a + rise_b - 2.0 * (b[k] - a[k]);
       values[k] = a[k] + t * (rise_a + t * (b[k] - a[k] - rise_a - bend + t * bend));
     }
@@ -37,10 +41,11 @@ class CosineTable {
   }
 
   static constexpr size_t intervals = 96;
-  // Node 0 is just above the horizon, where the functions of grazing light have their limit.
+  // Node 0 is just above the horizon, where the functions of grazing light have their limit; the
+  // last is just off the normal, where ratios to the sine have theirs.
   static double node_cosine(size_t i) {
     const double root = static_cast<double>(i) / static_cast<double>(intervals);
-    return i == 0 ? 1e-9 : root * root;
+    return std::clamp(root * root, 1e-9, 1.0 - 1e-9);
   }
 
  private:

@@ -80,6 +80,7 @@ Ggx::Moments Ggx::moments(double cosine, const std::function<double(double)>& of
     }
     low += width;
   }
+  sum[1] /= in.x();
   return sum;
 }
 

@@ -31,7 +31,8 @@ struct Ggx {
   double once_reflected_1_sr(const Vec3& towards_light, const Vec3& out) const;
 
   // Of light from `cosine`, reflected once by facets that reflect `of_facet`(cosine at the facet):
-  // the power that leaves, and its sum of o_x and o_z. By quadrature, to 1e-4.
+  // the power that leaves, and its sum of o_x over sin θ_i and of o_z. By quadrature, to 1e-4; the
+  // cosine is below 1.
   using Moments = std::array<double, 3>;
   Moments moments(double cosine, const std::function<double(double)>& of_facet) const;
 };

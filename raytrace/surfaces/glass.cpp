@@ -43,7 +43,7 @@ class RoughGlass final : public Lobe {
  private:
   Ggx facets_;
   double index_;
-  CosineTable<3> once_;  // power, sums of o_x and o_z
+  CosineTable<3> once_;  // power, sums of o_x over sin θ and of o_z
 };
 
 RoughGlass::RoughGlass(double alpha, double index)
@@ -75,8 +75,8 @@ Vec3 RoughGlass::direction(const Arrival& light, const Draw& draw) const {
 
 Vec3 RoughGlass::mean_direction(const Arrival& light) const {
   const double cosine = light.cosine;
-  const auto [power, x, z] = once_(cosine);
-  return {x / power, 0.0, z / power};
+  const auto [power, x_by_sine, z] = once_(cosine);
+  return {direction_at(cosine).x() * x_by_sine / power, 0.0, z / power};
 }
 
 double RoughGlass::density(const Arrival& light, const Vec3& out) const {

@@ -36,8 +36,8 @@ class RoughMirror final : public Lobe {
 
   Vec3 mean_direction(const Arrival& light) const override {
     const double cosine = light.cosine;
-    const auto [power, x, z] = once_(cosine);
-    return {x, 0.0, z + (1.0 - power) * rest_z_};
+    const auto [power, x_by_sine, z] = once_(cosine);
+    return {direction_at(cosine).x() * x_by_sine, 0.0, z + (1.0 - power) * rest_z_};
   }
 
   double density(const Arrival& light, const Vec3& out) const override {
@@ -80,7 +80,7 @@ class RoughMirror final : public Lobe {
   }
 
   Ggx facets_;
-  CosineTable<3> once_;  // of light reflected once: power, sums of o_x and o_z
+  CosineTable<3> once_;  // of light reflected once: power, sums of o_x over sin θ and of o_z
   std::vector<double> cumulated_;
   double rest_ = 0.0;    // 1 − Ē
   double rest_z_ = 0.0;  // mean o_z of light reflected more often
@@ -102,7 +102,7 @@ class SlopeError final : public Lobe {
         shape_(shape),
         even_([this](double cosine) -> std::array<double, 2> {
           const Vec3 mean = mean_of(cosine);
-          return {mean.x(), mean.z()};
+          return {mean.x() / direction_at(cosine).x(), mean.z()};
         }) {
     if (first_rad != second_rad) {
       turned_.emplace([this](double cosine) { return harmonics(cosine); });
@@ -122,9 +122,10 @@ class SlopeError final : public Lobe {
 
   // Even in the turn of the axis but for y, which is odd, and the same after half a turn.
   Vec3 mean_direction(const Arrival& light) const override {
+    const double in_sine = direction_at(light.cosine).x();
     if (!turned_) {
-      const auto [x, z] = even_(light.cosine);
-      return {x, 0.0, z};
+      const auto [x_by_sine, z] = even_(light.cosine);
+      return {in_sine * x_by_sine, 0.0, z};
     }
     const Harmonics mean = (*turned_)(light.cosine);
     // cos 2kφ and sin 2kφ by the addition theorem.
@@ -139,7 +140,7 @@ class SlopeError final : public Lobe {
       sine = sine * cosine_2 + cosine * sine_2;
       cosine = next;
     }
-    return sum;
+    return {in_sine * sum.x(), in_sine * sum.y(), sum.z()};
   }
 
   double density(const Arrival& light, const Vec3& out) const override {
@@ -207,8 +208,9 @@ class SlopeError final : public Lobe {
     return mean / sum;
   }
 
-  // Coefficients of cos 2kφ (x, z) and sin 2kφ (y) in the turn φ of the axis, by the trapezoidal
-  // rule over half a turn. The k-th is of the order of the slopes to the power 2k.
+  // Coefficients of cos 2kφ (x over sin θ, z) and sin 2kφ (y over sin θ) in the turn φ of the axis,
+  // by the trapezoidal rule over half a turn. The k-th is of the order of the slopes to the power
+  // 2k.
   static constexpr size_t harmonic_count = 4;
   using Harmonics = std::array<double, 3 * harmonic_count>;
   Harmonics harmonics(double cosine) const {
@@ -216,7 +218,8 @@ class SlopeError final : public Lobe {
     Harmonics sum{};
     for (size_t i = 0; i < turns; ++i) {
       const double turn_rad = pi * static_cast<double>(i) / turns;
-      const Vec3 mean = mean_of({cosine, std::cos(turn_rad), std::sin(turn_rad)});
+      Vec3 mean = mean_of({cosine, std::cos(turn_rad), std::sin(turn_rad)});
+      mean.head<2>() /= direction_at(cosine).x();
       for (size_t k = 0; k < harmonic_count; ++k) {
         const double even = std::cos(2.0 * static_cast<double>(k) * turn_rad);
         const double odd = std::sin(2.0 * static_cast<double>(k) * turn_rad);

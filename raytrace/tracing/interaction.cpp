@@ -151,10 +151,10 @@ void scatter(const InteractionContext& context, const SobolSequence& sequence, H
     power_balance.release(position, onward, ray_W);
     return;
   }
-  const double ray_offset_m =
-      chosen == Component::transmitted ? -scene.ray_offset_m : scene.ray_offset_m;
-  next.rays.push_back(make_ray(position - scene.centre_m + ray_offset_m * incidence.normal, onward,
-                               buffer.sample[i]));
+  const double above_m =
+      chosen == Component::transmitted ? -scene.behind_m(hits.instance[i]) : scene.ray_offset_m;
+  next.rays.push_back(
+      make_ray(position - scene.centre_m + above_m * incidence.normal, onward, buffer.sample[i]));
   next.power_W.insert(next.power_W.end(), power_W.begin(), power_W.begin() + hits.bands);
 }
 

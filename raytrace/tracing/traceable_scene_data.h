@@ -42,6 +42,10 @@ struct TraceableScene::Data {
   // point of the scene, below any feature.
   double ray_offset_m = 0.0;
 
+  // How far behind a face of an instance light starts that has passed through it.
+  double behind_m(uint32_t instance) const {
+    return ray_offset_m + scene.instances[instance].sheet_depth_m;
+  }
   // The number of an instance's back (`front` = 0) or front (1).
   static size_t side(uint32_t instance, uint8_t front) { return 2 * instance + front; }
   const OpticalSurface& surface(uint32_t instance, uint8_t front) const {

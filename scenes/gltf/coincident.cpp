@@ -318,6 +318,21 @@ class OwnMeshes {
   std::vector<int> users_;
 };
 
+// Light that passes through one face of a sheet starts behind the others.
+void set_depths(Scene& scene, const std::vector<Pair>& pairs, const std::map<Face, int>& levels,
+                double size_m) {
+  for (const Pair& pair : pairs) {
+    if (pair.relation == Relation::parted) continue;
+    const int front = levels.at(pair.front), behind = levels.at(pair.behind);
+    const int steps = pair.opposite ? front + behind : front - behind;
+    const double depth_m = (std::abs(steps) * step + tolerance) * size_m;
+    for (const Face& face : {pair.front, pair.behind}) {
+      double& of_part_m = scene.instances[face.instance].sheet_depth_m;
+      of_part_m = std::max(of_part_m, depth_m);
+    }
+  }
+}
+
 void move_faces(Scene& scene, const std::map<Face, int>& levels, double step_m) {
   OwnMeshes meshes(scene);
   for (const auto& [face, level] : levels) {
@@ -433,14 +448,14 @@ std::vector<std::string> lines_about(const Scene& scene, const std::vector<Pair>
     const std::string a = "\"" + scene.instances[first].path + "\"";
     const std::string b = "\"" + scene.instances[second].path + "\"";
     const std::string count = std::to_string(faces.size()) + " triangles of ";
-    const std::string whose = first == second ? a : a + " and " + b;
+    const std::string whose = a == b ? a : a + " and " + b;
     lines.push_back(
         count + whose +
-        (opposite ? " lie in each other back to back: light meets each on its front; light that "
-                    "passes through meets both"
+        (opposite ? " lie in each other back to back: they are one sheet; light meets the one "
+                    "whose front it comes to; if it passes through one, it passes both"
                   : " lie in each other and face alike: only the first" +
-                        (first == second ? std::string() : ", of " + a + ",") +
-                        " meets light from the front; light that passes through meets both"));
+                        (a == b ? std::string() : ", of " + a + ",") +
+                        " meets light from the front; light that passes through one passes both"));
   }
   return lines;
 }
@@ -460,7 +475,9 @@ std::vector<std::string> separate_coincident_faces(Scene& scene) {
   if (cut_crossings(scene, pairs)) pairs = find_pairs(scene, box.center(), size_m);
   if (pairs.empty()) return {};
   std::vector<std::string> lines = lines_about(scene, pairs);
-  move_faces(scene, levels_of(pairs), step * size_m);
+  const std::map<Face, int> levels = levels_of(pairs);
+  set_depths(scene, pairs, levels, size_m);
+  move_faces(scene, levels, step * size_m);
   return lines;
 }
 

@@ -9,6 +9,9 @@
 // - Facing alike: one of them comes first, and shades the others: the outer one where their
 //   distances differ, else an open sheet before a solid, else the first of the file.
 //
+// Light that passes through a face starts behind all faces that lie in it, by the depth of its
+// part (Instance::sheet_depth_m): a sheet transmits by the face that light meets first.
+//
 // Faces that touch or cross at less than 5e-4 rad are apart by less than the rounding of rays
 // over some width. They are cut where they cross, and set apart in the same way.
 #pragma once

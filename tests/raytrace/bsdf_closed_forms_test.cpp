@@ -172,6 +172,24 @@ TEST(SlopeError, MeanDirectionAtNormalIncidence) {
   }
 }
 
+// Slopes of mean zero turn light by terms of the order of σ² = 1e-8 alone, in the mean: it leaves
+// along the mirrored direction (−sin θ, 0, cos θ). Near normal incidence too, where the sine
+// changes without bound over the cosine. The tail of GGX strays by more.
+TEST(SlopeError, MeanDirectionOfSmallSlopesIsTheMirroredOne) {
+  constexpr double sigma = 1e-4;
+  const auto even = slope_error(sigma);
+  const auto turned = slope_error(sigma, 0.5 * sigma, SlopeShape::gaussian);
+  const auto rough = rough_mirror(1e-3);
+  for (double angle_deg = 0.0; angle_deg < 80.0; angle_deg += 0.37) {
+    const double theta = angle_deg * degree_rad;
+    const Vec3 mirrored(-std::sin(theta), 0.0, std::cos(theta));
+    const Arrival light(std::cos(theta), std::cos(0.7), std::sin(0.7));
+    EXPECT_LT((even->mean_direction(light) - mirrored).norm(), 1e-6) << angle_deg;
+    EXPECT_LT((turned->mean_direction(light) - mirrored).norm(), 1e-6) << angle_deg;
+    EXPECT_LT((rough->mean_direction(light) - mirrored).norm(), 1e-4) << angle_deg;
+  }
+}
+
 // A reflected ray strays by 2σ along and across the plane of incidence (here from 40°).
 TEST(SlopeError, RaysStrayByTwiceTheSlope) {
   const double sigma = 0.003, cosine = std::cos(40 * degree_rad);

@@ -111,13 +111,13 @@ void OnwardLight::land(std::span<const OnwardRay> some, std::span<const double> 
                    {hits.barycentric[0][i], hits.barycentric[1][i]}, scattered);
     }
     const auto go_on = [&](double power_W, const BandValues& power, const Vec3& direction,
-                           double side) {
+                           double above_m) {
       if (!(power_W > least_W[index])) return;
-      next.push_back({at_m + side * scene_.ray_offset_m * normal, direction, power, ray.owner});
+      next.push_back({at_m + above_m * normal, direction, power, ray.owner});
       next_least_W.push_back(least_W[index]);
     };
-    go_on(on_W, on, mirrored, 1.0);
-    go_on(through_W, through, ray.direction, -1.0);
+    go_on(on_W, on, mirrored, scene_.ray_offset_m);
+    go_on(through_W, through, ray.direction, -scene_.behind_m(hits.instance[i]));
   }
 }
 

@@ -255,8 +255,8 @@ class SunlitBody::Direction {
     const Vec3 at_m = point_m(*lit.side.facet, place_in(one));
     const double offset_m = shadow_ray_offset_m(body_.scene_);
     const double power_W = one.piece.share * lit.side.facet->area_m2 * lit.light.irradiance_W_m2;
-    const auto add = [&](const BandValues& share, const Vec3& direction, double side) {
-      OnwardRay ray{at_m + side * offset_m * normal, direction, {}, owner};
+    const auto add = [&](const BandValues& share, const Vec3& direction, double above_m) {
+      OnwardRay ray{at_m + above_m * normal, direction, {}, owner};
       double sum_W = 0.0;
       for (size_t b = 0; b < bands_; ++b) {
         ray.power_W[b] = power_W * lamp_.fraction()[b] * share[b];
@@ -265,9 +265,11 @@ class SunlitBody::Direction {
       if (sum_W > 0.0) rays.push_back(ray);
     };
     if (!lit.side.facet->free[lit.side.front ? 1 : 0]) {
-      add(lit.surface->specular, lit.travel - 2.0 * normal.dot(lit.travel) * normal, 1.0);
+      add(lit.surface->specular, lit.travel - 2.0 * normal.dot(lit.travel) * normal, offset_m);
     }
-    add(lit.surface->transmitted, lit.travel, -1.0);
+    const uint32_t part = lit.side.facet->instance;
+    add(lit.surface->transmitted, lit.travel,
+        -(offset_m + body_.scene_.scene().instances[part].sheet_depth_m));
   }
 
   // Round by round: a cell whose four quarters disagree is cut again.
