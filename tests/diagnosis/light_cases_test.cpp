@@ -25,7 +25,7 @@ Diagnosis diagnosed(const std::string& name) {
 
 using Kinds = std::vector<std::string>;
 
-// Two minima of the fitted curves are as deep; the held-out ones tell them apart.
+// Two minima of the fitted curves are as deep; the held-out curves separate them.
 TEST(LightCase, ABiasOfTheAttitudeIsFoundInTheRightMinimum) {
   const Diagnosis d = diagnosed("tilted");
   ASSERT_EQ(kinds_of(d), Kinds{"attitude_bias"}) << d.sentence;
@@ -35,7 +35,7 @@ TEST(LightCase, ABiasOfTheAttitudeIsFoundInTheRightMinimum) {
 }
 
 // In the fitted curves most cells explain as much as the right one.
-TEST(LightCase, TheCellThatOnlyTheHeldOutCurvesTell) {
+TEST(LightCase, TheCellThatOnlyTheHeldOutCurvesShow) {
   const Diagnosis d = diagnosed("one_cell");
   ASSERT_EQ(kinds_of(d), Kinds{"cell_degraded"}) << d.sentence;
   EXPECT_EQ(parameter(d, "cell_degraded", "index").value, std::vector<double>{9.0});
