@@ -66,7 +66,7 @@ std::vector<Key::Choice> light_effects() {
     std::vector<Key> keys = place_keys(kind.index);
     for (const EffectParameter& parameter : kind.parameters) keys.push_back(key_of(parameter));
     add_choice(all, {kind.name, kind.explanation, std::move(keys)});
-    // A failed LED is a derated one without light, so it has no strength.
+    // A failed LED gives no light at all, so it has no strength.
     if (kind.name == "led_derated") {
       all.push_back({"led_failed", "an LED gives no light", place_keys(kind.index)});
     }
