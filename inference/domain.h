@@ -70,8 +70,8 @@ struct Explanation {
 };
 
 // Convergence options. The first `windows` fractions of each run are fitted in turn, each with at
-// most `max_iterations`. A fit to whole runs stops early if it cannot fall below `worth_chi2`, or
-// if it fits badly and χ² falls by less than the fraction `creep` per step.
+// most `max_iterations`. A fit to whole runs stops early if it cannot fall below `worth_chi2`. It
+// also stops if it fits badly and χ² falls by less than the fraction `creep` per step.
 struct Effort {
   std::vector<double> windows = {1.0};
   int max_iterations = 25;

@@ -345,8 +345,9 @@ class Rounds {
     return extend_by_tasks(domain_, at, tasks, set_.runs, threads_);
   }
 
-  // Removes each effect with an instant or a place, and effects that may compensate its error, and
-  // locates it again. Its first location used a poorer model; a fit does not move far from it.
+  // Removes each effect with an instant or a place, together with empirical laws that may
+  // compensate its error, and locates it again. Its first location used a poorer model; a fit does
+  // not move far from it.
   std::vector<Trial> relocated(const Trial& at) const {
     std::vector<Trial> found;
     const std::vector<CandidateTraits>& all = domain_.candidates();

@@ -476,8 +476,8 @@ class Weighing {
 
 // Replaces the evidence of the leaders on the train runs by that on all runs. The gains of the
 // other trials over the nominal model scale by the ratio of the best, and stay below the leaders.
-// Effects that only all runs together show, because a nominal model's uncertainty absorbs them in
-// each run, are scored and added to `trials`, fitted to the train runs. The nominal model stays
+// Effects that a nominal model's uncertainty absorbs in each run, so that only all runs together
+// show them, are scored and added to `trials`, fitted to the train runs. The nominal model stays
 // first.
 template <Domain D>
 void weigh_with_held_out(const D& domain, const std::vector<typename D::Run>& train,

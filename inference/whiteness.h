@@ -37,8 +37,9 @@ double mean_sigma(std::vector<double> differences);
 // Wilcoxon's signed-rank statistic (F. Wilcoxon, Biometrics Bulletin 1 (1945) 80), Σ of the ranks
 // of the positive differences, as a normal deviate of equal probability. Up to 50 differences the
 // distribution is exact. The normal approximation, (Σ − n (n + 1)/4) over √(n (n + 1) (2n + 1)/24),
-// cannot exceed 3.5 for n = 16, although one sign assignment in 65,536 has no negative sign (4.2).
-// Zeros are omitted; ties have the mean of their ranks. 0 if no difference remains.
+// cannot exceed 3.5 for n = 16. The exact value reaches 4.2, because one sign assignment in 65,536
+// has no negative sign. Zeros are omitted; ties have the mean of their ranks. 0 if no difference
+// remains.
 double signed_rank_sigma(const std::vector<double>& differences);
 
 // Significance [standard errors] with which one explanation predicts segments better, from the χ²

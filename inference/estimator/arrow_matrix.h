@@ -54,9 +54,9 @@ class SumsOfRows {
 //   ⎢     A₂      B₂ᵀ ⎥      A: run by run, B: shared by run, C: shared by shared
 //   ⎣ B₁  B₂  …   C   ⎦
 //
-// The run parameters are eliminated one run at a time (Schur complement). The cost therefore grows
-// linearly with the number of runs instead of with its cube, and hundreds of short pieces of a
-// recording can be fitted together.
+// The run parameters are eliminated one run at a time (Schur complement). The cost grows linearly
+// with the number of runs instead of with its cube. Hundreds of short pieces of a recording can
+// therefore be fitted together.
 //
 // Source: B. Triggs et al., "Bundle Adjustment — A Modern Synthesis" (2000), section 6.3.
 

@@ -12,10 +12,10 @@
 //
 // (K. Levenberg 1944; D. Marquardt, J. SIAM 11 (1963) 431). The matrix is scaled to a unit
 // diagonal, so that no result depends on the units of parameters. A step that lowers χ² is
-// accepted. Then λ falls by ten if χ² fell by more than a quarter of the predicted gain, stays if
-// in addition the step before had been rejected, and otherwise grows by three. A step that does not
-// lower χ² is repeated with ten times λ, at least 1e-4. A parameter on a bound that the step would
-// leave is held there, and the step is solved again.
+// accepted. If χ² fell by more than a quarter of the predicted gain, λ is divided by ten, or kept
+// if the step before had been rejected; otherwise λ is tripled. A step that does not lower χ² is
+// repeated with ten times λ, at least 1e-4. A parameter on a bound that the step would leave is
+// held there, and the step is solved again.
 //
 // A window is the first part of every run. Growing windows improve a poor start before a long run
 // can diverge from it.

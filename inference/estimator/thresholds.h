@@ -21,7 +21,8 @@ struct Thresholds {
     // Minimum number of differences of a channel to measure its noise: error of 20 %.
     size_t min_differences = 50;
     // A noise level is corrected only if it is off by more than this fraction, which no decision
-    // depends on, and by more than this many standard errors, because six channels are tested.
+    // depends on. It must also be off by this many standard errors, because six channels are
+    // tested.
     double min_correction = 0.05, correction_sigma = 5.0;
     // Minimum of twice the gain in log likelihood of correlated noise over white noise of the best
     // level. By chance one parameter gains 25 once in 2 million.
