@@ -20,8 +20,8 @@ void use_noise(const NoiseLevels& noise, RecordedData& data) {
   }
 }
 
-// Number of segments: the number of independent residuals of the best explanation, n (1 − ρ)/(1 +
-// ρ) for n readings with neighbour correlation ρ, limited to one to three times `limits.stretches`.
+// Number of segments, limited to one to three times `limits.stretches`: the number of independent
+// residuals of the best explanation, n (1 − ρ)/(1 + ρ) for n readings with neighbour correlation ρ.
 // With few segments, a difference that varies between them is not significant.
 size_t stretches_of(const Answer& answer, const RecordedData& data, const NoiseLevels& own) {
   constexpr double most = 3.0;

@@ -23,10 +23,10 @@ std::string sentence_of(const std::vector<BodyOfRecordings>& bodies);
 // Consistency test of the rates of a free body and the clock of the recording.
 
 // Rates obey ω' = −I⁻¹ (ω × I ω), which is quadratic in ω. If all rates are too large by a factor,
-// or the clock is too fast by it, no inertia fits, unless the body has an axis of symmetry. For
-// every recording the correction factor of its rates is fitted. It is reported if it differs from
-// one by a twentieth and reduces the residual (free_inertia.h) to at most a third. Empty for
-// platforms on a bearing.
+// or the clock is too fast by it, no inertia fits. The exception is a body with an axis of
+// symmetry. For every recording the correction factor of its rates is fitted. It is reported if it
+// differs from one by a twentieth and reduces the residual (free_inertia.h) to at most a third.
+// Empty for platforms on a bearing.
 std::vector<InstrumentFinding> clock_findings(const Platform& platform, const RecordedData& data);
 
 }  // namespace photorque

@@ -1,8 +1,8 @@
 // Predictions of segments of recordings by explanations that are fitted to other segments.
 //
-// For a real machine the residual is not white noise, and no distribution gives the fall of χ² that
-// distinguishes a missing effect from a curve that follows the residual. Left-out segments decide:
-// they show whether an effect predicts, and how much the gain varies between segments.
+// For a real machine the residual is not white noise. No distribution then gives the fall of χ²
+// that distinguishes a missing effect from a curve that follows the residual. Left-out segments
+// decide: they show whether an effect predicts, and how much the gain varies between segments.
 #pragma once
 
 #include <vector>

@@ -109,7 +109,7 @@ LightData read_light_data(const LightLab& lab, const LightBelief& nominal,
   return data;
 }
 
-// Removes outliers under a fit; returns whether there were any. In held-out data, and without an
+// Removes outliers under a fit; returns whether any exist. In held-out data, and without an
 // explanation, only gross outliers are removed: a small shadow looks like a stray reading.
 bool drop_wild(const LightTrial& about, const LightCandidates& all, LightData& data) {
   int64_t dropped = 0;

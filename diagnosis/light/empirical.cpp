@@ -1,6 +1,6 @@
-// Empirical laws. They multiply the light, or add to the current, by a sum of a few functions of
-// one variable (two for a place), each with a fitted strength. Waves over the receiver are found in
-// the residuals of scans.
+// Empirical laws. They multiply the light, or add to the current, by a sum of functions with fitted
+// strengths. The functions have one variable (two for a place). Waves over the receiver are found
+// in the residuals of scans.
 #include <algorithm>
 #include <cmath>
 #include <numeric>

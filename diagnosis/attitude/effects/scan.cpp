@@ -101,8 +101,8 @@ double cycles(const Fit& fit, const Observation& seen) {
 }
 
 // Starts of an effect that begins at an instant: the grid points of largest gain. A periodic motion
-// gives a maximum of the gain in each cycle, and a fit does not leave its maximum, so the grid has
-// several instants per cycle.
+// gives a maximum of the gain in each cycle, and a fit does not leave its maximum. The grid
+// therefore has several instants per cycle.
 std::vector<Start> instant_starts(const Candidate& c, const Trial& parent,
                                   const std::vector<Observation>& runs,
                                   const Thresholds::Scoring& limits) {

@@ -2,7 +2,7 @@
 //
 // The light of a lamp on a point is that of its aperture (raytrace/direct/disc_light.h), minus the
 // parts of the aperture that boxes and the scene hide. Walls reflect light once, diffusely or
-// specularly; everything else is black.
+// like a mirror; everything else is black.
 #pragma once
 
 #include <Eigen/Core>
