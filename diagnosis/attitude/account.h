@@ -13,9 +13,9 @@ namespace photorque {
 // Parameters of one key for which only a combination is identifiable.
 
 // For three values with their covariance (in the squared unit), each within twice its standard
-// error: the principal combination that is furthest from zero in standard errors, scaled to a
-// largest coefficient of 1, as "x − 0.99 z = (4.4 ± 0.1)×10⁻¹⁰". Empty if none exceeds four
-// standard errors, or if each number is identifiable.
+// error: the principal combination that is furthest from zero in standard errors. Its largest
+// coefficient is scaled to 1, as "x − 0.99 z = (4.4 ± 0.1)×10⁻¹⁰". Empty if no combination exceeds
+// four standard errors, or if a single value exceeds two.
 std::string known_together(const Vec3& value, const Mat3& covariance);
 
 // The effects of the chosen trial, each with the probability of its kind.

@@ -25,8 +25,8 @@ std::string sentence_of(const std::vector<BodyOfRecordings>& bodies);
 // Rates obey ω' = −I⁻¹ (ω × I ω), which is quadratic in ω. If all rates are too large by a factor,
 // or the clock is too fast by it, no inertia fits. The exception is a body with an axis of
 // symmetry. For every recording the correction factor of its rates is fitted. It is reported if it
-// differs from one by a twentieth and reduces the residual (free_inertia.h) to at most a third.
-// Empty for platforms on a bearing.
+// differs from one by a twentieth and reduces the residual (free_inertia.h) to below 0.05 and to at
+// most a third. Empty with attitude readings and for platforms on a bearing.
 std::vector<InstrumentFinding> clock_findings(const Platform& platform, const RecordedData& data);
 
 }  // namespace photorque

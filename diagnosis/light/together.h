@@ -3,8 +3,7 @@
 // Both domains depend on the tilt of the body relative to its recorded attitude. If the camera is
 // not level, a pendulum swings about another attitude than the upright one, as in a draught. The
 // tilt also changes the light on the array, as dirt does. The steps are:
-//   1. explain the motion: its attitude is free of the camera's noise, which would affect the
-//   light;
+//   1. explain the motion; its attitude has no camera noise, which would affect the light;
 //   2. explain the light with any tilt;
 //   3. if the light determines the tilt, explain the motion with that as a prior;
 //   4. if the motion determines it better, explain the light again with the result of the motion

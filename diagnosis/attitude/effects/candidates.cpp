@@ -340,7 +340,8 @@ bool only_slows_down(const std::vector<Observation>& runs, const Vec3& axis) {
   });
 }
 
-// Velocities of a sliding body along lab x and y, from positions over an eighth of the run.
+// Velocities of a sliding body along lab x and y, by central differences of positions over plus and
+// minus an eighth of the run.
 std::vector<Vec2> velocities_m_s(const Observation& seen) {
   std::vector<Vec2> place_m, velocity;
   std::vector<double> time_s;

@@ -83,8 +83,8 @@ double chi2_of_healthy(const ModuleNominal& nominal, const std::vector<ModuleRun
   return chi2;
 }
 
-// Whether the largest tested number of cells of a kind is far more likely than fewer. The effect is
-// then distributed over the module in a way that this kind only mimics.
+// Whether the largest tested number of cells of a kind is clearly more likely than fewer. The
+// effect is then distributed over the module in a way that this kind only mimics.
 bool is_at_largest_count(const ModuleAnswer& answer, const std::string& kind,
                          double min_log_evidence_gain) {
   double largest = -INFINITY, fewer = -INFINITY;
