@@ -1,7 +1,7 @@
 // Thresholds of search and decision: all numbers that decide about fits, convergence and names.
 //
-// Unless stated otherwise, a number is set by hand and validated by the cases of docs/proof.md
-// (twelve by another author, 203 by this project, some with nothing missing). A change requires a
+// Unless stated otherwise, a number is set by hand and validated by the cases of docs/proof.md:
+// twelve by another author and the generated ones, some with nothing missing. A change requires a
 // recomputed page. Where a number follows from statistics, the law is given. χ² and log evidence
 // (natural logarithms) have no unit; sigmas are standard errors.
 #pragma once
