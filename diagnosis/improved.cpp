@@ -19,7 +19,7 @@ std::string print(const char* format, double value) {
   return text;
 }
 
-// The number with the digits of a format; a whole one as an integer.
+// The number rounded to the digits of a format; integers without a decimal point.
 SettingsNode number(double value, const char* format) {
   const double rounded = std::strtod(print(format, value).c_str(), nullptr);
   constexpr double largest_written_whole = 1e6;
@@ -36,7 +36,7 @@ SettingsNode numbers(const std::vector<double>& values, const char* format) {
   return {std::move(all)};
 }
 
-// A sigma of 0 or an unknown one cannot stand beside fitted numbers: the value is then exact.
+// A sigma of 0 or an unknown one is not allowed with fitted values: the value is then exact.
 bool has_sigma(const FittedParameter& p) {
   bool any = false;
   for (const double s : p.sigma) {
@@ -72,10 +72,10 @@ void add_effect(TomlDocument& document, const FoundEffect& effect, const std::st
   add_kind(document, table, effect.kind);
   for (const auto& [key, value] : effect.texts) document.set(table, key, {value});
   if (table_name == "effect") {
-    // Exact numbers, with their errors as a comment: effects on light have no prior.
+    // Exact numbers with their errors as a comment: effects on light have no prior.
     for (const FittedParameter& p : effect.parameters) {
       if (p.key == "index" && p.value.size() > 1) {
-        // Of places that explain as much the first is taken.
+        // The first of several equally good places is used.
         const std::vector<double> others(p.value.begin() + 1, p.value.end());
         document.set(table, p.key, numbers({p.value.front()}, "%.9g"),
                      "or as well " + toml_value(numbers(others, "%.9g")));
@@ -139,8 +139,8 @@ void add_replay(TomlDocument& document, const Replay& replay, const std::filesys
   document.set(run, "commands", {relative.generic_string()});
 }
 
-// Puts a fitted number in the place of the uncertain one of the nominal model, which may be written
-// in another unit and stays as a comment. False where the document has no such key.
+// Replaces an uncertain value of the nominal model by the fitted one, which may have another unit;
+// the old value remains as a comment. Returns false if the document lacks the key.
 bool refine(TomlDocument& document, const FittedParameter& p) {
   const size_t dot = p.key.rfind('.');
   if (dot == std::string::npos) return false;
@@ -163,7 +163,7 @@ bool refine(TomlDocument& document, const FittedParameter& p) {
 
 std::string improved_experiment(TomlDocument document, const Diagnosis& diagnosis,
                                 const std::filesystem::path& folder) {
-  // An experiment that propagates has its own start.
+  // An experiment with [propagate] has an initial state.
   const std::optional<Replay> replay =
       std::get<TomlTable>(document.root.value).contains("propagate") ? std::nullopt
                                                                      : diagnosis.replay;

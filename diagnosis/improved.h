@@ -9,13 +9,13 @@
 
 namespace photorque {
 
-// `experiment` is the experiment as written. Uncertain numbers of its disturbances that were fitted
-// stand in it as fitted, beneath a comment with the number as it was written. Appended are: every
-// found effect as a [[disturbance]] with its fitted values and standard errors; effects and torques
-// without a law that were fitted beside them, so that the file is the model that was reported;
-// uncertain numbers that have no place in the text, as comments; and, if the text has none, a
-// [propagate] that propagates the first recording again. `folder` is where the result will stand:
-// the path of the recording is relative to it. NumericalError as of TomlDocument::text().
+// `experiment` is the experiment as written. Fitted uncertain values of its disturbances replace
+// the written ones, which remain as comments above. Appended are: every found effect as a
+// [[disturbance]] with fitted values and standard errors; further fitted effects and empirical
+// torques, so that the file is the reported model; uncertain values without a place in the text, as
+// comments; and, if absent, a [propagate] for the first recording. `folder` is the location of the
+// result; the path of the recording is relative to it. Throws NumericalError like
+// TomlDocument::text().
 std::string improved_experiment(TomlDocument experiment, const Diagnosis& diagnosis,
                                 const std::filesystem::path& folder);
 

@@ -60,7 +60,7 @@ Json where_json(const Where& where) {
   Json depends = Json::array();
   for (const auto& d : where.depends_on) {
     Json one = {{"variable", d.variable}, {"strength", number(d.strength)}};
-    // The name that this schema gives the yaw.
+    // This schema calls the yaw "heading".
     if (d.variable == "yaw") {
       one["variable"] = "heading";
       one["quantity"] = "yaw_deg";
@@ -117,8 +117,8 @@ Json holdout_json(const Holdout& holdout) {
           {"samples", holdout.samples}};
 }
 
-// "kind" joins several with " + "; "none" stands for nothing missing, and a label says what is not
-// physics alone.
+// "kind" joins several with " + ". It is "none" if nothing is missing, and the label if an
+// explanation is not only physics.
 Json alternative_json(const Alternative& alternative) {
   std::string kind;
   for (const std::string& k : alternative.kinds) kind += (kind.empty() ? "" : " + ") + k;

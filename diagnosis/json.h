@@ -1,4 +1,4 @@
-// diagnosis.json: a diagnosis for programs.
+// diagnosis.json: a machine-readable diagnosis.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace photorque {
 
-// The schema photorque.diagnosis/1. Parameters stand in the unit that their key names; an array of
-// one number stands as a number. What is not finite is null. Series are left out: they are the
-// report's. Keys beyond the schema's first version: "sentence", "warnings", "manoeuvres",
-// "empirical_torque", "beliefs_refined", "provenance". Ends in a line break.
+// The schema photorque.diagnosis/1. Parameters have the unit in the name of their key; an array of
+// one number becomes a number. Non-finite values are null. Series are omitted; the report has them.
+// Keys added after the first version of the schema: "sentence", "warnings", "manoeuvres",
+// "empirical_torque", "beliefs_refined", "provenance". Ends with a line break.
 std::string diagnosis_json(const Diagnosis& diagnosis, const Provenance& provenance);
 
 }  // namespace photorque

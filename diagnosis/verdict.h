@@ -1,4 +1,4 @@
-// The verdict of a diagnosis from the findings of the inference.
+// The verdict of a diagnosis from the finding of the inference.
 #pragma once
 
 #include "diagnosis/diagnosis.h"
@@ -8,7 +8,7 @@ namespace photorque {
 
 Verdict verdict_of(inference::Finding finding);
 
-// The sentence where the held-out data do not distinguish the named effects from the nominal model.
+// Sentence for held-out data that do not distinguish the named effects from the nominal model.
 std::string untested_names(const Holdout& holdout);
 
 }  // namespace photorque

@@ -20,23 +20,25 @@ class Judge {
                        [&](size_t c) { return all_[c].is_empirical; });
   }
 
-  // Every candidate that has a size differs from nothing.
+  // Whether every candidate that has a size differs significantly from zero.
   bool is_significant(size_t trial, const std::vector<double>& significance) const {
     const std::vector<size_t>& candidates = trials_[trial].candidates;
     for (size_t i = 0; i < candidates.size(); ++i) {
-      if (significance[i] < limits_.min_significance) return false;  // one without a size is not
+      if (significance[i] < limits_.min_significance)
+        return false;  // NaN (no size) counts as significant
     }
     return true;
   }
 
-  // With the held-out data as well, where they were weighed.
+  // Uses the significance on fitted and held-out data together where the trial has one.
   bool is_significant(size_t trial) const {
     const Explanation& t = trials_[trial];
     return is_significant(trial,
                           t.joint_significance.empty() ? t.significance : t.joint_significance);
   }
 
-  // The best trial that beats the nominal model beyond doubt; 0 if there is none.
+  // The trial of largest evidence whose log odds against the nominal model reach the limit; 0 if
+  // none.
   size_t best(bool empirical) const {
     size_t best = 0;
     for (size_t i = 1; i < trials_.size(); ++i) {
@@ -49,7 +51,7 @@ class Judge {
     return best;
   }
 
-  // The trial without those of its names that are hardly missed.
+  // Removes candidates from the trial, one at a time, as long as one is not needed (is_missed).
   size_t pruned(size_t trial) const {
     while (trial != 0) {
       size_t fewer = trial;
@@ -64,8 +66,8 @@ class Judge {
     return trial;
   }
 
-  // The trial without those of its names that left-out segments do not need; `gains`: of the rest.
-  // `unneeded` gains the others' names.
+  // Removes candidates that do not improve the prediction of left-out segments; `unneeded` receives
+  // their names, `gains` the gains of the others [sigma].
   size_t needed_by_segments(size_t trial, std::vector<std::optional<double>>& gains,
                             std::set<std::string>& unneeded) const {
     gains.clear();
@@ -81,7 +83,7 @@ class Judge {
     return trial;
   }
 
-  // Whether the held-out data distinguish a trial from the nominal model.
+  // Whether the held-out χ² of a trial is clearly below that of the nominal model.
   bool is_tested(size_t trial) const {
     const auto &before = trials_.front().holdout_chi2_per_sample,
                &after = trials_[trial].holdout_chi2_per_sample;
@@ -98,8 +100,8 @@ class Judge {
     return equal;
   }
 
-  // Whether the trial predicts the held-out data. If the nominal model was tested as well, one that
-  // was never asked has not shown it.
+  // Whether the trial predicts the held-out data. If the nominal model has been tested on them, an
+  // untested trial does not pass.
   bool predicts(size_t trial) const {
     const std::optional<Predictive>& p = trials_[trial].predictive;
     if (!p) return !trials_.front().predictive;
@@ -107,7 +109,7 @@ class Judge {
     return p->sigma < limits_.max_predictive_sigma && !is_off;
   }
 
-  // Candidates with a name that no explanation as good does without.
+  // Candidates whose name occurs in every explanation of comparable evidence.
   std::vector<size_t> indispensable(size_t trial) const {
     std::vector<size_t> result;
     for (const size_t c : trials_[trial].candidates) {
@@ -126,7 +128,7 @@ class Judge {
     return result;
   }
 
-  // Whether it predicts the held-out data far better than the nominal model, where that was tested.
+  // Whether the held-out χ² is far below that of the nominal model; true where it is not known.
   bool predicts_far_better(size_t trial) const {
     const auto &before = trials_.front().holdout_chi2_per_sample,
                &after = trials_[trial].holdout_chi2_per_sample;
@@ -151,7 +153,8 @@ class Judge {
     return ours.size() == theirs.size() && shared.size() + 1 == ours.size() && !is_empirical(other);
   }
 
-  // Whether `other` has all names of `trial`, but another known effect for the one at `which`.
+  // Whether `other` has all names of `trial` but replaces the one at `which` by another known
+  // effect.
   bool exchanges(size_t trial, size_t which, size_t other) const {
     return exchanges_one(trial, other) &&
            !has_name(other, all_[trials_[trial].candidates[which]].name);
@@ -164,7 +167,8 @@ class Judge {
   }
 
  private:
-  // The best trial of the others' names alone; the nominal model where none was fitted.
+  // The best trial with the same names except the one at `which`; the nominal model if there is
+  // none.
   size_t without(size_t trial, size_t which) const {
     std::multiset<std::string> rest = names_of(trial);
     rest.erase(rest.find(all_[trials_[trial].candidates[which]].name));
@@ -183,8 +187,8 @@ class Judge {
            std::includes(all.begin(), all.end(), fewer.begin(), fewer.end());
   }
 
-  // Whether `whole` beats `part` by the full threshold, does not predict worse, and does not lead
-  // away from the held-out data.
+  // Whether `whole` beats `part` by the full threshold and does not predict the held-out data
+  // worse.
   bool is_missed(size_t part, size_t whole) const {
     const Explanation &a = trials_[part], &b = trials_[whole];
     if (b.log_evidence < a.log_evidence + limits_.min_log_odds) return false;
@@ -192,8 +196,8 @@ class Judge {
     if (!a.predictive || !b.predictive) {
       return !before || !after || *after <= limits_.max_held_out_growth * std::max(1.0, *before);
     }
-    // The errors of its numbers let χ² grow on held-out data, too: that speaks against no name. Nor
-    // where all data together fit with the name alone: then they determine the numbers.
+    // Errors of the parameters also raise the held-out χ²: growth below its expected value rejects
+    // no name. Nor does growth where only the fit with the name agrees with all data together.
     const double expected = b.predictive->expected_chi2_per_sample;
     const bool grows = before && after &&
                        *after > limits_.max_held_out_growth * std::max({1.0, *before, expected});
@@ -209,8 +213,8 @@ class Judge {
   const Thresholds::Decision& limits_;
 };
 
-// Probability of each trial, those aside that are forbidden or have a name that does not differ
-// from nothing.
+// Posterior probability of each trial. It is 0 for trials that physics forbids and for trials with
+// a candidate that does not differ significantly from zero.
 std::vector<double> posterior(const std::vector<Explanation>& trials, const Judge& judge) {
   const auto counts = [&](size_t i) {
     return trials[i].objection.empty() && judge.is_significant(i);
@@ -229,14 +233,14 @@ std::vector<double> posterior(const std::vector<Explanation>& trials, const Judg
   return p;
 }
 
-// Of all trials for which `counts` is true, together.
+// Total probability of the trials for which `counts` is true.
 double probability_of(const std::vector<double>& probability,
                       const std::function<bool(size_t)>& counts) {
   double sum = 0.0;
   for (size_t i = 0; i < probability.size(); ++i) {
     if (counts(i)) sum += probability[i];
   }
-  return std::min(1.0, sum);  // rounding alone goes beyond
+  return std::min(1.0, sum);  // rounding can exceed 1
 }
 
 }  // namespace
@@ -247,7 +251,7 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
   const size_t empirical = judge.best(true);
   std::vector<std::optional<double>> gains;
   std::set<std::string> unneeded;
-  // Gates (b) and (c).
+  // Gates (b) and (c) of decide.h.
   const size_t named = judge.needed_by_segments(judge.pruned(judge.best(false)), gains, unneeded);
   Decision d;
   d.probability = posterior(trials, judge);
@@ -255,7 +259,7 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
   const bool only_empirical =
       empirical != 0 &&
       trials[empirical].log_evidence > trials[named].log_evidence + limits.min_log_odds;
-  // Gate (d).
+  // Gate (d) of decide.h.
   const bool structure_left = checks.excess_sigma(named) > limits.max_excess_sigma;
   const bool predicts = judge.predicts(named);
   if (only_empirical || structure_left || !predicts) {
@@ -269,7 +273,7 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
                           checks.excess_sigma(empirical) < limits.max_excess_sigma;
     d.leaves_more = !law_does;
     if (law_does) d.beside_law = judge.indispensable(empirical);
-    // The law is an approximation, and several effects together absorb its residual.
+    // The empirical law is an approximation: several effects together may only absorb its residual.
     if (d.beside_law.size() > 1) d.beside_law.clear();
     d.confidence = probability_of(d.probability, [&](size_t i) { return judge.is_empirical(i); });
     if (structure_left || !predicts) {
@@ -279,7 +283,7 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
   }
   if (named == 0) {
     // Rivals are explanations that are more likely than the nominal model and in which every name
-    // predicts. The number of unlikely explanations therefore has no influence.
+    // improves the prediction. The number of unlikely explanations therefore has no influence.
     const double rivals = probability_of(d.probability, [&](size_t i) {
       const bool predicts_nothing = std::ranges::any_of(
           unneeded, [&](const std::string& name) { return judge.has_name(i, name); });
@@ -289,7 +293,8 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
     d.confidence = nothing > 0.0 ? d.probability.front() / nothing : 1.0;
     return d;
   }
-  // Gate (a). The same names with another parametrisation are the same answer; more may act.
+  // Gate (a) of decide.h. Trials that contain the same names, in any parametrisation, count
+  // together.
   d.confidence =
       probability_of(d.probability, [&](size_t i) { return judge.has_names_of(named, i); });
   const double of_group = probability_of(d.probability, [&](size_t i) {
@@ -303,8 +308,8 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
   if (d.undecided) {
     d.confidence = 1.0 - d.confidence;
   } else if (is_weak || !is_likely) {
-    // An effect is certain, but several explanations are about equally likely. Parameters that they
-    // share may share an error: no effect is named.
+    // An effect is certain, but several explanations are about equally likely. No effect is named,
+    // because parameters common to all of them may have a common error.
     d.finding = Finding::unknown;
     d.because = "several explanations are about as likely";
     d.chosen = named;

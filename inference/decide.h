@@ -1,11 +1,11 @@
 // The verdict on the trials of any domain. Every name passes the same gates:
 //
-//   (a) it, or an effect not distinguished from it, is probable; else it is only a candidate;
-//   (b) each of its groups of parameters differs from neutral;
-//   (c) segments that a fit left out are predicted better with it than without it;
-//   (d) with all names the held-out χ² agrees with its prediction; else the finding is unknown;
-//   (e) where the nominal model predicts the held-out data as well, these do not test the names;
-//   (f) of places that explain the data as well all are listed with it.
+//   (a) it, or an indistinguishable effect, is probable; otherwise it remains a candidate;
+//   (b) each of its groups of parameters differs significantly from neutral;
+//   (c) segments that are left out of a fit are predicted better with it than without it;
+//   (d) with all names the held-out χ² agrees with its prediction; otherwise: unknown;
+//   (e) held-out data that the nominal model predicts as well do not test the names;
+//   (f) all places that explain the data equally well are listed.
 #pragma once
 
 #include <functional>
@@ -18,29 +18,28 @@ namespace photorque::inference {
 enum class Finding {
   nothing_missing,  // differences are noise
   named,            // the named candidates explain the differences
-  unknown,          // structure is left after them, or only an empirical candidate takes it up
+  unknown,          // residual structure remains, or only an empirical candidate explains it
 };
 
-// Limits of the gates beside those of Thresholds::Decision.
+// Limits of the gates in addition to Thresholds::Decision.
 struct GateLimits {
-  // Standard errors over left-out segments by which they are predicted better with a name than
-  // without it.
+  // Minimum gain in the prediction of left-out segments with a name over without it [sigma].
   double min_gain_sigma = 3.0;
-  // χ² of the held-out data over that of the nominal model, above which they do not test a name.
+  // Ratio of the held-out χ² to that of the nominal model above which the data do not test a name.
   double max_untested_fraction = 0.9;
-  // Log evidence that separates one place (a cell, an LED) from another: odds of 20 to 1.
+  // Log evidence that distinguishes one place (a cell, an LED) from another: odds of 20 to 1.
   double min_log_odds_of_place = 3.0;
 };
 
-// Functions of a domain that check trials for the gates. Each is called for few trials.
+// Functions of a domain that evaluate trials for the gates. Each is called for few trials.
 struct Checks {
-  // Structure of the trial's residuals of the fitted data (whiteness.h) [sigma].
+  // Residual structure of the trial in the fitted data (whiteness.h) [sigma].
   std::function<double(size_t trial)> excess_sigma;
-  // Standard errors by which left-out segments are predicted better with the candidate at `which`
-  // of the trial than without it. Nothing where there are too few segments; not set: not checked.
+  // Gain in the prediction of left-out segments with the candidate at `which` over without it
+  // [standard errors]. Nothing: too few segments. Not set: gate (c) is skipped.
   std::function<std::optional<double>(size_t trial, size_t which)> gain_sigma = {};
-  // Candidates of the same kind at other places, each in the place of the candidate at `which`,
-  // with the log evidence by which it is behind; not set: there are no places.
+  // Candidates of the same kind at other places, each as a replacement for the candidate at
+  // `which`, with its deficit in log evidence. If not set, the domain has no places.
   using Place = std::pair<size_t, double>;
   std::function<std::vector<Place>(size_t trial, size_t which)> other_places = {};
   GateLimits limits = {};
@@ -49,26 +48,27 @@ struct Checks {
 // A candidate that passed the gates.
 struct Name {
   size_t candidate = 0;
-  double probability = 0.0;  // that it acts, or an effect not distinguished from it
+  double probability = 0.0;  // of this effect or an indistinguishable one
   std::optional<double> gain_sigma = {};
-  std::vector<size_t> equal_places = {};  // candidates
+  std::vector<size_t> equal_places = {};  // candidates at other places
 };
 
 struct Decision {
   Finding finding = Finding::nothing_missing;
   double confidence = 0.0;  // posterior probability of the finding and the names
-  // Nothing is missing only because the difference has no name: fitted and held-out runs show it
-  // together, neither does alone, and no candidate is much more likely than all others.
+  // The finding is "nothing missing" although the data differ from the nominal model. Fitted and
+  // held-out runs show the difference only together, and no candidate is much more likely than the
+  // others.
   bool undecided = false;
-  // More is left beside the chosen model than noise.
+  // Residual structure remains after the chosen model.
   bool leaves_more = false;
-  size_t chosen = 0;      // index of the trial whose model is kept
-  size_t best_named = 0;  // of the best trial without empirical candidates; 0: nominal
-  // Why something unknown acts, for a person: "the held-out recording is not predicted".
+  size_t chosen = 0;      // index of the trial whose model is reported
+  size_t best_named = 0;  // index of the best trial without empirical candidates; 0: nominal
+  // Reason for the finding "unknown", as text: "the held-out recording is not predicted".
   std::string because = {};
-  // Candidates of the chosen trial that act although the finding is unknown: beside a law without a
-  // name, one at most, without which whatever else was tried is far less likely; and what several
-  // explanations that are about as likely have in common.
+  // Candidates of the chosen trial that are certain although the finding is unknown. With an
+  // empirical law: at most one, without which all other explanations are far less likely. With
+  // several about equally likely explanations: the candidates that they have in common.
   std::vector<size_t> beside_law = {};
   std::vector<double> probability;  // of each trial
   std::vector<Name> names = {};     // of the chosen trial where the finding is `named`
@@ -76,8 +76,8 @@ struct Decision {
   bool held_out_tests_names = true;
 };
 
-// Trial 0 is the nominal model. `excess_sigma` is called for the best named trial. "Nothing is
-// missing" has to predict the held-out data as well.
+// Trial 0 is the nominal model. `excess_sigma` is called for the best named trial. The finding
+// "nothing missing" requires that the nominal model also predicts the held-out data.
 Decision decide(const std::vector<Explanation>& trials, const std::vector<CandidateTraits>& all,
                 const Checks& checks, const Thresholds::Decision& limits);
 

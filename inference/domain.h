@@ -7,8 +7,8 @@
 //   residual -> score every candidate -> fit -> compare evidence -> weigh with held-out data
 //            -> decide
 //
-// (search.h, weigh.h, decide.h). How a trial is fitted, what its evidence is and what forbids it,
-// the domain alone knows.
+// (search.h, weigh.h, decide.h). The domain defines how a trial is fitted, how its evidence is
+// computed and which trials are forbidden.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,48 +28,50 @@ namespace photorque::inference {
 
 // Properties of a candidate that the search uses.
 struct CandidateTraits {
-  // Candidates of one name are the same term in different parametrisations: it acts once.
+  // Candidates with the same name are parametrisations of the same term; a trial contains one of
+  // them.
   std::string name;
-  // A smooth function without a law: it competes with the others, so that something unknown is not
-  // mistaken for one of them, but it names nothing.
+  // A smooth function without a physical law. It competes with the physical candidates, so that an
+  // unknown effect is not attributed to one of them, but it names no effect.
   bool is_empirical = false;
   // Whether a score test can predict the gain of its fit.
   bool is_linear = true;
-  // Whether it changes faster than averages show.
+  // Whether it varies faster than averaged readings resolve.
   bool is_fast = false;
-  // Whether it has strengths, in which it is linear.
+  // Whether it has strengths: parameters in which it is linear.
   bool has_strength = true;
   size_t parameters = 0;
-  // Whether it stands at a place of which one recording alone may leave several open.
+  // Whether it has a place that a single recording may leave ambiguous.
   bool has_place = false;
-  // Of candidates of one kind at different places (cells, lamps) the kind; empty: it has no place.
+  // The kind that candidates at different places (cells, lamps) have in common; empty: it has no
+  // place.
   std::string kind_of_place = {};
-  // Whether readings bend with it so much that no forecast is made about a model without it: each
-  // is fitted alone, from all its starts, before sets are forecast.
+  // Whether it is so nonlinear that forecasts about a model without it fail. Such candidates are
+  // fitted one at a time, from all their starts, before sets are forecast.
   bool is_fitted_first = false;
 };
 
 // Candidates, evidence and significance of a trial, without the fit.
 struct Explanation {
-  std::vector<size_t> candidates;  // in the order in which they were added; none: the nominal model
-  // Natural logarithm of the evidence, with the prior odds of the candidates, but for a constant
-  // that all trials on the same runs share.
+  std::vector<size_t> candidates;  // in the order of addition; empty for the nominal model
+  // Natural logarithm of the evidence with the prior odds of the candidates, up to a constant that
+  // is common to all trials on the same runs.
   double log_evidence = 0.0;
-  // Of each candidate: √(θᵀ C⁻¹ θ) of the parameters that are its size; not a number for one that
-  // has none.
+  // For each candidate √(θᵀ C⁻¹ θ) of the parameters that measure its size; NaN if it has none.
   std::vector<double> significance = {};
-  std::vector<double> joint_significance = {};  // with the held-out data, where they were weighed
-  std::string objection = {};                   // why it is forbidden; empty: nothing
-  // Of its prediction of the held-out data, where it was requested.
+  std::vector<double> joint_significance = {};  // including the held-out data, if weighed
+  std::string objection = {};                   // why physics forbids it; empty: allowed
+  // Prediction of the held-out data, where computed.
   std::optional<double> holdout_chi2_per_sample = {};
   std::optional<Predictive> predictive = {};
-  // How far its χ² lies above what the errors of the fitted parameters predict (held_out.h).
+  // Excess of the held-out χ² over the value that the parameter errors predict (held_out.h)
+  // [sigma].
   std::optional<double> held_out_sigma = {};
 };
 
-// How patiently is fitted: the fractions of each run that are fitted in turn, and the iterations
-// of each; a fit to whole runs may end where it will not come below `worth_chi2`, or fits badly and
-// falls by less than the fraction `creep` in a step.
+// Convergence options. The first `windows` fractions of each run are fitted in turn, each with at
+// most `max_iterations`. A fit to whole runs stops early if it cannot fall below `worth_chi2`. It
+// also stops if it fits badly and χ² falls by less than the fraction `creep` per step.
 struct Effort {
   std::vector<double> windows = {1.0};
   int max_iterations = 25;
@@ -77,15 +79,14 @@ struct Effort {
   double creep = 0.0;
 };
 
-// A candidate with the start of its fit.
+// A candidate with its initial values.
 template <class Start>
 struct Term {
   size_t candidate = 0;
   Start start;
 };
 
-// One of those that are to act together; `strengths`: where the fit of its strengths starts; empty:
-// as the start says.
+// One candidate of a set. `strengths`: initial values of its strengths; empty: those of the start.
 template <class Start>
 struct Member {
   Term<Start> term;
@@ -94,7 +95,7 @@ struct Member {
 template <class Start>
 using Members = std::vector<Member<Start>>;
 
-// A fit as the search sees it: χ² with the priors, the number of residuals, χ² of the data over it.
+// A fit as seen by the search: χ² with priors, number of residuals, and data χ² per residual.
 template <class F>
 concept Fitted = requires(const F& fit) {
   { fit.chi2 } -> std::convertible_to<double>;
@@ -102,10 +103,10 @@ concept Fitted = requires(const F& fit) {
   { fit.chi2_per_sample() } -> std::convertible_to<double>;
 };
 
-// A domain defines its trials, runs, starts and begins. A Start is the initial value of the fit of
-// a candidate, with the gain (fall of χ²) that a scan predicts; infinite where nothing was scanned.
-// A Begin contains the initial conditions of one run, which are nuisances. All functions are const
-// and are called from several threads.
+// A domain defines its trials, runs, starts and initial conditions. A Start holds the initial
+// values of a candidate's fit and the gain (fall of χ²) that a scan predicts, infinite without a
+// scan. A Begin holds the initial conditions of one run, which are nuisances. All functions are
+// const and are called from several threads.
 template <class D>
 concept Domain = std::derived_from<typename D::Trial, Explanation> &&
     Fitted<decltype(D::Trial::fit)> &&
@@ -117,31 +118,30 @@ concept Domain = std::derived_from<typename D::Trial, Explanation> &&
   { domain.candidates() } -> std::same_as<const std::vector<CandidateTraits>&>;
   { domain.limits() } -> std::same_as<const Thresholds&>;
 
-  // Where a fit of the candidate starts if nothing is scanned.
+  // Initial values of a candidate that needs no scan.
   { domain.start_of(count) } -> std::same_as<typename D::Start>;
-  // A candidate more, fitted; `count` is its index.
+  // Adds the candidate of index `count` to the trial and fits it.
   { domain.extend(trial, count, start, runs, effort) } -> std::same_as<typename D::Trial>;
-  // Refits the trial to other or more runs, each from its initial conditions.
+  // Refits the trial to other or more runs from the given initial conditions.
   { domain.refit(trial, runs, begins, effort) } -> std::same_as<typename D::Trial>;
-  // Refits the trial from the end of another trial on the same runs, in all parameters that both
-  // have.
+  // Refits the trial, starting from the second trial's values in all parameters that both have.
   { domain.refit_near(trial, trial, runs, effort) } -> std::same_as<typename D::Trial>;
-  // The trial's prediction of runs that it never saw: only nuisances are fitted.
+  // Predicts runs that the trial has not been fitted to; only nuisance parameters are fitted.
   { domain.predict(trial, runs) } -> std::same_as<typename D::Trial>;
   { domain.begins_of(trial) } -> std::same_as<std::vector<typename D::Begin>>;
   // Initial conditions from the first readings of each run.
   { domain.seen_begins(trial, runs) } -> std::same_as<std::vector<typename D::Begin>>;
-  // The trial with these initial conditions for its next fit.
+  // Returns the trial with these initial conditions for its next fit.
   { domain.with_begins(trial, begins) } -> std::same_as<typename D::Trial>;
 
-  // The fall of χ² that each candidate would bring (0 for those that are not linear).
+  // Predicted fall of χ² for each candidate (0 for candidates that are not linear).
   { domain.gains(trial, candidates, runs) } -> std::same_as<std::vector<double>>;
-  // The trial's own candidates as they were fitted, in their order.
+  // The candidates of the trial with their fitted values, in their order.
   { domain.terms_of(trial) } -> std::same_as<std::vector<Term<typename D::Start>>>;
-  // The strengths of terms about a trial, everything else that is fitted projected out. The first
-  // of `terms` are the trial's own; those that averages do not show make no group.
+  // Linear problem in the strengths of the terms about a trial, everything else projected out. The
+  // first `terms` are the trial's own. Terms that averages do not resolve form no group.
   { domain.linear_problem(trial, terms, runs) } -> std::same_as<LinearProblem>;
-  // The nominal model with these members alone, fitted from where the trial ended.
+  // The nominal model with exactly these members, fitted from the end of the trial's fit.
   { domain.assemble(trial, members, runs, effort) } -> std::same_as<typename D::Trial>;
   // Starts of each candidate added to the trial: one, or the best of a scan over its nonlinear
   // parameters. The second runs are averages of the first.
@@ -149,11 +149,11 @@ concept Domain = std::derived_from<typename D::Trial, Explanation> &&
     domain.starts(trial, candidates, runs, runs, threads)
     } -> std::same_as<std::vector<std::vector<typename D::Start>>>;
 
-  // The runs averaged about the trial's prediction into about so many samples each.
+  // Averages the runs about the trial's prediction into about `count` samples each.
   { domain.average(trial, runs, count) } -> std::same_as<std::vector<typename D::Run>>;
-  // Each run in so many pieces; without those that hold too little to be fitted.
+  // Cuts each run into `count` pieces; pieces with too few readings are omitted.
   { domain.cut(runs, count) } -> std::same_as<std::vector<typename D::Run>>;
-  // Structure that the trial leaves (whiteness.h) [sigma].
+  // Residual structure of the trial (whiteness.h) [sigma].
   { domain.excess_sigma(trial, runs) } -> std::convertible_to<double>;
 };
 
@@ -168,24 +168,24 @@ std::vector<size_t> by_evidence(const std::vector<T>& trials) {
   return order;
 }
 
-// Whether two sets of candidates are equal, in any order.
+// Whether two lists contain the same candidates in any order.
 inline bool same_candidates(const std::vector<size_t>& a, const std::vector<size_t>& b) {
   return a.size() == b.size() && std::is_permutation(a.begin(), a.end(), b.begin());
 }
 
-// Whether one of these stands at a place.
+// Whether any of these candidates has a place.
 inline bool has_place(const std::vector<size_t>& among, const std::vector<CandidateTraits>& all) {
   return std::any_of(among.begin(), among.end(), [&](size_t c) { return all[c].has_place; });
 }
 
-// Whether one of `among` is the same term as `candidate`.
+// Whether one of `among` has the same name as `candidate`.
 inline bool acts_already(const std::vector<size_t>& among, size_t candidate,
                          const std::vector<CandidateTraits>& all) {
   return std::any_of(among.begin(), among.end(),
                      [&](size_t other) { return all[other].name == all[candidate].name; });
 }
 
-// Whether the derivatives of a trial are useless, because its prediction has diverged.
+// Whether the prediction of a trial has diverged, so that its derivatives are useless.
 template <class Trial>
 bool has_diverged(const Trial& trial, const Thresholds& limits) {
   return trial.fit.chi2_per_sample() > limits.diverged_chi2_per_sample;

@@ -1,4 +1,4 @@
-// Rounds of forecast and fit about the best explanation so far.
+// Rounds of forecast and fit, starting from the best explanation so far.
 #pragma once
 
 #include <cmath>
@@ -11,16 +11,16 @@ namespace photorque::inference {
 template <Domain D>
 using Terms = std::vector<Term<typename D::Start>>;
 
-// Each round linearises the problem about one trial, predicts what every set of candidates would
-// gain (subsets.h), and fits the few best; the next round is about the best of all. Where nothing
-// gains any more, effects that only a scan can find are added to the best, and the rounds continue.
+// Each round linearises the problem about one trial, predicts the gain of every set of candidates
+// (subsets.h), and fits the best few. The next round starts from the best trial. When no set gains
+// further, effects that only a scan can find are added to the best trial, and the rounds continue.
 template <Domain D>
 class Rounds {
  public:
   using Trial = typename D::Trial;
   using Runs = std::vector<typename D::Run>;
 
-  // `base` has no candidates and is fitted to the set; `max_effects` may act together.
+  // `base` has no candidates and is fitted to the set; at most `max_effects` are combined.
   Rounds(const D& domain, const RunSet<D>& set, const Trial& base, size_t max_effects, int threads)
       : domain_(domain),
         limits_(domain.limits()),
@@ -29,15 +29,15 @@ class Rounds {
         threads_(threads),
         trials_{base} {}
 
-  // All trials that were fitted, the base first; `from`: where the rounds start, fitted to the set;
-  // `scans`: whether effects that only a scan finds are searched as well.
+  // Returns all fitted trials, the base first. The rounds start at `from`, which is fitted to the
+  // set. `scans`: whether to search also for effects that only a scan can find.
   std::vector<Trial> run(const Trial& from, bool scans = true) {
     if (!from.candidates.empty()) trials_.push_back(from);
     Trial at = from;
     bool scan = false, scans_base = false;
     for (int round = 0; round < limits_.search.max_rounds; ++round) {
       std::vector<Trial> found = scan ? scanned(at) : predicted(at, round == 0);
-      // Slow effects may stand in for one that is fast: once the scan also starts without them.
+      // Slow effects may mimic a fast one, so one scan also starts from the base without them.
       if (scan && !scans_base && may_be_stand_ins(at)) {
         scans_base = true;
         for (Trial& t : scanned_alone(at)) found.push_back(std::move(t));
@@ -51,7 +51,7 @@ class Rounds {
         for (Trial& t : switched_on(at)) found.push_back(std::move(t));
       }
       std::vector<Trial> parents = {at};
-      // Pieces only select the sets to fit to the whole: there is no need to converge on them.
+      // Pieces only select the sets to fit to whole runs, so fits to them need not converge.
       if (set_.pieces == 1) settle_leaders(domain_, set_.runs, threads_, found, parents);
       for (Trial& parent : parents) keep(std::move(parent));
       for (Trial& trial : found) keep(std::move(trial));
@@ -62,7 +62,7 @@ class Rounds {
       const bool gained =
           best.log_evidence > before.log_evidence + limits_.search.min_log_evidence_gain;
       at = gained ? best : before;
-      // Pieces select the sets that are fitted to the whole.
+      // Pieces select the sets that are fitted to whole runs.
       if (set_.pieces > 1 && explains(at)) {
         at = without_each(std::move(at));
         if (!has_empirical(at)) {
@@ -83,14 +83,14 @@ class Rounds {
  private:
   bool may_be_stand_ins(const Trial& at) const {
     if (at.candidates.empty()) return false;
-    // About a diverged base a scan is useless, if some candidate leads back to the readings.
+    // A scan about a diverged base is useless if some candidate leads back to the readings.
     if (has_diverged(trials_.front(), limits_) && !has_diverged(at, limits_)) return false;
     return at.candidates.size() > 1 ||
            domain_.excess_sigma(at, set_.runs) > limits_.search.explained_sigma;
   }
 
-  // Neither structure is left nor readings far off: in a short piece all that is left may be called
-  // noise.
+  // Whether neither residual structure nor a large misfit remains. Both are tested, because in a
+  // short piece structure alone may be insignificant.
   bool explains(const Trial& at) const {
     return at.fit.chi2_per_sample() < limits_.held_out.max_noise &&
            domain_.excess_sigma(at, set_.runs) < limits_.search.explained_sigma;
@@ -106,7 +106,8 @@ class Rounds {
                        [&](size_t g) { return problem.groups[g].is_empirical; });
   }
 
-  // The best that is left when one candidate after the other is left out; keeps all that it tries.
+  // Removes candidates one by one as long as that improves the trial; keeps all trials that it
+  // fits.
   Trial without_each(Trial at) {
     const Runs averages = slow_runs(domain_, at, set_);
     while (at.candidates.size() > 1) {
@@ -127,13 +128,13 @@ class Rounds {
     return at;
   }
 
-  // In pieces of the runs a faint line or jump is not resolved; the whole is searched later.
+  // Pieces of runs do not resolve weak lines or jumps; whole runs are scanned later.
   bool is_worth_a_scan(const Trial& at) const {
     return set_.pieces == 1 ||
            domain_.excess_sigma(at, set_.runs) > limits_.decision.max_excess_sigma;
   }
 
-  // Candidates that need no scan at full rate, in linear strengths.
+  // Candidates with linear strengths that need no scan at the full sampling rate.
   Terms<D> slow_terms(const Trial& at, const Runs& averages) const {
     const std::vector<CandidateTraits>& all = domain_.candidates();
     Terms<D> terms;
@@ -153,7 +154,7 @@ class Rounds {
     return terms;
   }
 
-  // Fits of the sets predicted about `at`.
+  // Fits the sets that the linear problem about `at` predicts to be best.
   std::vector<Trial> predicted(const Trial& at, bool first) const {
     const Runs averages = slow_runs(domain_, at, set_);
     Terms<D> terms = domain_.terms_of(at);
@@ -174,13 +175,14 @@ class Rounds {
       const bool is_single =
           first && s.groups.size() == 1 && s.gain > least_gain(s, problem, subsets);
       const bool is_leader = s.log_evidence > least && sets < limits_.search.max_fits_of_round;
-      // A law without a name fits anything; known effects may need all of their parts at once.
+      // An empirical law fits anything, whereas known effects may gain only when all parts are
+      // present.
       const bool is_known = has_empirical(at) && !has_empirical(s, problem) &&
                             known_sets < limits_.search.max_known_fits_of_round;
       if (!is_leader && !is_single && !is_known) continue;
       Members<typename D::Start> members = members_of(s, problem, terms, is_kept);
       if (members.empty()) continue;
-      // A trial with more names must have a predicted gain.
+      // A trial with more names needs a predicted gain.
       if (s.log_evidence < of_trial && is_enlarged(candidates_of(members), at)) continue;
       const double expected = at.log_evidence + s.log_evidence - of_trial;
       if (was_tried(members, expected) || is_refused(members, expected)) continue;
@@ -191,7 +193,7 @@ class Rounds {
     return fitted(at, chosen, averages);
   }
 
-  // Terms of the trial that the problem leaves alone, because averages do not show them.
+  // Flags the terms of the trial that the problem leaves out because averages do not resolve them.
   static std::vector<bool> kept_terms(const LinearProblem& problem, size_t own) {
     std::vector<bool> kept(own, true);
     for (const StrengthGroup& group : problem.groups) {
@@ -200,8 +202,8 @@ class Rounds {
     return kept;
   }
 
-  // The log evidence that is predicted for the trial itself, to compare others with; −∞ where it is
-  // not among those predicted.
+  // Predicted log evidence of the trial itself, as the reference for other sets; −∞ if the trial is
+  // not among the predicted sets.
   static double forecast_of_trial(const std::vector<Subset>& subsets, const LinearProblem& problem,
                                   size_t own) {
     const auto is_own = [&](size_t g) { return problem.groups[g].term < own; };
@@ -215,8 +217,8 @@ class Rounds {
     return -std::numeric_limits<double>::infinity();
   }
 
-  // All candidates of the trial and others besides. (Where it has none, some are fitted for
-  // comparison.)
+  // Whether the set contains all candidates of the trial and more. False for a trial without
+  // candidates, because some single candidates are always fitted for comparison.
   static bool is_enlarged(const std::vector<size_t>& candidates, const Trial& at) {
     return !at.candidates.empty() && candidates.size() > at.candidates.size() &&
            std::all_of(at.candidates.begin(), at.candidates.end(), [&](size_t c) {
@@ -224,7 +226,7 @@ class Rounds {
            });
   }
 
-  // Of a single candidate, to be fitted for comparison.
+  // Minimum gain of a single candidate that is fitted for comparison.
   double least_gain(const Subset& single, const LinearProblem& problem,
                     const std::vector<Subset>& subsets) const {
     double best = 0.0;
@@ -257,8 +259,8 @@ class Rounds {
     return candidates;
   }
 
-  // And came out as well as is `expected` now (log evidence). A fit that started too far off is
-  // worth another.
+  // Whether the set has been fitted with about the log evidence that is `expected`. If it came out
+  // worse, its start may have been too far off, and another fit is worth it.
   bool was_tried(const Members<typename D::Start>& members, double expected) const {
     const std::vector<size_t> candidates = candidates_of(members);
     return std::any_of(trials_.begin(), trials_.end(), [&](const Trial& t) {
@@ -268,8 +270,8 @@ class Rounds {
     });
   }
 
-  // Whether a part of it was fitted and rejected (a wrong sign), and no gain is predicted beyond
-  // that part: it would be rejected as well, in the place of one that is not.
+  // Whether a part of the set has been rejected (for example for a wrong sign) and no gain beyond
+  // that part is predicted. The set would be rejected too, in the place of a valid one.
   bool is_refused(const Members<typename D::Start>& members, double expected) const {
     const std::vector<size_t> candidates = candidates_of(members);
     return std::any_of(trials_.begin(), trials_.end(), [&](const Trial& t) {
@@ -281,7 +283,7 @@ class Rounds {
     });
   }
 
-  // Fits to averages, and of the best to all readings.
+  // Fits to averages; the best are refitted to all readings.
   std::vector<Trial> fitted(const Trial& at, const std::vector<Members<typename D::Start>>& chosen,
                             const Runs& averages) const {
     const Effort effort{.max_iterations = limits_.fitting.trial_iterations};
@@ -294,7 +296,7 @@ class Rounds {
     for (Trial& t : found) t.log_evidence += at.log_evidence - rough.log_evidence;
     found = without_twins(std::move(found));
     sort_by_evidence(found);
-    // A trial that diverged is not refitted to all readings if the best did not diverge.
+    // A diverged trial is not refitted to all readings if the best trial did not diverge.
     const bool best_is_near = !has_diverged(found.front(), limits_);
     size_t refits = 0;
     while (refits < std::min(limits_.search.max_refits_of_averages, found.size()) &&
@@ -309,7 +311,7 @@ class Rounds {
     return found;
   }
 
-  // Candidates that are too nonlinear for a forecast, fitted one at a time.
+  // Fits candidates that are too nonlinear for a forecast, one at a time.
   std::vector<Trial> each_alone(const Trial& at) const {
     const std::vector<CandidateTraits>& all = domain_.candidates();
     std::vector<size_t> bent;
@@ -331,7 +333,7 @@ class Rounds {
     return fitted(at, chosen, averages);
   }
 
-  // Candidates without parameters: they act or not, so that no strength can be forecast.
+  // Adds candidates without parameters. They have no strength, so their gain cannot be forecast.
   std::vector<Trial> switched_on(const Trial& at) const {
     if (at.candidates.size() >= max_effects_) return {};
     const std::vector<CandidateTraits>& all = domain_.candidates();
@@ -343,8 +345,9 @@ class Rounds {
     return extend_by_tasks(domain_, at, tasks, set_.runs, threads_);
   }
 
-  // An instant or a place was looked for when less was known, and a fit does not go far from it:
-  // what has one is taken out, with what may have made up for it, and looked for again.
+  // Removes each effect with an instant or a place, together with empirical laws that may
+  // compensate its error, and locates it again. Its first location used a poorer model; a fit does
+  // not move far from it.
   std::vector<Trial> relocated(const Trial& at) const {
     std::vector<Trial> found;
     const std::vector<CandidateTraits>& all = domain_.candidates();
@@ -376,7 +379,7 @@ class Rounds {
     return found;
   }
 
-  // Candidates that act faster than averages of readings show.
+  // Adds candidates that vary faster than averages of the readings resolve.
   std::vector<Trial> scanned(const Trial& at) const {
     if (at.candidates.size() >= max_effects_) return {};
     const Runs averages = slow_runs(domain_, at, set_);
@@ -407,8 +410,8 @@ class Rounds {
     return extend_by_tasks(domain_, at, tasks, set_.runs, threads_);
   }
 
-  // What a scan finds beside the base alone: slow effects that stand in for one that is fast leave
-  // little of it. Where the best is most of what `at` is, with what goes with it.
+  // Scans from the base alone: slow effects that mimic a fast one hide most of it. If the best
+  // result explains most of the gain of `at`, candidates that complement it are added.
   std::vector<Trial> scanned_alone(const Trial& at) const {
     const Trial& base = trials_.front();
     std::vector<Trial> found = scanned(base);

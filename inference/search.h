@@ -1,4 +1,4 @@
-// The search for missing effects: rounds of forecast and fit, about the nominal model first.
+// The search for missing effects: rounds of forecast and fit, starting from the nominal model.
 #pragma once
 
 #include "inference/rounds.h"
@@ -16,7 +16,7 @@ class Search {
     trials_.push_back(nominal);
   }
 
-  // `near`: where the rounds start, fitted to the runs; nullptr: about the nominal model.
+  // `near`: a trial fitted to the runs from which the rounds start; nullptr: the nominal model.
   std::vector<Trial> run(const Trial* near = nullptr) {
     const Trial nominal = trials_.front();
     if (near != nullptr) return about(nominal, *near);
@@ -25,9 +25,9 @@ class Search {
       auto [pieces, parted] = near_pieces(domain_, nominal, runs_);
       if (pieces.pieces == 1) return about(nominal, from);
       for (Trial& t : by_pieces(nominal, pieces, parted)) trials_.push_back(std::move(t));
-      // Nothing can be predicted about a prediction that is elsewhere. One that pieces led to the
-      // readings, all but a part that is still unknown or noise that is more than stated, says
-      // more.
+      // Forecasts about a prediction far from the readings are useless. The limit is ten times
+      // wider here: a trial from the pieces is a usable start even if noise is understated or a
+      // part is unknown.
       constexpr double as_near = 10.0;
       const Trial& best = trials_[best_allowed()];
       const bool is_elsewhere =
@@ -45,7 +45,7 @@ class Search {
     return Rounds<D>(domain_, set, base, limits_.search.max_effects, threads_);
   }
 
-  // All trials, with those of the rounds over whole runs.
+  // All trials, including those of the rounds over whole runs.
   std::vector<Trial> about(const Trial& nominal, const Trial& from) {
     auto found = rounds({runs_}, nominal).run(from);
     for (size_t i = 1; i < found.size(); ++i) trials_.push_back(std::move(found[i]));
@@ -53,14 +53,14 @@ class Search {
     return without_twins(std::move(trials_));
   }
 
-  // A prediction far from the readings does not show its cause, so the runs are cut into pieces,
-  // each with its own initial conditions, in which it stays near them; the best for the pieces is
-  // then fitted to the whole (multiple shooting).
+  // A prediction that has diverged does not reveal the cause. The runs are therefore cut into
+  // pieces with separate initial conditions, in which the prediction stays near the readings
+  // (multiple shooting). The best trials of the pieces are then fitted to whole runs.
   std::vector<Trial> by_pieces(const Trial& nominal, const RunSet<D>& pieces,
                                const Trial& near) const {
     std::vector<Trial> found = rounds(pieces, near).run(near);
     found.erase(found.begin());
-    if (found.empty()) return found;  // nothing explains the pieces either
+    if (found.empty()) return found;  // no effect explains the pieces
     sort_by_evidence(found);
     const size_t refits = put_refits_first(found);
     const Effort growing{.windows = limits_.fitting.diverged_windows};
@@ -78,9 +78,9 @@ class Search {
     return found;
   }
 
-  // The trials near the best; half of the places are for trials without an empirical law, because
-  // in pieces such a law replaces effects that it could not replace in the whole. `found` is by
-  // evidence.
+  // Moves the trials to refit to the front and returns their number. Half of the places are for
+  // trials without an empirical law: in pieces it can replace effects that it cannot replace in the
+  // whole. `found` is sorted by evidence.
   size_t put_refits_first(std::vector<Trial>& found) const {
     const size_t most = std::min(limits_.search.max_refits_of_pieces, found.size());
     const auto has_law = [&](const Trial& t) {
@@ -120,7 +120,7 @@ class Search {
   std::vector<Trial> trials_;
 };
 
-// All trials that were fitted, the nominal model first; `near` as in Search::run().
+// Returns all fitted trials, the nominal model first; `near` as in Search::run().
 template <Domain D>
 std::vector<typename D::Trial> search(const D& domain, const typename D::Trial& nominal,
                                       const std::vector<typename D::Run>& runs, int threads = 0,

@@ -16,7 +16,7 @@ class Forecast {
   Forecast(const LinearProblem& problem, const Thresholds& limits)
       : problem_(problem), limits_(limits) {
     const Eigen::Index n = problem.gradient.size();
-    // A unit diagonal: parameters have units that differ by any number of orders.
+    // Scales to a unit diagonal: the units of the parameters differ by any number of orders.
     unit_ = problem.information.diagonal().unaryExpr(
         [](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
     matrix_ = unit_.asDiagonal() * problem.information * unit_.asDiagonal();
@@ -33,12 +33,12 @@ class Forecast {
         value_[i] = unit_[i] > 0.0 ? v / unit_[i] : 0.0;
       }
     }
-    // With everything that the trial has taken away.
+    // Gradient and gain at the point where all strengths are zero.
     gradient_without_ = gradient_ + matrix_ * value_;
     gain_without_ = -2.0 * gradient_.dot(value_) - value_.dot(matrix_ * value_);
   }
 
-  // The gain alone, by which the sets are ranked.
+  // The gain alone, which ranks the sets.
   double gain(const std::vector<size_t>& groups) const {
     if (groups.empty()) return gain_without_;
     const std::vector<Eigen::Index> at = places(groups);
@@ -46,7 +46,7 @@ class Forecast {
     return gain_without_ + g.dot(matrix_(at, at).llt().solve(g));
   }
 
-  // From the strengths at which all are taken away, θ_S = H_SS⁻¹ (g + H θ)_S.
+  // Computed from zero strengths: θ_S = H_SS⁻¹ (g + H θ)_S.
   Subset subset(const std::vector<size_t>& groups) const {
     Subset result{groups, gain_without_, 0.0, {}};
     const std::vector<Eigen::Index> at = places(groups);
@@ -92,7 +92,7 @@ class Forecast {
 
   size_t parameters(const std::vector<size_t>& groups) const { return places(groups).size(); }
 
-  // Whether a group may enter beside others.
+  // Whether a group may be combined with the others.
   bool may_join(const std::vector<size_t>& groups, size_t group) const {
     const StrengthGroup& joining = problem_.groups[group];
     return std::none_of(groups.begin(), groups.end(), [&](size_t g) {
@@ -107,16 +107,16 @@ class Forecast {
                        [&](size_t g) { return problem_.groups[g].is_empirical; });
   }
 
-  // No reading determines one of its parameters.
+  // Whether no reading determines one of its parameters.
   bool is_silent(size_t group) const {
     const StrengthGroup& g = problem_.groups[group];
     return !(unit_.segment(g.first, g.count()).minCoeff() > 0.0);
   }
 
  private:
-  // Of information on a unit diagonal, before anything was projected out: combinations that no
-  // reading determines stay where they are. Derivatives are exact to some 1e-7, their squares to
-  // the square of that.
+  // Rounding of the information on a unit diagonal before projection: undetermined combinations
+  // stay at their values. Derivatives are accurate to about 1e-7, so their squares to the square of
+  // that.
   static constexpr double rounding = 1e-10;
 
   std::vector<Eigen::Index> places(const std::vector<size_t>& groups) const {
@@ -136,8 +136,8 @@ class Forecast {
   mutable std::set<std::vector<size_t>> forbidden_;
 };
 
-// The sets of one more group than those of the beam, each once, ranked by the gain less what its
-// parameters and names cost.
+// Adds one group to each set of the beam and ranks the distinct results by gain minus the cost of
+// their parameters and names.
 std::vector<std::vector<size_t>> larger(const Forecast& forecast, const LinearProblem& problem,
                                         const std::vector<std::vector<size_t>>& beam,
                                         const Thresholds& limits) {
@@ -164,8 +164,8 @@ std::vector<std::vector<size_t>> larger(const Forecast& forecast, const LinearPr
   return result;
 }
 
-// The first `count` of all and, of those without an empirical law, as many: laws that bend to
-// anything would crowd out the parts of an explanation that only together are one.
+// The first `count` sets, and the first `count` sets without an empirical law. Empirical laws fit
+// anything and would crowd out the parts of an explanation that gain only together.
 std::vector<std::vector<size_t>> kept_of(const Forecast& forecast,
                                          std::vector<std::vector<size_t>> ranked, size_t count) {
   std::vector<std::vector<size_t>> kept;
@@ -187,7 +187,7 @@ std::vector<Subset> best_subsets(const LinearProblem& problem, size_t max_size,
   std::vector<std::vector<size_t>> beam = {{}};
   for (size_t size = 1; size <= max_size; ++size) {
     std::vector<std::vector<size_t>> sets = larger(forecast, problem, beam, limits);
-    // Single candidates are all kept: any two may hide each other.
+    // All single candidates are kept, because any two may hide each other.
     std::vector<std::vector<size_t>> kept = kept_of(forecast, sets, limits.search.beam);
     for (const std::vector<size_t>& set : kept) found.push_back(forecast.subset(set));
     beam = size == 1 ? std::move(sets) : std::move(kept);

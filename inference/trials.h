@@ -1,5 +1,4 @@
-// Functions of the rounds of the search: fits of the best trials, runs in fewer samples or in
-// pieces.
+// Functions of the search rounds: fits of the best trials, averaged runs and pieces of runs.
 #pragma once
 
 #include <algorithm>
@@ -10,28 +9,28 @@
 
 namespace photorque::inference {
 
-// The best of many trials, fitted with more iterations than all of them could be.
+// The best of many trials are fitted with more iterations than all of them could be.
 
-// Until a fit converges: after a fit that is stopped early, every extension seems to gain.
+// Options to iterate until convergence: if a fit stops early, every extension of it seems to gain.
 inline Effort patient(const Thresholds& limits) {
   return {.max_iterations = limits.fitting.patient_iterations, .creep = limits.fitting.creep};
 }
 
-// As long as it may still come near the best on the same runs.
+// Stops the fit when it cannot come near the best trial on the same runs.
 template <class Trial>
 Effort within_reach(Effort effort, const Trial& best, const Thresholds& limits) {
   effort.worth_chi2 = best.fit.chi2 + limits.leaders.near_chi2;
   return effort;
 }
 
-// Whether a trial explains nearly as much as the best on the same runs: where even the nominal
-// model has diverged, most others are no leaders, however few they are.
+// Whether the χ² of a trial is near that of the best on the same runs. Where even the nominal model
+// has diverged, most other trials are not leaders, however few there are.
 template <class Trial>
 bool is_near(const Trial& trial, const Trial& best, const Thresholds& limits) {
   return trial.fit.chi2 < limits.leaders.near_fraction * best.fit.chi2 + limits.leaders.near_chi2;
 }
 
-// A second chance for a trial, from where the best on the same runs ended.
+// Refits a trial from the end of the best fit on the same runs; keeps the better result.
 template <Domain D>
 void learn(const D& domain, const std::vector<typename D::Run>& runs, const typename D::Trial& best,
            typename D::Trial& trial) {
@@ -44,9 +43,9 @@ void learn(const D& domain, const std::vector<typename D::Run>& runs, const type
   if (again.log_evidence > trial.log_evidence) trial = std::move(again);
 }
 
-// The leaders' fits are carried on until they converge: what only goes on where its parent's fit
-// stopped would seem to gain by the candidate that it adds. For the same reason they, and the
-// parents, have a second chance from where the best of them ended.
+// Iterates the leaders' fits to convergence. Otherwise a fit that merely continues its parent's
+// unfinished fit would seem to gain by the added candidate. For the same reason leaders and parents
+// are also refitted from the end of the best fit.
 template <Domain D>
 void settle_leaders(const D& domain, const std::vector<typename D::Run>& runs, int threads,
                     std::vector<typename D::Trial>& found,
@@ -74,18 +73,18 @@ void settle_leaders(const D& domain, const std::vector<typename D::Run>& runs, i
 template <Domain D>
 struct RunSet {
   std::vector<typename D::Run> runs;
-  size_t pieces = 1;  // of each recording
+  size_t pieces = 1;  // per recording
 };
 
-// In fewer samples: enough for changes of the fit that are slow, and several times faster.
+// Averages with fewer samples: sufficient for slow effects and several times faster.
 template <Domain D>
 std::vector<typename D::Run> slow_runs(const D& domain, const typename D::Trial& about,
                                        const RunSet<D>& set) {
   return domain.average(about, set.runs, domain.limits().fitting.slow_blocks / set.pieces);
 }
 
-// Averages and pieces flatter some: what was not fitted to the full readings stands below the first
-// `fitted` of these trials, which were, as it stood before.
+// Averages and pieces overestimate some evidence. The first `fitted` trials are fitted to all
+// readings; the evidence of the others is limited to the lowest of these.
 template <class Trial>
 void keep_below(std::vector<Trial>& trials, size_t fitted) {
   double lowest = std::numeric_limits<double>::infinity();
@@ -101,7 +100,7 @@ void sort_by_evidence(std::vector<Trial>& trials) {
                    [](const Trial& a, const Trial& b) { return a.log_evidence > b.log_evidence; });
 }
 
-// Of trials of the same candidates, found in different order, the best.
+// Of trials with equal candidates in any order, keeps the best.
 template <class Trial>
 std::vector<Trial> without_twins(std::vector<Trial> trials) {
   std::vector<Trial> kept;
@@ -118,14 +117,14 @@ std::vector<Trial> without_twins(std::vector<Trial> trials) {
   return kept;
 }
 
-// One fit that is to be done.
+// A fit to be computed.
 template <Domain D>
 struct Task {
   size_t candidate;
   typename D::Start start;
 };
 
-// The fits of all tasks on `runs`; of several starts of a candidate the best.
+// Fits all tasks to `runs`; of several starts of a candidate, the best fit is returned.
 template <Domain D>
 std::vector<typename D::Trial> extend_by_tasks(const D& domain, const typename D::Trial& parent,
                                                const std::vector<Task<D>>& tasks,
@@ -148,10 +147,9 @@ std::vector<typename D::Trial> extend_by_tasks(const D& domain, const typename D
   return best;
 }
 
-// The pieces of the runs in which the parent stays near the readings, and the parent fitted to
-// them. If it does so in none, however short, the missing effects act fast and are best seen in
-// long pieces: the longest with little more residual than the shortest are taken, whole runs
-// included.
+// Cuts the runs into pieces in which the fitted parent stays near the readings. If it diverges in
+// pieces of every length, the missing effects are fast and show best in long pieces: the longest
+// with little more residual than the shortest are returned, possibly whole runs.
 template <Domain D>
 std::pair<RunSet<D>, typename D::Trial> near_pieces(const D& domain,
                                                     const typename D::Trial& parent,
@@ -160,7 +158,7 @@ std::pair<RunSet<D>, typename D::Trial> near_pieces(const D& domain,
   std::vector<std::pair<RunSet<D>, typename D::Trial>> tried{{{runs}, parent}};
   for (const size_t count : domain.limits().search.pieces) {
     std::vector<typename D::Run> shorter = domain.cut(runs, count);
-    // Too few readings to be cut.
+    // There are too few readings to cut further.
     if (shorter.empty()) break;
     RunSet<D> pieces{std::move(shorter), count};
     typename D::Trial near =

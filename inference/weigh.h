@@ -1,4 +1,4 @@
-// Evidence of the held-out runs about explanations that were found without them.
+// Evidence of the held-out runs for explanations from the train runs.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace photorque::inference {
 
-// Trials within reach of the best by their evidence, and the nominal model.
+// Allowed trials whose evidence is near the best, and the nominal model.
 template <class Trial>
 std::vector<size_t> leaders_among(const std::vector<Trial>& trials,
                                   const Thresholds::HeldOut& limits) {
@@ -73,15 +73,16 @@ class Weighing {
   }
 
  private:
-  // An explanation on the train runs, by its place among the trials, and on all runs.
+  // An explanation fitted to the train runs (index into the trials) and to all runs.
   struct Leader {
     size_t at;
     Trial joint;
-    // χ² of the best and of this one when a second chance from there came to nothing.
+    // χ² of the best and of this leader when a refit from the best last brought no improvement.
     std::array<double, 2> learnt = {};
   };
 
-  // The most likely and the nominal model first: others are fitted as long as they may come near.
+  // The most likely and the nominal model come first; other fits stop when they cannot come near
+  // them.
   void add_leaders(const std::vector<size_t>& places) {
     leaders_.resize(places.size());
     std::vector<size_t> first, others;
@@ -99,7 +100,7 @@ class Weighing {
     parallel_for(which.size(), threads_, [&](size_t i) {
       const size_t at = places[which[i]];
       Trial& t = trials_[at];
-      // Some were fitted to averages or pieces only.
+      // Some trials have been fitted to averages or pieces only.
       if (t.fit.samples != samples) t = domain_.refit(t, train_, domain_.begins_of(t), {});
       leaders_[which[i]] = {at, fit_together(t, effort)};
     });
@@ -112,14 +113,14 @@ class Weighing {
     return domain_.refit(t, all_runs_, begins, effort);
   }
 
-  // Keeps how well the trial predicts the held-out data.
+  // Stores how well the trial predicts the held-out data.
   Trial predict_held(Trial& t) const {
     Trial held = domain_.predict(t, held_);
     if (std::isfinite(held.fit.chi2)) t.holdout_chi2_per_sample = held.fit.chi2_per_sample();
     return held;
   }
 
-  // A second fit from the end of the best, except of trials that did not converge before.
+  // Refits every leader from the end of the best; skips those for which this failed before.
   void learn() {
     const Trial best =
         std::min_element(leaders_.begin(), leaders_.end(), [](const Leader& a, const Leader& b) {
@@ -134,10 +135,10 @@ class Weighing {
     });
   }
 
-  // More readings cannot lower χ²: where all runs leave less than some of them do, the fit to these
-  // ended in another minimum, and the held-out data would seem to be predicted too well. Where they
-  // are predicted far worse than the errors of the numbers say, the train runs may have a second
-  // minimum that is as good. The fit starts again from where the fit to all ended.
+  // Makes the fits to the train runs and to all runs end in one local minimum. More readings cannot
+  // lower χ²: if the joint χ² is lower, the train fit ended in another minimum and its held-out
+  // prediction seems too good. If the prediction is far worse than its errors allow, the train runs
+  // may have a second minimum as good. The train fit then restarts from the joint fit.
   void bring_to_one_minimum() {
     constexpr double as_good_chi2 = 9.0;
     parallel_for(leaders_.size(), threads_, [&](size_t k) {
@@ -153,15 +154,14 @@ class Weighing {
     });
   }
 
-  // Whether all runs agree with the explanation, but the held-out ones not with its fit to the
-  // train runs.
+  // Whether the joint fit predicts the held-out runs but the fit to the train runs does not.
   bool is_elsewhere(const Trial& train, const Trial& joint) const {
     const double most = limits_.decision.max_predictive_sigma;
     return sigma_of_prediction(train, joint) > most && predictive_of(train, joint).sigma < most;
   }
 
-  // How far the train runs' prediction of those held out lies above what the errors of its numbers
-  // explain [sigma]; 0 where that is unknown.
+  // Excess of the held-out χ² over the value that the parameter errors of the train fit predict
+  // [sigma]; 0 where unknown.
   double sigma_of_prediction(const Trial& train, const Trial& joint) const {
     if constexpr (std::same_as<std::decay_t<decltype(train.fit)>, Fit>) {
       if (train.holdout_chi2_per_sample) {
@@ -172,7 +172,7 @@ class Weighing {
     return 0.0;
   }
 
-  // The most likely on all runs that physics allows.
+  // The allowed leader of largest evidence on all runs.
   const Leader& best() const {
     const Leader* best = nullptr;
     for (const Leader& leader : leaders_) {
@@ -200,7 +200,7 @@ class Weighing {
       result.sigma = limits_.noise.excess_unknown;
       return result;
     }
-    // The noise is known to a few per cent; the train runs show it.
+    // The noise level is known to a few per cent; the train runs measure it.
     const double noise = noise_of(train);
     result.sigma = (result.chi2_per_sample - noise) / std::sqrt(2.0 / held + 2.0 / fitted);
     const std::vector<typename D::Begin> begins = domain_.begins_of(joint);
@@ -214,14 +214,14 @@ class Weighing {
     return std::clamp(train.fit.chi2_per_sample(), 1.0, limits_.held_out.max_noise);
   }
 
-  // If the best does not predict the held-out data, all runs together are searched from there.
+  // If the best explanation does not predict the held-out data, the search continues on all runs.
   void search_on() {
     const Leader from = best();
     if (predictive_of(trials_[from.at], from.joint).sigma < limits_.decision.max_predictive_sigma)
       return;
     if (has_diverged(from.joint, limits_) || !std::isfinite(from.joint.fit.chi2)) return;
     Rounds<D> rounds(domain_, {all_runs_}, nominal().joint, limits_.search.max_effects, threads_);
-    // About a law without a name the train runs were scanned for fast effects.
+    // The train runs have been scanned for fast effects where the start contains an empirical law.
     const bool is_law = std::any_of(from.joint.candidates.begin(), from.joint.candidates.end(),
                                     [&](size_t c) { return domain_.candidates()[c].is_empirical; });
     std::vector<Trial> found = rounds.run(from.joint, !is_law);
@@ -242,8 +242,8 @@ class Weighing {
     }
   }
 
-  // Refits the best explanation without each of its names: χ² must rise for each.
-  // Until nothing that is left out makes a better leader.
+  // Refits the best explanation without each of its names, to measure the rise of χ² for each name.
+  // Repeats until no omission gives a better leader.
   void add_without_each() {
     for (Leader from = best();;) {
       const auto terms = domain_.terms_of(from.joint);
@@ -254,9 +254,9 @@ class Weighing {
     }
   }
 
-  // The train runs may leave open at which place something acts, and what stood beside it may have
-  // moved it: on all runs each of the best explanation's candidates makes way in turn for every one
-  // that has a place, until nothing is better.
+  // The train runs may leave the place of an effect ambiguous, and other effects may bias it. On
+  // all runs, each candidate of the best explanation is replaced in turn by every candidate with a
+  // place, until no exchange improves the evidence.
   void exchange_places() {
     constexpr int most_rounds = 3;
     const std::vector<CandidateTraits>& all = domain_.candidates();
@@ -272,10 +272,9 @@ class Weighing {
     }
   }
 
-  // Adds the best explanation with another candidate in the place of number `which`, if it is
-  // better.
+  // Replaces the candidate at `which` in the best explanation and adds the results that are better.
   void exchange(const Leader& from, const Terms<D>& terms, size_t which) {
-    // A cell shows little until it limits its string.
+    // The forecast is crude: a cell has little effect until it limits its string.
     constexpr double forecast_error = 20.0;
     const std::vector<CandidateTraits>& all = domain_.candidates();
     std::vector<size_t> rest = from.joint.candidates, others;
@@ -297,7 +296,7 @@ class Weighing {
       if (forecast_error * gains[i] < without->joint.fit.chi2 - from.joint.fit.chi2) continue;
       Members<typename D::Start>& members = sets.emplace_back();
       for (const auto& term : terms) members.push_back({term});
-      // One of the same kind starts from the other's numbers.
+      // A candidate of the same kind starts from the values of the one it replaces.
       const bool is_alike = all[c].kind_of_place == all[terms[which].candidate].kind_of_place;
       members[which].term = {c, is_alike ? terms[which].start : domain_.start_of(c)};
     }
@@ -323,16 +322,18 @@ class Weighing {
       members.push_back({terms[i]});
       candidates.push_back(terms[i].candidate);
     }
-    // A rest whose fit depends on where it starts may have led from elsewhere.
+    // Nonlinear candidates are refitted even if the set leads already: the result depends on the
+    // start.
     const auto is_bent = [&](size_t c) { return !domain_.candidates()[c].is_linear; };
     if (leads(candidates) && std::ranges::none_of(candidates, is_bent)) return;
-    // Without it the rest may have to go far: above all nominal values that it replaced.
+    // Without the candidate the others may move far, in particular all nominal values that it
+    // replaced.
     Effort growing = patient(limits_);
     growing.windows = limits_.fitting.diverged_windows;
     Trial joint = domain_.assemble(from.joint, members, all_runs_,
                                    within_reach(growing, from.joint, limits_));
-    // A fit that is worse than the nominal model, which it contains, did not converge: it is left
-    // out.
+    // This model contains the nominal model, so a fit that is worse did not converge and is
+    // skipped.
     if (!(joint.fit.chi2 < nominal().joint.fit.chi2 + limits_.leaders.near_chi2)) return;
     const bool is_lost = !is_near(joint, from.joint, limits_);
     Trial train = assembled(
@@ -341,7 +342,7 @@ class Weighing {
     add_leader(std::move(train), std::move(joint));
   }
 
-  // Fitted to the train runs from where a fit to all ended.
+  // Fits the terms to the train runs, starting from the end of a fit to all runs.
   Trial assembled(const Trial& joint, const std::vector<Term<typename D::Start>>& terms,
                   const Effort& effort) const {
     const std::vector<typename D::Begin> begins = domain_.begins_of(joint);
@@ -352,8 +353,8 @@ class Weighing {
     return domain_.assemble(start, members, train_, effort);
   }
 
-  // Of an explanation that leads already the better pair stays: the held-out evidence is the
-  // difference of the two fits, which have to be of one minimum.
+  // Adds a leader, or replaces one with smaller joint evidence. Both fits are replaced together:
+  // the held-out evidence is their difference, which requires a common local minimum.
   void add_leader(Trial train, Trial joint) {
     const auto leader = std::find_if(leaders_.begin(), leaders_.end(), [&](const Leader& l) {
       return same_candidates(train.candidates, trials_[l.at].candidates);
@@ -369,8 +370,8 @@ class Weighing {
     }
   }
 
-  // Candidates that would gain beside `parent` (one of the leaders) on all runs, and were not tried
-  // or not among the leaders.
+  // Adds candidates that gain on all runs beside `parent` (a leader) but are not yet leaders with
+  // it.
   void add_what_only_all_show(const std::vector<size_t>& parent) {
     const auto is_parent = [&](const Leader& l) { return trials_[l.at].candidates == parent; };
     const auto at = std::find_if(leaders_.begin(), leaders_.end(), is_parent);
@@ -391,8 +392,8 @@ class Weighing {
     }
   }
 
-  // The few untried candidates with the largest gains predicted beside `joint`, which is fitted to
-  // all runs: some that have names, some empirical.
+  // The few untried candidates with the largest predicted gains when added to `joint`, which is
+  // fitted to all runs: some physical, some empirical.
   std::vector<size_t> worth_adding(const Trial& joint, const std::vector<size_t>& parent) const {
     const std::vector<CandidateTraits>& all = domain_.candidates();
     std::vector<size_t> untried;
@@ -433,7 +434,7 @@ class Weighing {
     });
   }
 
-  // Where the trial stands among all: in the place of one of the same candidates, if there is any.
+  // Stores the trial, replacing one with the same candidates if there is one; returns its index.
   size_t place_of(Trial trial) {
     for (size_t i = 0; i < trials_.size(); ++i) {
       if (!same_candidates(trial.candidates, trials_[i].candidates)) continue;
@@ -444,9 +445,9 @@ class Weighing {
     return trials_.size() - 1;
   }
 
-  // Of the first `found` trials those that are no leaders.
+  // Limits the evidence of those of the first `found` trials that are not leaders.
   void keep_others_below(size_t found, double nominal, double gain) {
-    // Of the leaders, but for the nominal model. One may diverge on what it never saw.
+    // Over the leaders except the nominal model, which may diverge on the held-out runs.
     const double nominal_now = trials_.front().log_evidence;
     double lowest = std::numeric_limits<double>::infinity(), highest = nominal_now;
     std::vector<bool> is_leader(trials_.size(), false);
@@ -469,15 +470,15 @@ class Weighing {
   const Runs& held_;
   int threads_;
   std::vector<Trial>& trials_;
-  Runs all_runs_;  // the train runs, then those held out
+  Runs all_runs_;  // train runs, then held-out runs
   std::vector<Leader> leaders_;
 };
 
-// How well the leaders also explain the held-out data: their evidence on all runs together takes
-// the place of that on the fitted ones. The others gain over the nominal model in the ratio of the
-// best, and stay below the leaders. What only all runs together show, because one of them alone
-// leaves it to the uncertainty of a nominal model, is scored and added to `trials`, fitted to the
-// train runs like all others. The nominal model comes first in `trials` and stays there.
+// Replaces the evidence of the leaders on the train runs by that on all runs. The gains of the
+// other trials over the nominal model scale by the ratio of the best, and stay below the leaders.
+// Effects that a nominal model's uncertainty absorbs in each run, so that only all runs together
+// show them, are scored and added to `trials`, fitted to the train runs. The nominal model stays
+// first.
 template <Domain D>
 void weigh_with_held_out(const D& domain, const std::vector<typename D::Run>& train,
                          const std::vector<typename D::Run>& held, int threads,

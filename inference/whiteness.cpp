@@ -15,13 +15,13 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// Expected value of reading n: the median of the predictions from both sides and from either side.
-// One bad neighbour does not decide, and a residual that grows steadily is no outlier.
+// Expected value of reading n: the median of predictions from both sides and from either side. A
+// single bad neighbour then has no influence, and a steadily growing residual is no outlier.
 double expected(const std::vector<double>& r, size_t n) {
   std::vector<double> says;
   const bool left = n >= 1, right = n + 1 < r.size();
-  // At an end the neighbour, or the line through two of them: whichever is nearer, since residuals
-  // of motion that is not understood run away there.
+  // At an end, the prediction is the neighbour or the line through two neighbours, whichever is
+  // nearer: residuals of unmodelled motion diverge there.
   if (!left || !right) {
     const double one = left ? r[n - 1] : r[n + 1], two = left ? r[n - 2] : r[n + 2];
     const double along = 2.0 * one - two;
@@ -68,7 +68,8 @@ std::vector<size_t> outliers(const std::vector<double>& residuals,
   for (size_t n = 0; n < residuals.size(); ++n) {
     off.push_back(std::abs(residuals[n] - expected(residuals, n)));
   }
-  // Where most readings are off by more than their noise, that is motion that is not understood.
+  // If most readings deviate by more than their noise, the cause is unmodelled motion, not
+  // outliers.
   const double scatter = std::max(1.0, median(off) / limits.usual_surprise);
   for (size_t n = 0; n < off.size(); ++n) {
     if (off[n] > limits.outlier_sigma * scatter) found.push_back(n);
@@ -83,7 +84,7 @@ double mean_sigma(std::vector<double> differences) {
   for (const double d : differences) {
     if (std::isfinite(d)) largest = std::max(largest, std::abs(d));
   }
-  // An explanation that cannot be evaluated is as bad as the worst that can.
+  // An explanation that cannot be evaluated counts as the worst that can.
   if (largest == 0.0) largest = 1.0;
   for (double& d : differences) {
     d = std::clamp(d, -largest, largest);
@@ -107,7 +108,7 @@ double mean_sigma(std::vector<double> differences) {
 
 namespace {
 
-// The normal deviate that is exceeded with probability p ≤ 1/2.
+// Standard normal deviate that is exceeded with probability p ≤ 1/2.
 double deviate_exceeded_with(double p) {
   double low = 0.0, high = 40.0;
   for (int halving = 0; halving < 60; ++halving) {
@@ -117,8 +118,8 @@ double deviate_exceeded_with(double p) {
   return low;
 }
 
-// Of all choices of signs, the fraction in which the ranks above zero add up to at most `sum`.
-// `doubled_ranks`: twice each rank, whole numbers also where equal sizes share a mean.
+// Fraction of all sign assignments for which the sum of the positive ranks is at most `sum`.
+// `doubled_ranks`: twice each rank, which is an integer even where ties have a mean rank.
 double fraction_up_to(const std::vector<size_t>& doubled_ranks, double sum) {
   const auto last = static_cast<size_t>(std::lround(2.0 * sum));
   std::vector<double> ways(last + 1, 0.0);

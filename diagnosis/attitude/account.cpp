@@ -72,7 +72,8 @@ std::string label_of(const Trial& t, const Candidates& all) {
   return label;
 }
 
-// The length of an axis means nothing: a unit vector, and errors across it alone.
+// The length of an axis is arbitrary: normalises the vector and keeps only its errors across the
+// axis.
 void make_direction(FittedParameter& axis, const Eigen::Matrix3d& covariance) {
   const Vec3 vector(axis.value[0], axis.value[1], axis.value[2]);
   const double length = vector.norm();
@@ -87,7 +88,7 @@ void make_direction(FittedParameter& axis, const Eigen::Matrix3d& covariance) {
   }
 }
 
-// Kinds that stand in for `kind` in an equally good trial that is otherwise the same.
+// Kinds that replace `kind` in an equally good trial with otherwise equal effects.
 std::vector<std::string> rivals(const std::string& kind, const Trial& chosen,
                                 const std::vector<Trial>& trials, const Candidates& all) {
   std::vector<std::string> others = kinds_of(chosen, all);
@@ -136,7 +137,7 @@ std::vector<FittedParameter> fitted_parameters(const Trial& t, size_t disturbanc
       result.push_back({parameters[p].key, {}, {}});
     }
     result.back().value.push_back(parameters[p].value / unit);
-    // A component that the motion does not determine keeps its nominal value.
+    // A component that the data do not determine keeps its nominal value.
     result.back().sigma.push_back(at < 0 ? 0.0
                                          : std::sqrt(std::max(0.0, covariance(at, at))) / unit);
     if (at >= 0 && parameters[p].key == "axis" && result.back().value.size() == 3) {
@@ -148,8 +149,8 @@ std::vector<FittedParameter> fitted_parameters(const Trial& t, size_t disturbanc
 
 namespace {
 
-// Moves fitted values to their physical bounds: a value may lie beyond its bound by less than its
-// standard error, but an experiment cannot state it.
+// Moves fitted values to their physical bounds: a fit may exceed a bound by less than the standard
+// error, but an experiment file cannot state such a value.
 void keep_within_bounds(const Candidate& c, std::vector<FittedParameter>& fitted) {
   std::vector<double*> values;
   for (FittedParameter& parameter : fitted) {
@@ -169,7 +170,7 @@ void keep_within_bounds(const Candidate& c, std::vector<FittedParameter>& fitted
   }
 }
 
-// Of every key with three free numbers that are no direction.
+// Identifiable combinations for each key with three free numbers, directions excepted.
 std::vector<std::string> combinations(const Trial& t, size_t disturbance) {
   const auto& parameters = t.fit.best.model.disturbances[disturbance].parameters;
   std::map<std::string, std::vector<std::pair<Eigen::Index, double>>> of_key;
@@ -267,7 +268,7 @@ std::vector<FoundEffect> unnamed_effects(const inference::Decision& decision,
                                          const std::vector<FoundEffect>& named) {
   std::vector<FoundEffect> effects = found_effects(decision, trials, all);
   const std::vector<inference::Term<Start>> terms = terms_of(trials[decision.chosen]);
-  // A strength at its bound of zero acts nowhere, and not every kind can be stated with it.
+  // A strength of zero has no effect, and not every kind accepts it in an experiment file.
   const auto is_nothing = [&](const inference::Term<Start>& term) {
     const Candidate& c = all[term.candidate];
     bool has_strength = false;
@@ -300,7 +301,7 @@ std::vector<Alternative> alternatives(const inference::Decision& decision,
   for (const auto& [label, t] : best) {
     Alternative a;
     a.kinds = kinds_of(*t, all);
-    // The kinds describe physics completely.
+    // Empty label: the kinds alone describe the trial completely.
     if (a.kinds.size() != t->candidates.size()) a.label = label;
     a.holdout_chi2_per_sample = t->holdout_chi2_per_sample;
     a.log_evidence_relative = t->log_evidence - trials.front().log_evidence;
@@ -334,7 +335,7 @@ FoundEffect as_fitted(const Trial& chosen, size_t disturbance) {
   const Disturbance& d = chosen.fit.best.model.disturbances[disturbance];
   FoundEffect effect;
   effect.kind = d.kind;
-  // All its numbers, those that are exact among them.
+  // All parameters, including fixed ones.
   for (const Parameter& p : d.parameters) {
     const double unit = unit_of_key(p.key).to_SI;
     if (effect.parameters.empty() || effect.parameters.back().key != p.key) {
@@ -352,7 +353,7 @@ std::vector<std::string> contradicted_beliefs(const Trial& chosen,
   size_t shared = 0;
   for (const Free& f : chosen.fit.best.free) {
     if (f.per_run) continue;
-    if (shared == chosen.fit.parameters.shared.size()) break;  // it was never fitted
+    if (shared == chosen.fit.parameters.shared.size()) break;  // has not been fitted
     const inference::Parameter& p = chosen.fit.parameters.shared[shared++];
     const auto& found = chosen.disturbances;
     const bool is_found = std::find(found.begin(), found.end(), f.disturbance) != found.end();
@@ -372,7 +373,7 @@ std::vector<std::string> contradicted_beliefs(const Trial& chosen,
 
 namespace {
 
-// "a, b (explanation)" of all that was named.
+// "a, b (explanation)" of all named effects.
 std::string names_of(const Diagnosis& d) {
   std::string text;
   for (const FoundEffect& effect : d.effects) {
@@ -381,7 +382,7 @@ std::string names_of(const Diagnosis& d) {
   return text;
 }
 
-// Names beside which something stays unexplained.
+// Sentence for named effects with an unexplained residual.
 std::string mostly_explained(const Diagnosis& d) {
   std::string text = "Mostly explained by " + names_of(d);
   if (d.holdout && d.holdout->chi2_per_sample_after > 0.0) {
@@ -401,7 +402,7 @@ std::string mostly_explained(const Diagnosis& d) {
 }  // namespace
 
 std::string sentence_of(const Diagnosis& d) {
-  // Of χ² held out: a factor, and an excess per number.
+  // Limits for the held-out χ²: ratio before/after worth stating; excess per sample of a residual.
   constexpr double worth_saying = 1.5, leaves_something = 0.2;
   if (d.verdict == Verdict::consistent) {
     return "Nothing is missing: what differs is noise or lies within the stated uncertainty.";

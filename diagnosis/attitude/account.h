@@ -1,4 +1,4 @@
-// Findings as sentences and numbers for the reader of a diagnosis.
+// Findings of a diagnosis as sentences and numbers.
 #pragma once
 
 #include <string>
@@ -10,33 +10,33 @@
 
 namespace photorque {
 
-// Parameters of one key of which only the combination is identifiable.
+// Parameters of one key for which only a combination is identifiable.
 
-// Of three numbers with their covariance (the squares of their unit), of which none is beyond twice
-// its standard error: the principal combination that is furthest from zero in standard errors, its
-// largest coefficient 1, as "x − 0.99 z = (4.4 ± 0.1)×10⁻¹⁰". Empty where none is beyond four, or
-// where each number is identifiable.
+// For three values with their covariance (in the squared unit), each within twice its standard
+// error: the principal combination that is furthest from zero in standard errors. Its largest
+// coefficient is scaled to 1, as "x − 0.99 z = (4.4 ± 0.1)×10⁻¹⁰". Empty if no combination exceeds
+// four standard errors, or if a single value exceeds two.
 std::string known_together(const Vec3& value, const Mat3& covariance);
 
-// The effects of the chosen trial, each with the probability that its kind acts.
+// The effects of the chosen trial, each with the probability of its kind.
 std::vector<FoundEffect> found_effects(const inference::Decision& decision,
                                        const std::vector<Trial>& trials, const Candidates& all);
 
-// Those of them that act beyond doubt beside a law without a name.
+// Those effects that are certain although an empirical law describes the residual.
 std::vector<FoundEffect> effects_beside_law(const inference::Decision& decision,
                                             const std::vector<Trial>& trials,
                                             const Candidates& all);
 
-// Those of the chosen trial that are not in `named`.
+// Effects of the chosen trial that are not in `named`.
 std::vector<FoundEffect> unnamed_effects(const inference::Decision& decision,
                                          const std::vector<Trial>& trials, const Candidates& all,
                                          const std::vector<FoundEffect>& named);
 
-// Values and standard errors of one disturbance of a trial by key, in the keys' units, in the order
-// of its law.
+// Values and standard errors of one disturbance of a trial, by key, in the units of the keys and in
+// the order of the law.
 std::vector<FittedParameter> fitted_parameters(const Trial& trial, size_t disturbance);
 
-// The best of every set of names, best first, relative to the nominal model.
+// The best trial of every set of names, best first, relative to the nominal model.
 std::vector<Alternative> alternatives(const inference::Decision& decision,
                                       const std::vector<Trial>& trials, const Candidates& all);
 
@@ -45,8 +45,8 @@ std::vector<std::string> contradicted_beliefs(const Trial& chosen,
                                               const Thresholds::Decision& limits);
 // Parameters with a prior, with their values in the chosen trial.
 std::vector<FittedParameter> refined_priors(const Trial& chosen);
-// An uncertain disturbance that no table of the experiment states, with its parameters in the
-// chosen trial.
+// An uncertain disturbance with its parameters in the chosen trial, for an experiment that has no
+// table for it.
 FoundEffect as_fitted(const Trial& chosen, size_t disturbance);
 
 std::string sentence_of(const Diagnosis& diagnosis);

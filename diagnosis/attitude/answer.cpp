@@ -53,7 +53,7 @@ std::optional<double> simpler_by(const Trial& first, const Trial& second, const 
 
 namespace {
 
-// Of names not distinguished from the chosen ones, the simplest are kept (simpler_by()).
+// Of names that are indistinguishable from the chosen ones, keeps the simplest (simpler_by()).
 void prefer_simpler(const Thresholds& limits, Answer& a) {
   if (a.decision.finding != inference::Finding::named) return;
   const double alike = a.chosen().log_evidence - limits.search.min_log_evidence_gain;
@@ -77,8 +77,8 @@ Candidates candidates_among(Among among, const NominalModel& nominal,
   for (const Among first : {Among::unscanned, Among::catalogue, Among::torques}) {
     std::ranges::stable_partition(all.list, [&](const Candidate& c) { return is_among(c, first); });
   }
-  // An inertia that is uncertain has its error already; a second one leaves all torques without a
-  // scale.
+  // An uncertain inertia already has an error parameter; with a second one the scale of all torques
+  // is undetermined.
   const bool has_error = nominal.uncertain_inertia.has_value();
   std::erase_if(all.list, [&](const Candidate& c) {
     const bool is_second = has_error && c.effect.how.inertia_change_kg_m2 != nullptr;
@@ -118,9 +118,9 @@ double held_chi2_per_sample(const Trial& trial, const RecordedData& data,
   return std::isfinite(found) ? found : inference::infinity;
 }
 
-// A law that fits the recordings but predicts the held-out data badly is rejected. In its place
-// stands the most likely explanation that predicts better than the nominal model or, if none does,
-// the nominal model.
+// Rejects a law that fits the recordings but predicts the held-out data worse than the nominal
+// model. It is replaced by the most likely explanation that predicts better than the nominal model
+// or, if there is none, by the nominal model.
 void keep_what_predicts(const RecordedData& data, const Thresholds& limits, Answer& a) {
   if (data.held.empty()) return;
   const double nominal = held_chi2_per_sample(a.trials.front(), data, limits);
@@ -142,7 +142,8 @@ void keep_what_predicts(const RecordedData& data, const Thresholds& limits, Answ
                                  : "the best explanation does not predict the held-out data";
 }
 
-// The answer with the noise that the readings show about their explanation.
+// Searches with the noise level of the readings. If the explanation changes the noise estimate, the
+// search is repeated with it.
 Answer at_noise_of_readings(const NominalModel& nominal, RecordedData& data,
                             const DiagnoseOptions& options, Fit& nominal_fit, const Trial* near) {
   tell(options, "fitting every effect of the catalogue");
@@ -153,7 +154,7 @@ Answer at_noise_of_readings(const NominalModel& nominal, RecordedData& data,
   return searched(nominal, nominal_fit, data, options, Among::all, near);
 }
 
-// Whether a law without a name describes the recordings far better than known physics.
+// Whether an empirical law describes the recordings far better than known physics.
 bool law_is_far_better(const Answer& a, const Thresholds& limits) {
   const bool is_law = a.decision.chosen != a.decision.best_named;
   const double law = a.chosen().fit.chi2_per_sample(),
@@ -161,7 +162,7 @@ bool law_is_far_better(const Answer& a, const Thresholds& limits) {
   return is_law && law < limits.discrepancy.max_fraction_of_law * known;
 }
 
-// Refines the law in time of the unexplained residual.
+// Describes the unexplained residual by a refined law in time.
 void describe(const RecordedData& data, const DiagnoseOptions& options, Answer& a) {
   if (a.decision.finding != inference::Finding::unknown) return;
   Trial& chosen = a.trials[a.decision.chosen];
@@ -174,15 +175,15 @@ void leave_unexplained(inference::Decision& decision) {
   decision.because = "the residual is far above the noise of the readings";
 }
 
-// On an air bearing, and wherever attitude or place is seen, the whole search is worth its time.
+// Whether the full search is worthwhile: on an air bearing, or if attitude or position is measured.
 bool is_watched(const NominalModel& nominal, const RecordedData& data) {
   const Observation& seen = data.train.front();
   return nominal.model.platform.has_air_bearing() || seen.sees_attitude() ||
          (seen.has(Scalar::position_x) && seen.has(Scalar::position_y));
 }
 
-// A body that turns about three axes has so many ways to bend its nominal model that names
-// come out of anything.
+// A body that turns about three axes has so many uncertain parameters that names in the presence of
+// a residual are spurious. Other bodies are simple.
 bool is_simple(const NominalModel& nominal) {
   return nominal.model.platform.turns_about_one_axis() || nominal.model.platform.slides();
 }
@@ -192,8 +193,8 @@ bool is_simple(const NominalModel& nominal) {
 Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOptions& options,
                Fit& nominal_fit) {
   const Thresholds& limits = options.limits;
-  // A machine of which little is known, far from its recording: a search at the noise of the
-  // readings would find nothing but ways of bending the nominal model.
+  // If a sparsely measured machine is far from its recording, a search at the noise of the readings
+  // only distorts the nominal model.
   const bool is_far = !is_watched(nominal, data) &&
                       !(nominal_fit.chi2_per_sample() < limits.diverged_chi2_per_sample);
   Answer fine;

@@ -20,9 +20,9 @@ void use_noise(const NoiseLevels& noise, RecordedData& data) {
   }
 }
 
-// Number of segments: the number of independent residuals of the best explanation (n (1 − ρ)/(1 +
-// ρ) of n readings whose neighbours are correlated by ρ), between `limits.stretches` and three
-// times that. With few segments, a difference that varies between them is not significant.
+// Number of segments, limited to one to three times `limits.stretches`: the number of independent
+// residuals of the best explanation, n (1 − ρ)/(1 + ρ) for n readings with neighbour correlation ρ.
+// With few segments, a difference that varies between them is not significant.
 size_t stretches_of(const Answer& answer, const RecordedData& data, const NoiseLevels& own) {
   constexpr double most = 3.0;
   const auto fewest = static_cast<double>(answer.all.limits.discrepancy.stretches);
@@ -45,8 +45,8 @@ size_t stretches_of(const Answer& answer, const RecordedData& data, const NoiseL
   return static_cast<size_t>(std::max(fewest, independent));
 }
 
-// An explanation with χ² of the segments that it predicts, and of the held-out data from a fit to
-// the fitted recordings alone.
+// An explanation with the χ² of predicted segments, and of the held-out data from a fit to the
+// train recordings alone.
 struct Contender {
   Trial trial;
   std::vector<double> chi2;
@@ -54,7 +54,7 @@ struct Contender {
   double held_samples = 0.0;
 };
 
-// Compares explanations of one search by the segments that they predict.
+// Compares explanations of one search by their predictions of segments.
 class Contest {
  public:
   Contest(const Answer& answer, const RecordedData& data, size_t stretches, int threads)
@@ -67,8 +67,8 @@ class Contest {
 
   size_t stretches() const { return stretches_.count(); }
 
-  // The explanation that predicts best, or a simpler one that is not distinguished from it, without
-  // names that no segment needs.
+  // The best predictor, or a simpler or more likely explanation that is indistinguishable from it,
+  // without names that no segment requires.
   Contender winner() {
     for (const size_t i : likely()) contenders_.push_back(contender(answer_.trials[i]));
     const Contender* best = &contenders_.front();
@@ -80,16 +80,15 @@ class Contest {
     return &likelier == &won ? won : pruned(likelier);
   }
 
-  // By how many standard errors each name of the winner predicts better than its absence.
+  // For each name of the winner, the gain in prediction over its absence [standard errors].
   const std::vector<double>& sigma() const { return sigma_; }
 
-  // The winner without one of its names, and without names that are then not needed.
+  // The winner without one name and without names that are then superfluous.
   Contender without(const Contender& best, size_t which) {
     return pruned(contender(trial_without(best.trial, which)));
   }
 
-  // Names of explanations that have them in the place of the `which`-th of `best` and are not
-  // distinguished from it.
+  // Names that replace the `which`-th of `best` in indistinguishable explanations.
   std::vector<std::string> rivals(const Contender& best, size_t which) const {
     std::set<std::string> names;
     for (const Contender& other : contenders_) {
@@ -107,8 +106,8 @@ class Contest {
   }
 
  private:
-  // The most likely explanations that physics allows, and those that predict the held-out data
-  // best; among them the nominal model.
+  // The most likely allowed explanations and the best predictors of the held-out data, including
+  // the nominal model.
   std::vector<size_t> likely() const {
     std::vector<size_t> order = inference::by_evidence(answer_.trials);
     std::erase_if(order, [&](size_t i) {
@@ -134,8 +133,8 @@ class Contest {
     return {trial, stretches_.chi2(trial), chi2, static_cast<double>(held.fit.samples)};
   }
 
-  // A motion about three axes bends to anything: there a name beside others has to account for half
-  // of their residuals of the held-out data.
+  // Motion about three axes is flexible enough to fit anything. There a further name must halve the
+  // residuals of the held-out data.
   bool tells_enough(const Contender& without, const Contender& with) const {
     const Platform& platform = answer_.trials.front().fit.best.model.platform;
     return platform.turns_about_one_axis() || platform.slides() ||
@@ -143,8 +142,8 @@ class Contest {
            with.held_chi2 < answer_.all.limits.decision.max_held_out_fraction * without.held_chi2;
   }
 
-  // Standard errors by which the segments are predicted better with a name; 0 where the name
-  // predicts the held-out data worse.
+  // Standard errors by which a name improves the prediction of segments; 0 if it worsens that of
+  // the held-out data.
   double missed(const Contender& without, const Contender& with) const {
     constexpr double by_chance = 3.0;
     const double scatter = std::sqrt(2.0 * with.held_samples);
@@ -154,8 +153,8 @@ class Contest {
     return gain_sigma(without.chi2, with.chi2);
   }
 
-  // The most likely of the contenders that are not distinguished from `won` and have no more names,
-  // or `won`. The simpler of two kinds of one law counts as more likely (simpler_by()).
+  // The most likely contender that is indistinguishable from `won` and has no more names, or `won`.
+  // The simpler of two kinds of one law counts as more likely (simpler_by()).
   const Contender& likeliest_like(const Contender& won) const {
     const auto evidence = [&](const Contender& c) {
       const auto twin = std::ranges::find_if(answer_.trials, [&](const Trial& t) {
@@ -175,8 +174,8 @@ class Contest {
     return *best;
   }
 
-  // Removes names that the segments do not need, then names that add too little: each of two names
-  // for one effect adds little to the other.
+  // First removes names that the segments do not require, then names that add too little. The order
+  // matters: of two names for one effect, each adds little to the other.
   Contender pruned(Contender best) {
     best = without_least(std::move(best), [&](const Contender& without, const Contender& with) {
       return missed(without, with);
@@ -186,7 +185,7 @@ class Contest {
     });
   }
 
-  // Takes the name of the least `worth` away, again and again, while it is too small.
+  // Repeatedly removes the name of least `worth` while it is too small.
   template <class Worth>
   Contender without_least(Contender best, const Worth& worth) {
     while (!best.trial.candidates.empty()) {
@@ -209,7 +208,7 @@ class Contest {
     for (size_t i = 0; i < terms.size(); ++i) {
       if (i != which) members.push_back({terms[i], {}});
     }
-    // Without it the rest may have to go far.
+    // Without this candidate the others may move far.
     const inference::Effort growing{.windows = answer_.all.limits.fitting.diverged_windows};
     return domain_.assemble(trial, members, train_, growing);
   }
@@ -224,8 +223,8 @@ class Contest {
 };
 
 // Refits the trial with its correlated residual as noise. A smaller residual gives the readings
-// more weight against the priors: the refit is repeated while the held-out data are predicted
-// better.
+// more weight relative to the priors, so the refit is repeated while the held-out prediction
+// improves.
 Trial fitted_beside_the_rest(const Trial& named, const Candidates& all, const NoiseLevels& own,
                              RecordedData data) {
   constexpr int most_rounds = 6;
@@ -251,7 +250,7 @@ Trial fitted_beside_the_rest(const Trial& named, const Candidates& all, const No
   return std::isfinite(again.fit.chi2) ? again : result;
 }
 
-// Puts the winner in the place of the chosen trial.
+// Replaces the chosen trial by the winner.
 void choose(const Contender& won, const Contest& contest, Answer& a) {
   const auto twin = std::ranges::find_if(a.trials, [&](const Trial& t) {
     return inference::same_candidates(t.candidates, won.trial.candidates);
@@ -275,7 +274,7 @@ void choose(const Contender& won, const Contest& contest, Answer& a) {
   }
 }
 
-// The verdict and its probability: of as many tries as there are candidates.
+// Sets the finding and its probability, corrected for as many tests as there are candidates.
 void decide_beside_the_rest(Answer& a) {
   a.rest_is_noise = true;
   a.decision.finding = inference::Finding::unknown;

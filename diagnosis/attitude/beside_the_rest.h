@@ -1,4 +1,4 @@
-// Names with an unexplained residual, which counts as noise.
+// Names in the presence of an unexplained residual, which counts as noise (model discrepancy).
 #pragma once
 
 #include <optional>
@@ -7,35 +7,35 @@
 
 namespace photorque {
 
-// All candidates; those whose start needs no scan; of these the ones of the catalogue; of these the
-// torques alone, because large instrument errors can imitate any effect.
+// Candidates to search, each a subset of the previous: all; those whose start requires no scan;
+// those of the catalogue; torques only, because large instrument errors can mimic any effect.
 enum class Among { all, unscanned, catalogue, torques };
 
-// All candidates of that choice, those of a narrower one first, so that a trial of theirs means the
-// same among more.
+// The chosen candidates, those of narrower choices first, so that indices of a trial remain valid
+// among more candidates.
 Candidates candidates_among(Among among, const NominalModel& nominal,
                             const std::vector<Observation>& runs, const Thresholds& limits);
 
-// Candidates of the search in which the residual counts as noise. Where angle and rate about one
-// axis are both read, each shows errors of the other's instrument whatever the torque.
+// Candidates of the search in which the residual counts as noise. If angle and rate about one axis
+// are both measured, each reveals errors of the other instrument independently of the torque.
 Among among_beside_the_rest(const NominalModel& nominal, const RecordedData& data);
 
-// One search, and the decision about it, with the noise that `data` has; from `near`, a trial of no
-// more candidates, where that is not null.
+// One search and its decision with the noise of `data`. It starts from `near`, a trial with no more
+// candidates, unless that is null.
 Answer searched(const NominalModel& nominal, const Fit& nominal_fit, const RecordedData& data,
                 const DiagnoseOptions& options, Among among, const Trial* near);
 
-// Searches for effects although an unexplained residual remains, which counts as noise: first the
-// residual of the nominal model, then that of the best explanation, as long as effects are named.
-// With the noise of the readings alone, every uncertain parameter would be moved by the unexplained
-// part. Every name predicts segments of the recordings, each from fits to others, better than its
-// absence, and differs from zero by its error with the residual's correlation. `data` keeps the
-// noise of the last search. `laws`, where it is not null, is a fit of torques to the same runs: its
-// residual is the first noise, and each search starts from it. Nothing where no effect is named.
+// Searches for effects in the presence of an unexplained residual, which counts as noise. With the
+// noise of the readings alone, the residual would bias every uncertain parameter. The noise is
+// first the residual of the nominal model, then that of the best explanation, as long as effects
+// are named. Every name must predict segments, each from fits to others, better than its absence,
+// and must differ from zero by its error under correlated noise. `data` keeps the noise of the last
+// search. `laws`, if not null, is a fit of torques to the same runs: its residual is the first
+// noise, and each search starts from it. Returns nothing if no effect is named.
 std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, RecordedData& data,
                                             const DiagnoseOptions& options, const Trial* laws);
 
-// Whether a fit to recordings that have only the noise of the readings is near them.
+// Whether a fit agrees with recordings whose noise is that of the readings alone.
 bool leaves_only_noise(const Fit& fit, const RecordedData& data);
 
 }  // namespace photorque

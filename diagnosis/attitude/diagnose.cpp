@@ -23,7 +23,8 @@
 namespace photorque {
 namespace {
 
-// Nowhere where the nominal model cannot be propagated: they part from the start.
+// Location of the differences; empty if the nominal model cannot be propagated, as they then differ
+// from the start.
 Where where_they_part(const Fit& nominal_fit, const RecordedData& data,
                       const Thresholds::Location& limits) {
   try {
@@ -63,17 +64,17 @@ void say_what_was_found(const Answer& answer, const Fit& nominal_fit, const Reco
   try {
     d.manoeuvres = manoeuvres(d.effects, decision, trials, all, data.train, options.threads);
   } catch (const NumericalError&) {
-    // Of a motion that cannot be propagated there is none to propose.
+    // A motion that cannot be propagated allows no proposal.
   }
   d.priors_refined = refined_priors(chosen);
   d.because = decision.because;
 }
 
-// Numbers and curves of the nominal and the chosen model, with fitted and held-out data.
+// Statistics and curves of the nominal and the chosen model, for fitted and held-out data.
 void say_how_well(const Fit& before, const Answer& answer, const RecordedData& data,
                   const Thresholds& limits, Diagnosis& d) {
   const Trial& chosen = answer.chosen();
-  // Where the rest counted as noise it does not count here.
+  // If the residual counted as noise, χ² is recomputed with the noise of the readings.
   const Fit after =
       answer.rest_is_noise ? propagate_model(chosen.fit, data.train, limits) : chosen.fit;
   d.chi2_per_sample_before = before.chi2_per_sample();
@@ -112,7 +113,7 @@ std::vector<std::string> warnings_of(const RecordedData& data,
   return warnings;
 }
 
-// Adds how much better the segments are predicted with each name, with model discrepancy.
+// Adds the gain in prediction of segments by each name, with model discrepancy.
 void say_gains_over_stretches(const Answer& answer, Diagnosis& d) {
   if (!answer.beside) return;
   for (size_t i = 0; i < d.effects.size(); ++i) {
@@ -123,7 +124,7 @@ void say_gains_over_stretches(const Answer& answer, Diagnosis& d) {
   }
 }
 
-// Adds a warning where held-out data do not test the names, or scatter less than the noise.
+// Adds a warning if held-out data do not test the names or scatter less than the noise.
 void say_limits_of_held_out(Diagnosis& d) {
   constexpr double as_well = 0.9, too_quiet_sigma = -5.0;
   const double before = d.holdout->chi2_per_sample_before, after = d.holdout->chi2_per_sample_after;
@@ -143,7 +144,7 @@ void say_limits_of_held_out(Diagnosis& d) {
   }
 }
 
-// Whether no run turns about the axis more often than a line is twisted.
+// Whether every run stays within the rotation that a suspension line can be twisted by.
 bool turns_little(const std::vector<Observation>& runs, const Vec3& axis) {
   constexpr double most_rad = 30.0 * 2.0 * pi;
   return std::ranges::all_of(runs, [&](const Observation& seen) {
@@ -161,14 +162,14 @@ bool turns_little(const std::vector<Observation>& runs, const Vec3& axis) {
   });
 }
 
-// Where no instrument sees the attitude and nothing depends on it, it is not propagated.
+// Omits the attitude from the state if no instrument measures it and no effect depends on it.
 NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
   NominalModel nominal = stated;
   const bool is_seen = std::any_of(
       data.train.begin(), data.train.end(),
       [&](const Observation& seen) { return seen.feels_attitude(stated.model.platform); });
   const Platform& platform = nominal.model.platform;
-  // A twisted line pulls back to an angle that a rate alone shows as well.
+  // A twisted line exerts a restoring torque, from which rates alone determine an angle.
   const bool may_twist = platform.turns_about_one_axis() && !platform.slides() &&
                          std::abs(platform.axis.z()) > 0.5 &&
                          turns_little(data.train, platform.axis);
@@ -176,8 +177,8 @@ NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
   return nominal;
 }
 
-// Whether the fitted inertia can be written: measured moments may violate a condition that every
-// body obeys by their errors.
+// Whether the fitted inertia is physical: by their errors, fitted moments may violate a condition
+// that every body obeys.
 bool is_an_inertia(const Trial& chosen, size_t disturbance) {
   const AttitudeModel& model = chosen.fit.best.model;
   const Disturbance& d = model.disturbances[disturbance];

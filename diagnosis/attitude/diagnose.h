@@ -1,6 +1,6 @@
 // `diagnose`: compares recordings with the nominal model and finds missing physics.
 //
-// A straight line: observe → fit the nominal model → whiten → search (every effect alone, then
+// The steps are: observe → fit the nominal model → whiten → search (every effect alone, then
 // together) → decide → predict the held-out data → report.
 #pragma once
 
@@ -22,17 +22,17 @@ struct NamedRecording {
 };
 
 struct DiagnoseOptions {
-  int threads = 0;                 // 0: all
-  size_t max_blocks = 6000;        // into which each recording is averaged
-  double holdout_fraction = 0.25;  // of each recording, its end, held out when there is no holdout
-  Thresholds limits;               // of search and decision
-  std::set<std::string> read_elsewhere;  // columns that other readers use
+  int threads = 0;                       // 0: all
+  size_t max_blocks = 6000;              // per recording after averaging
+  double holdout_fraction = 0.25;        // of each recording's end, if no holdout is given
+  Thresholds limits;                     // of search and decision
+  std::set<std::string> read_elsewhere;  // columns used by other readers
   // Called with the name of each step as it starts; may be empty.
   std::function<void(const std::string&)> progress;
 };
 
-// InputError for recordings that hold no attitude or hardly any. The same result for any number of
-// threads.
+// Throws InputError for recordings with no or hardly any attitude data. The result is independent
+// of the number of threads.
 Diagnosis diagnose(const NominalModel& nominal, const std::vector<NamedRecording>& recordings,
                    const std::vector<NamedRecording>& holdouts,
                    const DiagnoseOptions& options = {});

@@ -50,8 +50,8 @@ class AttitudeDomain {
                                          const Runs& runs, const Runs& averages, int threads) const;
 
   Runs average(const Trial& about, const Runs& runs, size_t blocks) const;
-  // Cuts each run into `pieces` parts. Parts with too few complete attitudes to fit initial
-  // conditions are left out.
+  // Cuts each run into `pieces` parts. Parts with too few complete attitudes for fitting initial
+  // conditions are omitted.
   Runs cut(const Runs& runs, size_t pieces) const;
   double excess_sigma(const Trial& trial, const Runs& runs) const;
 

@@ -36,7 +36,7 @@ std::string with_error(double value, double sigma) {
 
 namespace {
 
-// Of a parameter by its place in the law.
+// Access to parameters by their index in the law.
 class Numbers {
  public:
   Numbers(const EmpiricalShape& shape, const std::vector<FittedParameter>& parameters,
@@ -49,7 +49,7 @@ class Numbers {
       }
     }
   }
-  // Of a function's exponent, time constant or period.
+  // Exponent, time constant or period of a function, as text.
   std::string own(size_t function) const { return with_error(value_[function], sigma_[function]); }
   double own_value(size_t function) const { return value_[function]; }
   double coefficient(size_t k) const { return value_[first_ + k]; }
@@ -196,7 +196,7 @@ std::string of_one(const EmpiricalShape& shape, const Numbers& numbers) {
   return "";
 }
 
-// A drag that is not the same everywhere.
+// Formula of a drag that varies with the state.
 std::string of_drag(const EmpiricalShape& shape, const Numbers& numbers) {
   const MotionFunction &f = shape.functions[0], &rate = shape.functions[1];
   const bool is_linear = rate.of == MotionVariable::rate && rate.form == FunctionForm::powers &&
@@ -301,7 +301,7 @@ constexpr size_t propagated_states = 1000;
 
 struct Abscissa {
   std::string unit;
-  bool lab_axes = false;  // in which the torque is said
+  bool lab_axes = false;  // whether the torque is given in lab axes
 };
 
 Abscissa abscissa_of(const std::string& variable) {
@@ -329,8 +329,9 @@ struct TorqueAndSlopes {
   Eigen::Matrix3Xd slopes;
 };
 
-// `model` has the law alone; it is left as it was. Coefficients are linear: their slopes are the
-// torques of each alone. Of an exponent or a time constant the slope is a difference.
+// `model` contains only the law and is unchanged on return. The law is linear in its coefficients,
+// so their slopes are the torques of unit coefficients. Slopes of exponents and time constants are
+// finite differences.
 TorqueAndSlopes at_state(AttitudeModel& model, size_t own, const PlatformState& state) {
   auto& parameters = model.disturbances.front().parameters;
   const auto torque = [&] { return disturbance_torques_body_N_m(model, state).front(); };
@@ -358,8 +359,8 @@ TorqueAndSlopes at_state(AttitudeModel& model, size_t own, const PlatformState& 
   return result;
 }
 
-// Of all `count` parameters of a law; 0 for those that were not fitted, as is the torque about an
-// axis that cannot turn.
+// Covariance of all `count` parameters of a law; 0 for fixed ones, such as the torque about an axis
+// that cannot turn.
 Eigen::MatrixXd covariance_of(const Fit& fit, size_t law, Eigen::Index count) {
   const Eigen::MatrixXd shared = fit.shared_posterior();
   std::vector<Eigen::Index> fitted, where;

@@ -1,4 +1,4 @@
-// A fitted law without a name, as numbers against its variable and as a short formula.
+// A fitted empirical law as a table over its variable and as a short formula.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,26 +11,25 @@
 
 namespace photorque {
 
-// A fitted function without a law as a short formula, and similar physics.
+// Short formulas of fitted empirical laws, and physics of similar form.
 
-// "(4.41 ± 0.02)×10⁻⁶", the value to the two digits that the error has; without an error that is
-// above 0 and finite, the value alone.
+// "(4.41 ± 0.02)×10⁻⁶": the value and its error with the digits that the error permits. If the
+// error is not positive and finite, the value alone.
 std::string with_error(double value, double sigma);
 
 struct EmpiricalFormula {
-  std::string text;  // with its constants and one standard error of each; empty: none is short
-  std::string looks_like;  // physics that commonly looks like this, without a claim
+  std::string text;        // with standard errors of its constants; empty: there is no short one
+  std::string looks_like;  // weak evidence: physics that commonly has this form
 };
 
-// `parameters` are those of empirical_torque(shape), as fitted; `covariance` is theirs in SI, in
-// the same order. Components below three standard errors are left out of the text, but for the
-// largest.
+// `parameters` are the fitted ones of empirical_torque(shape); `covariance` is theirs in SI units,
+// in equal order. The text omits components below three standard errors, except for the largest.
 EmpiricalFormula formula_of(const EmpiricalShape& shape,
                             const std::vector<FittedParameter>& parameters,
                             const Eigen::MatrixXd& covariance);
 
-// The empirical parts of a trial along its first run: means over bins of the variable, with the
-// standard errors that follow from the covariance of the law's coefficients.
+// The empirical parts of a trial along its first run: means over bins of the variable, with
+// standard errors from the covariance of the coefficients.
 std::vector<EmpiricalTorque> empirical_torques(const Trial& chosen, const Candidates& all,
                                                const std::vector<Observation>& runs);
 

@@ -13,7 +13,7 @@ namespace photorque {
 
 namespace {
 
-// In units of the mean moment.
+// In units of the mean moment, except for `least_sigma` [standard errors].
 constexpr double least_difference = 0.1, most_error = 0.05, least_sigma = 5.0;
 
 struct OneRecording {
@@ -51,8 +51,8 @@ bool differ(const FreeInertia& a, const FreeInertia& b) {
   return false;
 }
 
-// The number of its group for each recording: those not distinguished, directly or through
-// others, have the same.
+// Group number of each recording. Recordings that are indistinguishable, directly or through
+// others, have equal numbers.
 std::vector<size_t> groups_of(const std::vector<OneRecording>& all) {
   std::vector<size_t> group(all.size());
   for (size_t i = 0; i < all.size(); ++i) group[i] = i;
@@ -66,7 +66,7 @@ std::vector<size_t> groups_of(const std::vector<OneRecording>& all) {
   return group;
 }
 
-// Weighted by the errors of its recordings, which are widened to their scatter.
+// Mean weighted by the errors of the recordings, with errors widened to the scatter.
 BodyOfRecordings body_of(const std::vector<const OneRecording*>& members) {
   BodyOfRecordings body;
   for (const OneRecording* one : members) body.recordings.push_back(one->name);
@@ -138,8 +138,8 @@ std::string sentence_of(const std::vector<BodyOfRecordings>& bodies) {
 
 namespace {
 
-// Residual of free motion (free_inertia.h) with all rates multiplied by a factor; infinite where
-// the rates determine no inertia.
+// Residual of free motion (free_inertia.h) with all rates multiplied by a factor; infinite if the
+// rates determine no inertia.
 double left_by(double factor, std::vector<Observation> pieces) {
   for (Observation& seen : pieces) {
     for (Vec3& rate : seen.gyro_rad_s) rate *= factor;
@@ -152,7 +152,7 @@ struct Factor {
   double value = 1.0, left = INFINITY;
 };
 
-// The least over factors from 0.3 to 3: the best of a grid, then by golden sections about it.
+// Minimum over factors from 0.3 to 3: grid search, then golden section.
 Factor best_factor(const std::vector<Observation>& pieces) {
   constexpr double widest = 1.1, step = 0.1;  // of the logarithm
   double best = 0.0, least = INFINITY;

@@ -8,27 +8,25 @@
 
 namespace photorque {
 
-// Whether recordings of a free body are of one body at all.
+// Test of whether all recordings are of one body.
 
-// Groups the recordings, fitted and held out, by body. Each recording alone gives its moments of
-// inertia up to their scale (attitude/estimation/free_inertia.h). Two recordings are of different
-// bodies where a moment differs by five standard errors and by a tenth of the mean moment; other
-// recordings belong together. Recordings that do not determine their moments to a twentieth are not
-// compared. Empty where all are of one body, or where the platform is not free: then other torques
-// act.
+// Groups the recordings, both fitted and held out, by body. Each recording alone determines moments
+// of inertia up to their scale (attitude/estimation/free_inertia.h). Two recordings are of
+// different bodies if a moment differs by five standard errors and by a tenth of the mean moment.
+// Recordings whose moments have errors above a twentieth are not compared. Empty if all are of one
+// body, or if the platform is not free, because other torques then act.
 std::vector<BodyOfRecordings> different_bodies(const Platform& platform, const RecordedData& data);
 
-// One sentence that names the recordings of each; empty without bodies.
+// One sentence that lists the recordings of each body; empty without bodies.
 std::string sentence_of(const std::vector<BodyOfRecordings>& bodies);
 
-// Whether the rates of a free body and the clock beside them agree.
+// Consistency test of the rates of a free body and the clock of the recording.
 
-// Rates change as ω' = −I⁻¹ (ω × I ω): in proportion to their square. Rates that are all too large
-// by a factor, or a clock that runs too fast by it, match no inertia, unless the body has an axis
-// of symmetry. For every recording the factor is fitted by which its rates would have to be
-// multiplied. It is reported where it differs from one by a twentieth and leaves at most a third of
-// the residual (free_inertia.h) of the readings as they are. Nothing for platforms that are carried
-// by something.
+// Rates obey ω' = −I⁻¹ (ω × I ω), which is quadratic in ω. If all rates are too large by a factor,
+// or the clock is too fast by it, no inertia fits. The exception is a body with an axis of
+// symmetry. For every recording the correction factor of its rates is fitted. It is reported if it
+// differs from one by a twentieth and reduces the residual (free_inertia.h) to below 0.05 and to at
+// most a third. Empty with attitude readings and for platforms on a bearing.
 std::vector<InstrumentFinding> clock_findings(const Platform& platform, const RecordedData& data);
 
 }  // namespace photorque

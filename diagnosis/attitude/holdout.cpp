@@ -42,7 +42,7 @@ std::map<std::string, double> rms(const std::vector<Prediction>& residuals,
   return result;
 }
 
-// Of the mean of a block's readings. What is correlated in time does not become less in it.
+// Error of the mean of a block's readings. Averaging does not reduce the time-correlated part.
 Vec3 attitude_error_rad(const Observation& seen, size_t block) {
   Vec3 error;
   for (int k = 0; k < 3; ++k) {
@@ -93,7 +93,7 @@ Holdout compare_holdout(const Fit& before, const Fit& after, const std::vector<O
     result.rms_before = rms(residuals_of(before, runs), runs);
     result.rms_after = rms(residuals_of(after, runs), runs);
   } catch (const NumericalError&) {
-    // A model that cannot propagate these runs has no residuals to show.
+    // A model that cannot be propagated along these runs has no residuals.
   }
   return result;
 }
@@ -124,8 +124,8 @@ RecordingSeries series_of(const Fit& before, const Fit& after, const Observation
       c.noise = noise_of(seen, k);
       for (size_t i = 0; i < seen.blocks(); ++i) {
         const bool read = seen.rows_of(i, static_cast<int>(k)) > 0.0;
-        // A camera may see every second row only: what was not read is left out, and a longer gap
-        // stays one.
+        // A camera may read only every second row: unread blocks are omitted, but longer gaps
+        // remain visible as one.
         const bool in_gap = !c.time_s.empty() && seen.time_s[i] - c.time_s.back() > max_gap_s;
         if (!read && !in_gap) continue;
         c.time_s.push_back(seen.time_s[i]);

@@ -1,4 +1,4 @@
-// Prediction of recordings that were never fitted.
+// Prediction of held-out recordings.
 #pragma once
 
 #include "diagnosis/attitude/effects/trial.h"
@@ -6,14 +6,14 @@
 
 namespace photorque {
 
-// The model of a fit propagated on other runs: only how these runs began (initial state, instrument
-// biases within their stated uncertainty) is taken from them.
+// Propagates a fitted model along other runs. Only initial conditions (initial state, instrument
+// biases within their stated uncertainty) are fitted to them.
 Fit propagate_model(const Fit& fitted, const std::vector<Observation>& runs,
                     const Thresholds& limits);
 
 Holdout compare_holdout(const Fit& before, const Fit& after, const std::vector<Observation>& runs);
 
-// Readings and models over time for plots: the run `run` of two fits of the same runs.
+// Readings and models over time for plots, of run number `run` in two fits to equal runs.
 RecordingSeries series_of(const Fit& before, const Fit& after, const Observation& seen, size_t run);
 
 }  // namespace photorque

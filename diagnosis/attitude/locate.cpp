@@ -12,10 +12,10 @@ namespace photorque {
 
 namespace {
 
-constexpr double median_of_chi2_of_one = 0.454936;  // the square of a standard normal number
+constexpr double median_of_chi2_of_one = 0.454936;  // median of χ² with one degree of freedom
 
-// Fortieths of the run whose mean square exceeds that of noise beyond doubt, joined where they
-// touch.
+// Fortieths of the run whose mean square significantly exceeds that of noise; adjacent ones are
+// merged.
 std::vector<Where::Interval> intervals(const Prediction& p, const Observation& seen,
                                        const Thresholds::Location& limits) {
   constexpr size_t windows = 40;
@@ -47,7 +47,7 @@ std::vector<Where::Interval> intervals(const Prediction& p, const Observation& s
   return result;
 }
 
-// The band that holds nearly all of the power above that of noise.
+// The band with nearly all of the power in excess of noise.
 std::optional<Where::Interval> band(const Prediction& p, const Observation& seen,
                                     const Thresholds::Location& limits) {
   constexpr size_t max_lines = 400;
@@ -147,7 +147,7 @@ std::vector<Where::Dependence> of_unknown_law(std::vector<Where::Dependence> dep
       std::rotate(depends_on.begin(), known, known + 1);
     }
   }
-  // A torque that no state of the platform explains is reported as a function of time.
+  // A torque that depends on no state of the platform is reported as a function of time.
   if (depends_on.empty()) depends_on.push_back({"time", 0.0});
   return depends_on;
 }

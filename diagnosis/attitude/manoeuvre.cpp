@@ -21,7 +21,7 @@ struct StartManoeuvre {
   StartChange change;
 };
 
-// How fast a platform is spun up, at least.
+// Minimum rate after a spin-up.
 constexpr double brisk_rad_s = 0.3;
 
 void spin_up(PlatformState& state) {
@@ -67,8 +67,8 @@ std::vector<StartManoeuvre> start_manoeuvres() {
 
 constexpr const char* longer = "record longer, at larger tilt and over a wider range of rates";
 
-// Whether only the battery's current distinguishes two kinds: effects of its charge do not depend
-// on the initial state.
+// Whether only the battery current distinguishes two kinds: effects of its charge do not depend on
+// the initial state.
 bool is_told_by_charge(const std::string& kind, const std::string& rival) {
   const auto says = [](const std::string& one, const std::string& other) {
     const DisturbanceKind* known = find_kind(one);
@@ -80,7 +80,8 @@ bool is_told_by_charge(const std::string& kind, const std::string& rival) {
   return says(kind, rival) || says(rival, kind);
 }
 
-// The first run from another start as the trial predicts it, without noise.
+// Synthetic noise-free readings of the first run from another initial state, propagated by the
+// trial.
 Observation propagated_from(const Trial& truth, const PlatformState& start,
                             const Observation& like) {
   PredictionOptions options;
@@ -99,7 +100,7 @@ Observation propagated_from(const Trial& truth, const PlatformState& start,
   return seen;
 }
 
-// The rival on the recordings that there are, in fewer blocks.
+// The rival fitted to the existing recordings, averaged into fewer blocks.
 struct Rival {
   Trial fitted;
   std::vector<Observation> runs;
@@ -113,7 +114,7 @@ struct Rival {
 
 constexpr double not_known = -1.0;
 
-// Half of the growth of the rival's χ² by the manoeuvre; not_known where its fit does not end.
+// Half of the growth of the rival's χ² by the manoeuvre; not_known if its fit does not converge.
 double expected_lead(const Trial& truth, const Rival& rival, const Candidates& all,
                      const StartChange& change) {
   try {
@@ -128,7 +129,8 @@ double expected_lead(const Trial& truth, const Rival& rival, const Candidates& a
     growing.windows = all.limits.fitting.added_windows;
     const Trial both = refit(rival.fitted, all, runs, starts, growing);
     if (!both.fit.converged) return not_known;
-    const double more = both.fit.chi2 - rival.fitted.fit.chi2;  // bent priors count
+    const double more =
+        both.fit.chi2 - rival.fitted.fit.chi2;  // includes the cost of shifted priors
     return std::isfinite(more) ? std::max(0.0, 0.5 * more) : not_known;
   } catch (const NumericalError&) {
     return not_known;
@@ -156,7 +158,7 @@ Manoeuvre best_start(Manoeuvre m, const Trial& truth, const Trial& rival, const 
   return m;
 }
 
-// The best trial in which `rival` stands in for `kind`.
+// The best trial with `rival` in place of `kind`.
 const Trial* stand_in(const std::string& kind, const std::string& rival, const Trial& chosen,
                       const std::vector<Trial>& trials, const Candidates& all) {
   const auto labels_of = [&](const Trial& t) {
@@ -183,7 +185,7 @@ std::vector<Manoeuvre> manoeuvres(const std::vector<FoundEffect>& effects,
                                   const std::vector<Observation>& runs, int threads) {
   const Trial& chosen = trials[decision.chosen];
   std::vector<Manoeuvre> result;
-  // The starts that are known turn the platform.
+  // All known manoeuvres turn the platform.
   if (chosen.fit.best.model.platform.slides()) return result;
   for (const FoundEffect& effect : effects) {
     for (const std::string& rival : effect.indistinguishable_from) {

@@ -1,4 +1,4 @@
-// Proposed experiments that distinguish effects which the recordings do not distinguish.
+// Proposed experiments that distinguish effects which the recordings do not.
 #pragma once
 
 #include "diagnosis/attitude/effects/trial.h"
@@ -7,10 +7,10 @@
 
 namespace photorque {
 
-// One for every pair of an effect found and a kind that explains the recordings as well. Of four
-// other starts of the first run, each is propagated by the chosen trial, and the rival is fitted to
-// its exact readings together with the recordings that there are: half of what χ² gains is the
-// expected lead in log evidence. The start with the largest is proposed.
+// One manoeuvre for every pair of a found effect and a kind that is indistinguishable from it. The
+// chosen trial predicts exact readings for four other initial states of the first run. The rival is
+// fitted to these together with the existing recordings. Half of the growth of χ² is the expected
+// lead in log evidence. The initial state with the largest lead is proposed.
 std::vector<Manoeuvre> manoeuvres(const std::vector<FoundEffect>& effects,
                                   const inference::Decision& decision,
                                   const std::vector<Trial>& trials, const Candidates& all,

@@ -20,10 +20,10 @@ namespace photorque {
 
 namespace {
 
-// Fewest blocks of a segment: those that its initial conditions take up, and some more.
+// Minimum number of blocks of a segment: enough to determine its initial conditions and some more.
 constexpr size_t least_of_stretch = 12;
 
-// Warns of rows that were left out as a file was cut.
+// Warns of rows that are omitted where a file is cut into segments.
 void say_cuts(const std::string& name, const Segments& segments,
               std::vector<std::string>& warnings) {
   const auto say = [&](int64_t count, const char* what) {
@@ -41,8 +41,8 @@ void say_cuts(const std::string& name, const Segments& segments,
   }
 }
 
-// An accelerometer and a magnetometer count only if the experiment has them: a recording contains
-// neither the place of the one nor the disturbances of the other.
+// An accelerometer or magnetometer is used only if the experiment declares it: a recording contains
+// neither the position of the former nor the disturbances of the latter.
 bool is_declared(const Sensors& sensors, int scalar) {
   const Measures measures = channel_traits(vector_channels + scalar).measures;
   if (measures == Measures::force) return sensors.accelerometer.has_value();
@@ -71,7 +71,7 @@ void say_unused(const NamedRecording& r, const NominalModel& nominal,
   if (!names.empty()) warnings.push_back(r.name + ": columns that are not used: " + names);
 }
 
-// Without rates the sequence of the angles is unknown.
+// Warns of an assumed sequence of angles, which only rates could test.
 void say_assumed_sequence(const NamedRecording& r, const Platform& platform,
                           std::vector<std::string>& warnings) {
   const MotionColumns columns(r.recording, platform, r.name);
@@ -81,10 +81,10 @@ void say_assumed_sequence(const NamedRecording& r, const Platform& platform,
                      "; no rates are there to test it, and [recording] angle_sequence states it");
 }
 
-// A body that slides under forces commanded in answer to its place hardly moves: over a whole run,
-// a model without any force, above all without the commanded one, fits best (closed-loop
-// identification, L. Ljung, System Identification, 2nd ed. 1999, section 13.4). Over segments with
-// their own initial conditions, short against the run, the forces are visible.
+// A sliding body under forces commanded in response to its position hardly moves. Over a whole run
+// a model without any force, even the commanded one, then fits best (closed-loop identification, L.
+// Ljung, System Identification, 2nd ed. 1999, section 13.4). Short segments with separate initial
+// conditions make the forces visible.
 void begin_anew_under_commands(const std::string& name, const Platform& platform, size_t stretches,
                                std::vector<Observation>& all, std::vector<std::string>& warnings) {
   std::vector<Observation> result;
@@ -109,7 +109,7 @@ void begin_anew_under_commands(const std::string& name, const Platform& platform
   all = std::move(result);
 }
 
-// The value of a channel at a block; of attitudes a component of the rotation vector.
+// The value of a channel in a block; for attitudes a component of the rotation vector.
 double value_at(const Observation& seen, int channel, size_t block) {
   if (channel >= vector_channels) {
     return seen.scalar[static_cast<size_t>(channel - vector_channels)].value[block];
@@ -128,8 +128,8 @@ void leave_out_block(int channel, size_t block, Observation& seen) {
   }
 }
 
-// A counter that stands still repeats one rounding, however often it is read: of a longer
-// repetition to the last digit a few readings, evenly, are as many as count.
+// A counter at rest repeats the same rounding error with every reading. Of a long sequence of
+// identical values only a few evenly spaced ones are kept, because they are not independent.
 void thin_repetitions(Observation& seen) {
   constexpr size_t most = 10;
   constexpr double rounding = 1e-12;
@@ -207,7 +207,7 @@ void append_to(std::vector<Observation>& to, std::vector<Observation> from) {
   std::move(from.begin(), from.end(), std::back_inserter(to));
 }
 
-// The block from which on this fraction of the blocks lies that read something of the motion.
+// The first block of the last part of a run; `fraction` counts only blocks with readings.
 size_t cut_at(const Observation& seen, double fraction) {
   std::vector<size_t> reading;
   for (size_t i = 0; i < seen.blocks(); ++i) {
@@ -224,8 +224,8 @@ size_t cut_at(const Observation& seen, double fraction) {
   return reading.empty() ? of(seen.blocks()) : reading[of(reading.size())];
 }
 
-// Holds out the end of a recording in one piece; of one in many pieces every fourth, so that
-// held-out data have the times and conditions of the fitted data.
+// Holds out the end of a recording in one piece. Of many segments, every (1/fraction)-th is held
+// out, so that held-out and fitted data cover equal times and conditions.
 void hold_out(std::vector<Observation> stretches, double fraction, RecordedData& data) {
   const auto every = static_cast<size_t>(std::lround(1.0 / fraction));
   for (size_t i = 0; i < stretches.size(); ++i) {
@@ -240,8 +240,8 @@ void hold_out(std::vector<Observation> stretches, double fraction, RecordedData&
   }
 }
 
-// Noise levels from the experiment. Where it states none and no second instrument shows the motion,
-// they come from the readings.
+// Noise levels from the experiment. If it states none and no second instrument measures the motion,
+// they are estimated from the readings.
 NoiseLevels noise_of(const Sensors& sensors, const std::vector<Observation>& runs,
                      std::vector<std::string>& warnings) {
   NoiseLevels noise = noise_levels(sensors);
@@ -346,7 +346,7 @@ InstrumentFinding tail_finding(int k, const HeavyTail& tail) {
               k < 3 ? "arcsec" : "rad/s")};
 }
 
-// Gives the runs the noise that was found, and reports it. Returns whether any changed.
+// Uses the estimated noise for the runs and reports it. Returns whether it changed.
 bool use_noise(const NoiseFindings& findings, RecordedData& data) {
   bool changed = false;
   const NoiseLevels stated = data.train.front().noise;
@@ -363,9 +363,9 @@ bool use_noise(const NoiseFindings& findings, RecordedData& data) {
   return changed;
 }
 
-// Limits the weight of readings that are not normally distributed: bursts are dropped and heavy
-// tails get pseudo-values, in fitted and held-out data. `near` is near the readings. Returns
-// whether any changed.
+// Limits the weight of readings that are not normally distributed, in fitted and held-out data:
+// bursts are dropped and heavy tails get pseudo-values. `near` is a fit that is near the readings.
+// Returns whether anything changed.
 bool tame_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
   const int64_t in_bursts = drop_bursts(residuals_of(near, data.train), limits.noise, data.train);
   const std::vector<Prediction> residuals = residuals_of(near, data.train);
@@ -396,7 +396,7 @@ bool tame_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
   return changed;
 }
 
-// Finds the noise of the readings about a fit that is near them, and uses it. Returns whether
+// Estimates the noise from residuals of a fit near the readings and uses it. Returns whether
 // anything changed.
 bool find_and_use_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
   NoiseFindings findings = find_noise(data.train, residuals_of(near, data.train), limits.noise);
@@ -412,12 +412,12 @@ bool find_and_use_noise(const Fit& near, const Thresholds& limits, RecordedData&
 Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data) {
   take_out_bias_drift(data);
   Fit fitted = fit_nominal(nominal, data.train, limits);
-  // A model that cannot be propagated along the recording gives no residuals of its readings.
+  // A model that cannot be propagated along the recording has no residuals.
   if (!std::isfinite(fitted.chi2)) return fitted;
   const std::vector<Prediction> residuals = residuals_of(fitted, data.train);
   data.outliers = drop_outliers(residuals, limits.noise, data.train);
   bool changed = data.outliers > 0;
-  // Without an attitude, noise and motion are not separable.
+  // Without attitude readings, noise and motion are not separable.
   if (!nominal.sensors.noise_is_stated && data.train.front().sees_attitude()) {
     changed = find_and_use_noise(fitted, limits, data) || changed;
   }
@@ -438,7 +438,7 @@ bool settle_again(const Fit& explained, const Thresholds& limits, RecordedData& 
 
 namespace {
 
-// The farthest that the bias goes from its mean, an axis each.
+// Reports the largest deviation of the bias from its mean for each axis.
 void say_drift(const BiasHistory& history, std::vector<InstrumentFinding>& findings) {
   const std::string name = std::filesystem::path(history.recording).filename().string();
   for (int axis = 0; axis < 3; ++axis) {

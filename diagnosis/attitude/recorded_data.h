@@ -11,7 +11,7 @@
 
 namespace photorque {
 
-// A sentence with numbers in it, as printf writes it; at most 499 characters.
+// Formats numbers like printf; at most 499 characters.
 template <typename... Values>
 std::string written(const char* format, Values... values) {
   char text[500];
@@ -21,13 +21,13 @@ std::string written(const char* format, Values... values) {
 
 struct RecordedData {
   std::vector<Observation> train, held;
-  int64_t outliers = 0;  // readings dropped
+  int64_t outliers = 0;  // number of dropped readings
   std::vector<InstrumentFinding> instruments;
-  bool noise_is_open = false;  // the nominal model is too far off to separate noise from motion
+  bool noise_is_open = false;  // the nominal model fits too badly to separate noise from motion
   std::vector<std::string> warnings;
 };
 
-// Conventions are checked; without holdouts the end of each recording is held out.
+// Checks conventions and reads the data; without holdouts the end of each recording is held out.
 RecordedData read_data(const NominalModel& nominal, const std::vector<NamedRecording>& recordings,
                        const std::vector<NamedRecording>& holdouts, const DiagnoseOptions& options);
 
@@ -35,21 +35,20 @@ RecordedData read_data(const NominalModel& nominal, const std::vector<NamedRecor
 DataQuality quality_of(const std::vector<NamedRecording>& recordings,
                        const std::vector<NamedRecording>& holdouts, const RecordedData& data);
 
-// Fits the nominal model. Outliers are dropped on the way. Unless the experiment requires the
-// stated noise, the noise of `data` becomes that of the readings
-// (attitude/observation/noise_search.h), after a drift of the gyro was taken out
-// (take_out_bias_drift()); both are reported in data.instruments. A model that cannot be propagated
-// has infinite χ², and the noise stays as stated.
+// Fits the nominal model and drops outliers. Unless the experiment requires the stated noise, the
+// noise of `data` is estimated from the readings (attitude/observation/noise_search.h) after
+// removal of a gyro drift (take_out_bias_drift()). Both are reported in data.instruments. A model
+// that cannot be propagated has infinite χ², and the noise remains as stated.
 Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data);
 
-// Finds the noise that the nominal model left open, about a model that comes near the readings.
+// Estimates the noise about an explanation near the readings if the nominal model left it open.
 // Returns whether it changed.
 bool settle_again(const Fit& explained, const Thresholds& limits, RecordedData& data);
 
-// A gyro whose bias drifts within a recording.
+// Gyro bias that drifts within a recording.
 
-// Removes the drift from the gyro's readings, keeps their mean, and reports it among the
-// instruments. Does nothing where a constant bias for each recording suffices.
+// Removes the drift from the gyro readings, keeps their mean, and reports it among the instruments.
+// Does nothing if a constant bias per recording suffices.
 void take_out_bias_drift(RecordedData& data);
 
 }  // namespace photorque

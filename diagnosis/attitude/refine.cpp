@@ -11,7 +11,7 @@
 namespace photorque {
 namespace {
 
-// Knots of the finest table: as far apart as this, and as many at most (each costs three
+// Knots of the finest table: their minimum distance and maximum number (each costs three
 // parameters).
 constexpr double knot_distance_s = 6.5;
 constexpr size_t most_knots = 64;
@@ -43,7 +43,7 @@ EmpiricalLaw table_over(const std::vector<double>& knots_s) {
                                            .range = {{knots_s.front(), knots_s.back()}}});
 }
 
-// The first run as the trial predicts it, at some instants.
+// States of the first run at some instants, as predicted by the trial.
 std::vector<PlatformState> states_at(const Trial& trial, const std::vector<Observation>& runs,
                                      const std::vector<double>& times_s) {
   const Dynamics dynamics(trial.fit.best.model_of(0, runs.front()));
@@ -53,7 +53,7 @@ std::vector<PlatformState> states_at(const Trial& trial, const std::vector<Obser
   return propagate(dynamics, start, later_s, {.tolerance = 1e-7}).states;
 }
 
-// One disturbance alone in the trial's model of the first run.
+// The trial's model of the first run with one disturbance alone.
 AttitudeModel model_with(const Trial& trial, const std::vector<Observation>& runs,
                          const Disturbance& alone) {
   AttitudeModel model = trial.fit.best.model_of(0, runs.front());
@@ -61,10 +61,10 @@ AttitudeModel model_with(const Trial& trial, const std::vector<Observation>& run
   return model;
 }
 
-// A law's coefficients from torques that are known along a motion, by least squares.
+// Least-squares fit of a law's coefficients to known torques along a motion.
 struct Regression {
   Disturbance start;
-  double left = 0.0;  // sum of squares that it leaves, over the degrees of freedom
+  double left = 0.0;  // residual sum of squares over the degrees of freedom
 };
 Regression regressed(AttitudeModel model, size_t first_coefficient,
                      const std::vector<PlatformState>& states, const Eigen::VectorXd& torques) {
@@ -88,7 +88,7 @@ Regression regressed(AttitudeModel model, size_t first_coefficient,
   return {model.disturbances.front(), (torques - terms * found).squaredNorm() / freedom};
 }
 
-// A trial whose law in time was exchanged for another one.
+// A trial whose law in time is replaced by other laws.
 class Refinement {
  public:
   Refinement(const Trial& chosen, size_t which, Candidates& all,
@@ -109,7 +109,7 @@ class Refinement {
     return exchange(trial, all_, which_, all_.size() - 1, start, runs, settings);
   }
 
-  // Finer and finer on averages, then on all readings.
+  // Fits finer and finer tables to averages, then the finest to all readings.
   Trial table(double duration_s) {
     const auto finest =
         std::clamp<size_t>(static_cast<size_t>(duration_s / knot_distance_s), 8, most_knots);
@@ -133,10 +133,10 @@ class Refinement {
     }
   }
 
-  // From the period that explains most of a table's values.
+  // Starts from the period that explains most of the values of a table.
   Trial periodic(const Trial& table);
-  // The laws that compete with physics again: those that follow a table's values best. Where the
-  // nominal motion is far from the readings, a fit from there may have missed them.
+  // Tries the simple laws again that follow the values of a table best. A fit from a nominal motion
+  // far from the readings may have missed them.
   void consider_simpler(const Trial& table, size_t laws);
 
   void consider(const Trial& trial) {
@@ -146,7 +146,7 @@ class Refinement {
   const Trial& best() const { return best_; }
 
  private:
-  // Until the fit converges, as long as it may reach the χ² of the previous law.
+  // Iterates to convergence as long as the fit can reach the χ² of the previous law.
   FitSettings patient() const {
     FitSettings settings;
     settings.max_iterations = 40;
@@ -161,9 +161,9 @@ class Refinement {
   Trial best_;
 };
 
-// The Fourier series of some values over time with a period, by least squares.
+// Least-squares Fourier series of values over time with a given period.
 struct Series {
-  double period_s = 0.0, left = 0.0;  // sum of squares that it leaves
+  double period_s = 0.0, left = 0.0;  // residual sum of squares
   Eigen::MatrixXd coefficients;       // rows: 1, cos, sin, cos 2, sin 2, …
 };
 Series fitted_series(const std::vector<double>& at_s, const Eigen::MatrixXd& values,
@@ -186,7 +186,7 @@ Series fitted_series(const std::vector<double>& at_s, const Eigen::MatrixXd& val
 
 Trial Refinement::periodic(const Trial& table) {
   const size_t index = table.disturbances[which_];
-  // A copy: candidates are added.
+  // A copy, because candidates are added below.
   const std::vector<double> at_s =
       all_[table.candidates[which_]].law.shape.functions.front().table.knots();
   const Parameters& fitted = table.fit.best.model.disturbances[index].parameters;
@@ -226,7 +226,7 @@ void Refinement::consider_simpler(const Trial& table, size_t laws) {
   const Disturbance& fitted = table.fit.best.model.disturbances[table.disturbances[which_]];
   const std::vector<double>& knots_s =
       all_[table.candidates[which_]].law.shape.functions.front().table.knots();
-  // The ends of a table are hardly determined.
+  // The ends of a table are poorly determined.
   const std::vector<double> at_s(knots_s.begin() + 1, knots_s.end() - 1);
   const std::vector<PlatformState> states = states_at(table, runs_, at_s);
   const AttitudeModel known = model_with(table, runs_, fitted);
@@ -258,7 +258,7 @@ void Refinement::consider_simpler(const Trial& table, size_t laws) {
   }
 }
 
-// A formula that leaves nothing but noise needs no other.
+// A formula whose residual is noise requires no refinement.
 bool is_formula_that_explains(const Trial& trial, const EmpiricalLaw& law,
                               const std::vector<Observation>& runs, const Thresholds& limits) {
   return law.shape.functions.front().form == FunctionForm::decay &&
@@ -274,7 +274,7 @@ Trial refined_in_time(const Trial& chosen, Candidates& all, const std::vector<Ob
     if (law.variable != name_of(MotionVariable::time)) continue;
     double duration_s = 0.0;
     for (const Observation& seen : runs) duration_s = std::max(duration_s, seen.time_s.back());
-    // Its evidence from other runs is the same for all refinements.
+    // The evidence from other runs is a constant offset for all refinements.
     Trial before = refit(chosen, all, runs, chosen.fit.best.runs);
     if (is_formula_that_explains(before, law, runs, all.limits)) return chosen;
     const double weighed = chosen.log_evidence - before.log_evidence;
@@ -288,7 +288,7 @@ Trial refined_in_time(const Trial& chosen, Candidates& all, const std::vector<Ob
         refinement.consider_simpler(table, laws);
       }
     } catch (const NumericalError&) {
-      // A motion that cannot be followed is refined no further.
+      // A motion that cannot be propagated is not refined further.
     }
     Trial best = refinement.best();
     if (best.candidates == chosen.candidates) return chosen;

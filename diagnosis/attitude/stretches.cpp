@@ -13,7 +13,7 @@ namespace {
 
 constexpr size_t folds = 5;
 
-// Without the readings of these blocks.
+// Removes the readings of blocks [first, last).
 void leave_out(size_t first, size_t last, Observation& seen) {
   for (size_t i = first; i < last; ++i) {
     seen.attitude_rows[i] = 0.0;

@@ -1,8 +1,8 @@
-// Predictions of segments of recordings by explanations that were fitted to the other segments.
+// Predictions of segments of recordings by explanations that are fitted to other segments.
 //
-// The residual of a real machine's model is not noise, and no distribution gives the fall of χ² by
-// which a missing effect differs from a curve that follows the residual. Segments that were not
-// fitted decide: they show whether an effect predicts, and how much this differs between segments.
+// For a real machine the residual is not white noise. No distribution then gives the fall of χ²
+// that distinguishes a missing effect from a curve that follows the residual. Left-out segments
+// decide: they show whether an effect predicts, and how much the gain varies between segments.
 #pragma once
 
 #include <vector>
@@ -14,16 +14,15 @@ namespace photorque {
 
 class Stretches {
  public:
-  // Cuts the runs into about `wanted` segments of about equally many blocks. If there are as many
-  // runs, each is one segment, and only its initial conditions are fitted to it.
+  // Cuts the runs into about `wanted` segments with about equal numbers of blocks. If there are as
+  // many runs, each is one segment, and only its initial conditions are fitted to it.
   Stretches(const AttitudeDomain& domain, std::vector<Observation> train,
             std::vector<Observation> held, size_t wanted, int threads);
 
   size_t count() const { return stretches_.size(); }
 
-  // χ² of every segment, as predicted by the trial (which was fitted to the train runs) after a fit
-  // to other segments: each fit leaves out a fifth of the segments. Infinite where that cannot be
-  // evaluated.
+  // χ² of every segment, as predicted by the trial (fitted to the train runs) after a refit to
+  // other segments; each refit leaves out a fifth of them. Infinite where it cannot be evaluated.
   std::vector<double> chi2(const Trial& trial) const;
 
  private:
@@ -36,7 +35,7 @@ class Stretches {
   const AttitudeDomain& domain_;
   int threads_;
   std::vector<Observation> runs_;
-  size_t train_;  // so many of them
+  size_t train_;  // number of train runs, which come first
   std::vector<Stretch> stretches_;
 };
 

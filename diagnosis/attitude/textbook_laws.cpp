@@ -10,8 +10,7 @@
 namespace photorque {
 namespace {
 
-// Standard errors by which a number of the trial's `which`-th law lies beyond its physical bounds;
-// 0 within them.
+// Violation of physical bounds by the trial's `which`-th law [standard errors]; 0 within them.
 double beyond_physics(const Trial& trial, const Candidates& all, size_t which) {
   const Candidate& c = all[trial.candidates[which]];
   const std::vector<Parameter>& found =
@@ -29,8 +28,8 @@ double beyond_physics(const Trial& trial, const Candidates& all, size_t which) {
   return farthest;
 }
 
-// The law to be given up next: the one farthest beyond physics, or else the one of least
-// significance. Nothing if all are needed.
+// The next law to remove: the one with the largest violation of its bounds, otherwise the least
+// significant one. Nothing if all are needed.
 std::optional<size_t> superfluous(const Trial& trial, const Candidates& all) {
   constexpr double needed = 2.0;  // standard errors
   const size_t count = trial.candidates.size();
@@ -44,8 +43,8 @@ std::optional<size_t> superfluous(const Trial& trial, const Candidates& all) {
   return static_cast<size_t>(least - trial.significance.begin());
 }
 
-// Friction and drag by several powers of the rate nearly replace each other in short pieces: with
-// opposite signs they fit those, and diverge in longer ones. Only laws that are needed stay.
+// In short pieces friction and drag by several powers of the rate are nearly collinear: they fit
+// with opposite signs and diverge in longer pieces. Superfluous laws are therefore removed.
 Trial without_superfluous(Trial trial, const AttitudeDomain& domain, const Candidates& all,
                           const std::vector<Observation>& runs) {
   while (const std::optional<size_t> least = superfluous(trial, all)) {
@@ -61,8 +60,7 @@ Trial without_superfluous(Trial trial, const AttitudeDomain& domain, const Candi
   return trial;
 }
 
-// The laws that are needed, from short pieces, which determine them roughly, over longer and longer
-// ones.
+// Fits the needed laws to longer and longer pieces; short ones determine them roughly.
 Trial lengthened(const Trial& in_pieces, const inference::RunSet<AttitudeDomain>& pieces,
                  const AttitudeDomain& domain, const Candidates& all,
                  const std::vector<Observation>& runs) {
@@ -101,7 +99,7 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
   inference::Effort growing = inference::patient(all.limits);
   growing.windows = {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0};
   Trial found = nominal;
-  // With rates alone a piece does not determine its initial angle; the whole does.
+  // With rates alone, a piece does not determine its initial angle; the whole recording does.
   const bool sees_angle = std::ranges::all_of(
       data.train, [](const Observation& seen) { return seen.sees_some_attitude(); });
   if (sees_angle) {

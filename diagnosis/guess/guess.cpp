@@ -14,11 +14,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A curve and how well one diode describes it.
+// A curve and the misfit of one diode to it.
 struct MeasuredCurve {
   fs::path file;
   double short_A = 0.0, open_V = 0.0;
-  double misfit = INFINITY;  // rms over the short-circuit current
+  double misfit = INFINITY;  // rms relative to the short-circuit current
 };
 
 MeasuredCurve measured_curve(const fs::path& file) {
@@ -41,14 +41,14 @@ MeasuredCurve measured_curve(const fs::path& file) {
     const IvSweep sweep{recording.voltage_V, recording.current_A};
     curve.misfit = fit_sweeps(std::vector<IvSweep>{sweep}, {}).rms_A / curve.short_A;
   } catch (const InputError&) {
-    // No diode comes near it: it is not the best of them.
+    // No diode fits the curve, so its misfit remains infinite.
   } catch (const NumericalError&) {
   }
   return curve;
 }
 
-// Cells of crystalline silicon in series. They give 0.55 to 0.74 V each without load; makers build
-// few numbers of them.
+// Number of crystalline silicon cells in series. They have open-circuit voltages of 0.55 to 0.74 V
+// each, and manufacturers use only certain numbers of cells.
 int cells_in_series(double open_V) {
   constexpr double usual_V = 0.65;
   constexpr int usual[] = {1,  2,  3,  4,  6,  8,  9,  10, 12,  18,  20,  24, 32,

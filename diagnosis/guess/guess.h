@@ -10,28 +10,29 @@
 
 namespace photorque {
 
-// The text of an experiment file for `diagnose` in `folder`. Lines with an assumption say CONFIRM.
-// All recordings must be of one machine, with columns as those of the first. InputError for files
-// that are neither recordings of motion nor curves of current over voltage, with the remedy where
-// one is known.
+// The text of an experiment file for `diagnose` in `folder`. Lines with an assumption contain
+// CONFIRM. All recordings must be of one machine and have the columns of the first. Throws
+// InputError for files that are neither recordings of motion nor curves of current over voltage,
+// with the remedy if known.
 std::string guess_experiment(const std::vector<std::filesystem::path>& recordings,
                              const std::filesystem::path& folder);
 
-// Adds to the experiment the values that the recordings determine, by their channels.
+// Adds to the experiment the values that the recordings determine.
 void guess_motion(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings);
 void guess_module(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings,
                   const std::filesystem::path& folder);
 
 struct GuessedColumn {
-  std::string in_file;       // as the header has it
-  std::string channel;       // "gyro_x_deg_s", its unit that of the file; empty: unknown
-  bool is_sure = true;       // stated by the file: the channel's own name, or its unit beside it
-  std::string because = {};  // assumption behind one that is not sure
+  std::string in_file;       // as in the header
+  std::string channel;       // "gyro_x_deg_s", with the unit of the file; empty: unknown
+  bool is_sure = true;       // stated by the file: the name of the channel, or its unit
+  std::string because = {};  // the assumption, if not sure
 };
 
-// The header of a CSV file: the last line before the first row of numbers that has as many cells.
-// A clock whose name states no unit is recognised by its steps. Of a CCSDS AEM: its quaternion.
-// InputError, naming the cure, for a file without such a header, with decimal commas, or in UTF-16.
+// Columns of a CSV file. Its header is the last line before the first row of numbers that has as
+// many cells. A clock without a unit in its name is recognised by its steps. For a CCSDS AEM: its
+// quaternion. Throws InputError with the remedy for a file without such a header, with decimal
+// commas, or in UTF-16.
 std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path);
 
 }  // namespace photorque

@@ -22,7 +22,7 @@ std::string digits(double value, int significant = 3) {
   return text;
 }
 
-// With three digits.
+// Rounds to three digits.
 SettingsNode number(double value) {
   return {std::strtod(digits(value).c_str(), nullptr)};
 }
@@ -30,11 +30,12 @@ SettingsNode number(double value) {
 // Properties of a machine that the columns and readings of its recordings determine.
 struct Machine {
   Platform platform;
-  std::string why;  // the topology
+  std::string why;  // reason for the topology
   std::vector<Recording> recordings;
   std::vector<std::string> names;
   std::vector<Observation> runs;
-  std::optional<AngleConvention> angles;  // how roll, pitch and yaw of the first are turned
+  std::optional<AngleConvention>
+      angles;  // convention of roll, pitch and yaw of the first recording
 
   bool has(const char* channel) const { return recordings.front().find(channel) != nullptr; }
   bool has_all(std::initializer_list<const char*> channels) const {
@@ -106,12 +107,13 @@ SettingsNode::Table& add_machine(TomlDocument& document, const Machine& m) {
   return table;
 }
 
-// Ratios of the moments as far as the rates alone determine them.
+// Adds ratios of the moments of inertia as far as rates alone determine them.
 void add_inertia(TomlDocument& document, SettingsNode::Table& table,
                  const std::vector<Observation>& runs) {
   const std::optional<FreeInertia> found = free_inertia(runs);
   Mat3 value = Mat3::Identity(), sigma;
-  // The magnitude of the rate of a sphere does not change, to first order whatever its moments.
+  // To first order the magnitude of the rate of a sphere is constant for any moments, so different
+  // moments are assumed.
   if (!runs.front().has_gyro) value.diagonal() << 1.0, 0.8, 0.6;
   sigma << 0, 0.2, 0.2, 0.2, 0.4, 0.2, 0.2, 0.2, 0.4;
   constexpr double worth_saying = 0.1;
@@ -119,8 +121,8 @@ void add_inertia(TomlDocument& document, SettingsNode::Table& table,
                         found->sigma(2) < worth_saying;
   std::string why = "CONFIRM: the rates do not determine the ratios of the moments; guessed.";
   if (is_known) {
-    // The first moment is the unit. Unknown torques shift the ratios by more
-    // than their standard errors.
+    // The first moment is the unit. Unknown torques shift the ratios by more than their standard
+    // errors.
     const InertiaNumbers in_first = found->value / found->value[0];
     constexpr double of_moment = 0.1, errors = 5.0;
     const auto uncertain = [&](int k, double scale) {
@@ -147,7 +149,7 @@ void add_inertia(TomlDocument& document, SettingsNode::Table& table,
   document.set(table, "inertia_kg_m2.sigma", matrix(sigma));
 }
 
-// The noise of some channels, where it is alike in all that were read.
+// Adds the noise of some channels if their levels agree.
 void add_noise(TomlDocument& document, const std::vector<Observation>& runs,
                const std::vector<int>& channels, const std::string& key, double unit) {
   std::vector<double> levels;
@@ -187,7 +189,7 @@ bool passes_its_mean(const std::vector<Observation>& runs, int axis) {
   double mean_rad = 0.0, most_rad = 0.0;
   for (const double a : angle_rad) mean_rad += a / static_cast<double>(angle_rad.size());
   for (double& a : angle_rad) most_rad = std::max(most_rad, std::abs(a -= mean_rad));
-  // With a margin, so that noise near the mean does not count.
+  // A margin excludes noise near the mean.
   int times = 0, side = 0;
   for (const double a : angle_rad) {
     const int now = a > 0.2 * most_rad ? 1 : a < -0.2 * most_rad ? -1 : 0;
@@ -198,7 +200,7 @@ bool passes_its_mean(const std::vector<Observation>& runs, int axis) {
   return times >= swings;
 }
 
-// About which axis, and whether weight may swing it.
+// Selects the axis of rotation, and whether weight may act as a restoring torque.
 void see_one_axis(Machine& m) {
   const char* const letters[] = {"x", "y", "z"};
   for (int k = 0; k < 3; ++k) {
@@ -218,7 +220,7 @@ void see_one_axis(Machine& m) {
   }
 }
 
-// The axis about which nearly all of three rates is; none where more than one counts.
+// The axis with nearly all of the rate; none if several have significant rates.
 std::optional<int> only_axis(const std::vector<Observation>& runs) {
   Vec3 squares = Vec3::Zero();
   for (const Observation& seen : runs) {
@@ -228,13 +230,13 @@ std::optional<int> only_axis(const std::vector<Observation>& runs) {
   }
   int axis = 0;
   const double most = squares.maxCoeff(&axis);
-  constexpr double across = 0.05;  // of the rate: a gyro that is mounted a little askew
+  constexpr double across = 0.05;  // of the rate: a slightly misaligned gyro
   if (squares.sum() - most > across * across * most) return std::nullopt;
   return axis;
 }
 
-// An angle against the vertical, or the length of a rate, is of a body that turns about more than
-// one axis.
+// An angle relative to the vertical, or the magnitude of a rate, belongs to a body that turns about
+// more than one axis.
 bool see_by_scalars(Machine& m) {
   if (m.sees_attitude() || m.has_three_rates()) return false;
   if (m.has("rate_magnitude_rad_s")) {
@@ -294,7 +296,8 @@ void add_columns(TomlDocument& document, const std::vector<GuessedColumn>& colum
   }
 }
 
-// Drag that slows a rate as a whole; a start from which other torques are distinguished.
+// Adds a drag that slows the rate as recorded, as a start from which other torques are
+// distinguishable.
 void add_drag(TomlDocument& document, const Machine& m) {
   Eigen::Index axis = 2;
   m.platform.axis.maxCoeff(&axis);
@@ -320,7 +323,7 @@ void add_drag(TomlDocument& document, const Machine& m) {
                                     {"sigma", number(10.0 * coefficient_1_s)}}});
 }
 
-// Of roll, pitch and yaw.
+// Adds the sequence of roll, pitch and yaw.
 void add_sequence(TomlDocument& document, const Machine& m) {
   if (m.platform.turns_about_one_axis() || !m.has_all({"roll_rad", "pitch_rad", "yaw_rad"}) ||
       m.has("q_w")) {

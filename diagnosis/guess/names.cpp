@@ -15,13 +15,13 @@
 namespace photorque {
 namespace {
 
-// The cells of the header, and those of a few rows of numbers below it.
+// The cells of the header and of some rows of numbers below it.
 struct FileHead {
   std::vector<std::string> header;
   std::vector<std::vector<double>> rows;
 };
 
-// With a comma for a point, where that cannot separate cells.
+// Accepts a decimal comma if it cannot be the separator.
 std::optional<double> number_of_cell(std::string_view cell, char separator) {
   const std::optional<double> number = number_in(cell);
   const size_t comma = cell.find(',');
@@ -47,7 +47,7 @@ std::optional<std::vector<double>> numbers_of(const std::vector<std::string_view
   return numbers;
 }
 
-// The lines of a file's beginning, comments left out.
+// The first lines of a file without comments.
 std::vector<std::string> first_lines(const std::filesystem::path& path) {
   constexpr size_t most = 400;
   TextLines lines(path);
@@ -93,7 +93,7 @@ FileHead head_of(const std::filesystem::path& path) {
     if (lines.empty()) break;
     split_cells(lines.front(), separator, cells);
     if (!numbers_of(cells, separator)) continue;
-    // Of as many columns: time first, then what moves.
+    // Names by position: time first, then coordinates or an angle.
     std::string names = "t_s";
     const char* const usual[] = {"x_m", "y_m", "angle_rad"};
     for (size_t k = 1; k < cells.size(); ++k) {
@@ -115,7 +115,7 @@ struct UnitWord {
   const char *written, *suffix;
 };
 
-// As people write units; longest first where one is a part of another.
+// Units as commonly written; longer ones come before their parts.
 constexpr UnitWord unit_words[] = {
     {"rad/s", "rad_s"},   {"rad s-1", "rad_s"},
     {"deg/s", "deg_s"},   {"°/s", "deg_s"},
@@ -143,7 +143,7 @@ constexpr UnitWord unit_words[] = {
     {"meter", "m"},       {"metre", "m"},
 };
 
-// The unit in brackets behind a name, and the name without it.
+// The unit in brackets after a name, and the name without it.
 struct NameAndUnit {
   std::string name, unit;
 };
@@ -162,7 +162,7 @@ NameAndUnit without_unit(const std::string& in_file) {
   return {key.stem, std::string(key.unit)};
 }
 
-// Letters and digits in runs, lower case: "gyroADC[0]" → "gyro", "adc", "0".
+// Lower-case groups of letters or of digits: "gyroADC[0]" → "gyro", "adc", "0".
 std::vector<std::string> words_of_name(const std::string& name) {
   std::vector<std::string> words;
   char before = ' ';
@@ -206,7 +206,7 @@ std::string axis_of(const std::vector<std::string>& words) {
   return "";
 }
 
-// The channel without its unit, and the unit where none is stated; empty: unknown.
+// Channel without its unit, and the unit to assume if none is stated; empty: unknown.
 struct MeantQuantity {
   std::string stem, usual_unit;
 };
@@ -218,7 +218,7 @@ MeantQuantity quantity_of(const std::vector<std::string>& words) {
   };
   const std::string axis = axis_of(words);
   if (any("wheel", "flywheel", "rotor")) return {"wheel_" + (axis.empty() ? "z" : axis), "rad_s"};
-  // In English, German, French, Spanish and Italian, letters with accents left out.
+  // Words in English, German, French, Spanish and Italian, without accented letters.
   if (any("time", "sec", "elapsed", "clock", "zeit", "temps", "tiempo", "tempo") ||
       (words.size() == 1 && words[0] == "t")) {
     return {"t", "s"};
@@ -265,7 +265,7 @@ std::string quaternion_of(const std::vector<std::string>& words) {
   return "";
 }
 
-// A clock that counts whole numbers far apart does not count seconds.
+// A clock with large integer steps does not count seconds.
 std::string clock_unit(const FileHead& head, size_t column) {
   std::vector<double> steps;
   for (size_t i = 1; i < head.rows.size(); ++i) {
@@ -312,7 +312,7 @@ std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path) {
   std::vector<GuessedColumn> all;
   for (size_t column = 0; column < head.header.size(); ++column) {
     GuessedColumn guess = guessed(head, column);
-    // Every channel once: the first that is named so.
+    // Every channel occurs once: the first column with its name.
     const bool taken = std::any_of(all.begin(), all.end(), [&](const GuessedColumn& other) {
       return !guess.channel.empty() &&
              unit_of_key(other.channel).stem == unit_of_key(guess.channel).stem;

@@ -10,7 +10,7 @@
 namespace photorque {
 namespace {
 
-// Names of a trial's effects; an LED that gives nothing has failed.
+// Whether an LED effect leaves no light: the LED is then named as failed.
 bool is_dark(const LightTrial& trial, const LightCandidates& all, size_t which) {
   const LightCandidate& c = all[trial.candidates[which]];
   if (c.kind.name != "led_derated") return false;
@@ -38,15 +38,15 @@ std::string light_label(const LightTrial& trial, const LightCandidates& all) {
   return label;
 }
 
-// The part of the receiver over which a box takes a visible share of the light, at the attitudes of
-// the scans; the least share that is left.
+// The part of the receiver in the visible shadow of a box, at the first attitude of a recording,
+// and the minimum fraction of light that remains.
 struct ShadedRegion {
   double u_low = 1e300, u_high = -1e300, v_low = 1e300, v_high = -1e300, darkest = 1.0;
 };
 
 ShadedRegion shaded_region(const LightTrial& trial, const LightCandidates& all, size_t which,
                            const FittedRun& run) {
-  // A grid over the receiver at the recording's first attitude.
+  // A grid over the receiver at the first attitude of the recording.
   constexpr int steps = 60;
   const SurfaceGrid& g = all.lab->grid();
   LightRecording grid;
@@ -249,7 +249,7 @@ std::vector<FittedParameter> refined_light_beliefs(const LightAnswer& answer) {
     if (refined.empty() || refined.back().key != b.key) {
       refined.push_back({b.key, b.value, std::vector<double>(b.value.size(), 0.0)});
     }
-    // No further beyond the end of its range than it was stated.
+    // A value stated at the end of its range stays within the range.
     double errors = chosen.priors[i];
     if (!(b.low.errors < 0.0)) errors = std::max(errors, 0.0);
     if (!(b.high.errors > 0.0)) errors = std::min(errors, 0.0);

@@ -9,7 +9,7 @@
 namespace photorque {
 namespace {
 
-// A lab with the experiment that it refers to.
+// A lab together with the experiment that it refers to.
 struct OwnedLab {
   Experiment experiment;
   LightLab lab;
@@ -41,7 +41,7 @@ LightPrior prior_of(const UncertainKey& key, size_t component, const LightPrior:
     try {
       return side_of(reread(assignment_of(key, values)), errors);
     } catch (const InputError&) {
-      // A number at the end of its range; or one that can be no other at all.
+      // One side may be out of range; if both are, the value can have no error.
       if (refused) {
         throw InputError({itself.lab->experiment().file.path.string()}, key.path,
                          readable_number(key.value[component], 6) + " with a sigma of " +

@@ -57,7 +57,7 @@ bool can_show(const LightEffectKind& kind, const std::vector<FittedRun>& runs) {
 FittedRun prepared_run(LightRun run, const LightBelief& nominal) {
   FittedRun result;
   result.run = std::make_shared<const LightRun>(std::move(run));
-  // With the light by way of every wall, of which most trials have none.
+  // Includes the light reflected by every wall, which most trials lack.
   LightState with_walls = nominal.state;
   with_walls.walls.clear();
   for (size_t w = 0; w < result.run->lab().walls().size(); ++w) {
@@ -71,7 +71,7 @@ FittedRun prepared_run(LightRun run, const LightBelief& nominal) {
 
 FittedRun part_of(const FittedRun& whole, const std::vector<size_t>& rows,
                   const LightBelief& nominal) {
-  // The knots of a run over time lie elsewhere among fewer rows.
+  // In fewer rows the knots of a run over time lie elsewhere, so it is prepared again.
   const bool is_scan = whole.run->recording().kind == LightRecording::Kind::scan;
   if (!is_scan) return prepared_run(whole.run->part(rows), nominal);
   FittedRun result;
@@ -117,7 +117,7 @@ LightCandidates light_candidates(const LightLab& lab, const LightBelief& nominal
                        std::ranges::any_of(runs, [](const FittedRun& r) {
                          return r.run->recording().kind != LightRecording::Kind::scan;
                        });
-    // An interrupted only string, or a shorted only diode, leaves nothing to measure.
+    // If the only string is interrupted or the only diode is shorted, nothing can be measured.
     const bool is_only = count < 2 && (kind.index == LightEffectKind::Index::string);
     for (size_t i = 0; i < count && !is_only; ++i) {
       LightCandidate c{kind, i, kind.name, {}, {}};

@@ -1,5 +1,5 @@
 // Candidate effects of light and power: every kind of effect for every lamp, cell, string or diode
-// that it can concern, and competing smooth laws without physics.
+// that it can concern, and competing empirical laws.
 #pragma once
 
 #include <memory>
@@ -12,15 +12,16 @@
 namespace photorque {
 
 // A recording with the data that all trials share: the fields of the nominal model, and the
-// derivatives of its residuals by the uncertain nominal numbers, in units of their errors.
+// derivatives of its residuals with respect to the uncertain nominal values, in units of their
+// errors.
 struct FittedRun {
   std::shared_ptr<const LightRun> run;
   std::shared_ptr<const LightFields> nominal;
-  std::shared_ptr<const Eigen::MatrixXd> prior_slopes;  // ∂(predicted/noise), a column each
+  std::shared_ptr<const Eigen::MatrixXd> prior_slopes;  // ∂(predicted/noise), one column per prior
 };
 
 FittedRun prepared_run(LightRun run, const LightBelief& nominal);
-// The rows chosen alone.
+// Selects rows of a prepared run.
 FittedRun part_of(const FittedRun& whole, const std::vector<size_t>& rows,
                   const LightBelief& nominal);
 
@@ -28,11 +29,11 @@ struct LightCandidate {
   LightEffectKind kind;
   size_t index = 0;   // of the lamp, cell …
   std::string label;  // "led_derated[3]", "unknown in position"
-  // Of an empirical law: its variable; else empty.
+  // Variable of an empirical law; otherwise empty.
   std::string variable = {};
 
   bool is_empirical() const { return !variable.empty(); }
-  // Number by number, in the order of the kind's parameters.
+  // Fitted or scanned numbers, in the order of the kind's parameters.
   struct Number {
     size_t parameter;
     double start, scale, lowest, highest, step;
@@ -42,9 +43,9 @@ struct LightCandidate {
   std::vector<double> start() const;
   size_t fitted() const;
   bool has_strength() const;
-  // Whether all that is fitted is a strength, and nothing has to be scanned.
+  // Whether all fitted numbers are strengths and no scan is required.
   bool is_linear() const;
-  // Whether circuits of cells make the readings bend with it.
+  // Whether cell circuits make the readings nonlinear in it.
   bool bends = false;
 };
 
@@ -57,7 +58,7 @@ struct LightCandidates {
   const LightCandidate& operator[](size_t i) const { return list[i]; }
 };
 
-// All that these recordings can show.
+// All candidates that these recordings can reveal.
 LightCandidates light_candidates(const LightLab& lab, const LightBelief& nominal,
                                  const std::vector<FittedRun>& runs, const Thresholds& limits);
 

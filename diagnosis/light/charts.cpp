@@ -1,5 +1,5 @@
-// Charts of a diagnosis: the places of findings on the array, and readings of light and power
-// beside both models.
+// Charts of a diagnosis: locations of findings on the array, and readings of light and power with
+// both models.
 #include <algorithm>
 
 #include "diagnosis/light/account.h"
@@ -26,7 +26,7 @@ std::vector<size_t> wired_cells(const ArrayWiring& wiring, bool of_string, size_
   return cells;
 }
 
-// The items that the index of a kind counts.
+// The items that the index of a kind numbers.
 LightEffectKind::Index index_of(const std::string& kind) {
   static const std::vector<LightEffectKind> kinds = all_light_effect_kinds();
   const auto known = std::ranges::find(kinds, kind, &LightEffectKind::name);

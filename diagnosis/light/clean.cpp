@@ -11,7 +11,7 @@ namespace {
 
 constexpr size_t neighbours = 8;
 
-// The rows nearest to one of a scan, at the same attitude.
+// Rows of a scan nearest to one row, at equal attitude.
 std::vector<size_t> nearest_in_place(const LightRecording& r, size_t row) {
   std::vector<std::pair<double, size_t>> all;
   for (size_t j = 0; j < r.rows(); ++j) {
@@ -25,7 +25,7 @@ std::vector<size_t> nearest_in_place(const LightRecording& r, size_t row) {
   return near;
 }
 
-// Before and after, of the same sweep.
+// Rows before and after, of one sweep.
 std::vector<size_t> nearest_in_time(const LightRecording& r, size_t row) {
   std::vector<size_t> near;
   const size_t reach = neighbours / 2;
@@ -36,7 +36,8 @@ std::vector<size_t> nearest_in_time(const LightRecording& r, size_t row) {
   return near;
 }
 
-// How far a value is from the plane through its neighbours, beyond what these scatter about it.
+// Whether a value deviates from the plane through its neighbours by more than their scatter about
+// it.
 bool leaves_plane(const std::vector<Vec2>& at, const std::vector<double>& value, double own,
                   double allowed) {
   if (at.size() < 5) return true;
@@ -64,7 +65,7 @@ std::vector<size_t> rows_without_outliers(const LightRun& run, const Eigen::Vect
     return residuals[static_cast<Eigen::Index>(row * channels + channel)];
   };
   for (size_t row = 0; row < r.rows(); ++row) {
-    // Most rows look like the one before: no neighbours need be looked for.
+    // Most rows agree with the previous one, which saves the search for neighbours.
     bool looks_usual = row > 0;
     for (size_t c = 0; c < channels && looks_usual; ++c) {
       looks_usual = std::abs(residual(row, c) - residual(row - 1, c)) < limits.outlier_sigma;
@@ -115,8 +116,8 @@ std::vector<size_t> rows_without_strays(const LightRun& run, const Eigen::Vector
       sizes.push_back(std::abs(others.back()));
       least = std::min(least, std::abs(own - others.back()));
     }
-    // Where something is left, neighbours are off as well; by chance the middle one of eight is
-    // seldom off by half as much again as usual.
+    // Near unmodelled effects neighbours deviate as well. By chance the median size of eight
+    // neighbours rarely exceeds its expected value by half.
     const double level = std::max(1.0, median_of(std::move(sizes)) / (1.5 * median_of_normal));
     return least > from_all_sigma &&
            std::abs(own - median_of(std::move(others))) > stray_sigma * level;

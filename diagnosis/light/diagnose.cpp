@@ -16,7 +16,7 @@
 namespace photorque {
 namespace {
 
-// All recordings, those fitted and those held out.
+// All recordings, fitted and held out.
 struct LightData {
   std::vector<FittedRun> train, held;
   DataQuality quality;
@@ -30,7 +30,7 @@ Eigen::VectorXd nominal_residuals(const FittedRun& run, const LightBelief& nomin
   return run.run->residuals(nominal.state, run.run->signals(nominal.state, *run.nominal), nullptr);
 }
 
-// Thinned where it is long, and without wild readings.
+// Thins a long recording and removes outliers.
 FittedRun observed(const LightLab& lab, const LightBelief& nominal, LightRecording recording,
                    int number, const LightDiagnoseOptions& options, DataQuality& quality) {
   quality.rows += recording.rows_read;
@@ -57,8 +57,8 @@ FittedRun observed(const LightLab& lab, const LightBelief& nominal, LightRecordi
   return run;
 }
 
-// Rows to fit and rows to hold out, without a holdout: the last part of a recording over time or
-// sweep by sweep, every so many rows of a scan, whose end is but a corner of it.
+// Rows to fit and rows to hold out if no holdout is given: the last part of a recording over time
+// or of sweeps. Of a scan every so many rows are held out, because its end is only a corner.
 std::pair<std::vector<size_t>, std::vector<size_t>> split(const LightRun& run, double fraction) {
   std::vector<size_t> fitted, held;
   const size_t rows = run.rows();
@@ -73,7 +73,7 @@ std::pair<std::vector<size_t>, std::vector<size_t>> split(const LightRun& run, d
   return {fitted, held};
 }
 
-// Fitted and held-out data must each be more than a few numbers: any model explains one reading.
+// Fitted and held-out data must each have several readings: any model explains one.
 void require_enough(const LightData& data, const std::string& first) {
   constexpr size_t fewest_fitted = 8, fewest_held = 2;
   size_t fitted = 0, held = 0;
@@ -109,8 +109,8 @@ LightData read_light_data(const LightLab& lab, const LightBelief& nominal,
   return data;
 }
 
-// Leaves out the readings that are wild by the best explanation; whether there were any. Where
-// there is none yet, a small shadow looks like a stray.
+// Removes outliers under a fit; returns whether any exist. In held-out data, and without an
+// explanation, only gross outliers are removed: a small shadow looks like a stray reading.
 bool drop_wild(const LightTrial& about, const LightCandidates& all, LightData& data) {
   int64_t dropped = 0;
   for (std::vector<FittedRun>* runs : {&data.train, &data.held}) {
@@ -138,8 +138,8 @@ LightAnswer explain_light(const LightLab& lab, const LightBelief& nominal, Light
   tell(options, "fitting every effect of the catalogue");
   answer.trials = inference::search(domain, nominal_light_trial(answer.all, data.train), data.train,
                                     options.threads);
-  // Where something is missing, a wild reading looks like a part of it. It stands out once the best
-  // explanation is known, and the search goes on from there.
+  // Near a missing effect an outlier looks like a part of it. It stands out once the best
+  // explanation is known, and the search continues from there.
   const LightTrial best = answer.trials[inference::by_evidence(answer.trials).front()];
   if (drop_wild(best, answer.all, data)) {
     const LightTrial base = nominal_light_trial(answer.all, data.train);
@@ -217,8 +217,8 @@ Holdout light_holdout(const LightAnswer& answer, const std::vector<FittedRun>& h
   return result;
 }
 
-// Puts the variable of the chosen law first, with the fraction of the residual beyond noise that
-// the law explains.
+// Puts the variable of the chosen law first, with the fraction of the residual above noise that the
+// law explains.
 void lead_with_chosen_law(const LightAnswer& answer, const LightTrial& about,
                           std::vector<Where::Dependence>& depends_on) {
   for (const size_t c : answer.chosen().candidates) {
@@ -260,8 +260,8 @@ Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
                          std::vector<LightRecording> holdouts, const LightDiagnoseOptions& asked) {
   if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
   LightDiagnoseOptions options = asked;
-  // There is a candidate for every lamp and cell, and light is nearly linear in the effects: few
-  // steps do. (The circuit is not: of forecasts a small one may be the right one.)
+  // There is a candidate for every lamp and cell, and light is nearly linear in the effects, so few
+  // steps suffice. (Circuits are not linear: the right candidate may have a small forecast.)
   options.limits.held_out.max_leaders = 6;
   options.limits.leaders.max_leaders = 4;
   options.limits.fitting.slow_blocks = 400;

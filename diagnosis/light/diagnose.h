@@ -1,9 +1,9 @@
 // `diagnose` for light and power: compares scans, sweeps and runs with the nominal model of lamps
 // and array, and finds missing effects.
 //
-// Observe (outliers dropped) → fit the nominal model → search → weigh with the held-out data →
-// decide → report. The engine is inference/; the forward model (model/) and the kinds of effects
-// (effects/) are special to light.
+// The steps are: observe (outliers dropped) → fit the nominal model → search → weigh with the
+// held-out data → decide → report. The engine is inference/; the forward model (model/) and the
+// kinds of effects (effects/) are specific to light.
 #pragma once
 
 #include <functional>
@@ -20,29 +20,29 @@ namespace photorque {
 
 struct LightDiagnoseOptions {
   int threads = 0;  // 0: all
-  // Of each recording: of longer ones every so many rows are used.
+  // Limits per recording; longer ones are thinned to every n-th row.
   size_t max_rows = 5000, max_scan_rows = 12000;
-  double holdout_fraction = 0.25;  // of each recording, where there is no holdout
+  double holdout_fraction = 0.25;  // of each recording, if no holdout is given
   Thresholds limits;
   std::function<void(const std::string&)> progress;  // called at each step; may be empty
 };
 
-// Wild readings: those that no neighbour in place or time comes near.
+// Outliers: readings that deviate from all neighbours in place or time.
 //
-// The rows that are no outliers by the residuals of some model, in order. A model that is wrong
-// leaves residuals that change from place to place, so what stands out must stand out from all of
-// its neighbours and from the plane through them.
+// Returns the rows without outliers under the residuals of some model, in order. Residuals of a
+// wrong model vary with place, so an outlier must deviate from all of its neighbours and from the
+// plane through them.
 std::vector<size_t> rows_without_outliers(const LightRun& run, const Eigen::VectorXd& residuals,
                                           const Thresholds::Noise& limits);
 
-// Rows without outliers by a model that explains all other readings: a reading that is off by five
-// of its errors, and as far from the median of its neighbours, occurs once in a million. (A reading
-// that is multiplied where there is little light is not off by more, and its place says much about
-// where a beam ends.)
+// Returns the rows without outliers under a model that explains all other readings. A reading that
+// is off by five standard errors, and as far from the median of its neighbours, occurs by chance
+// once in a million. (A wrong factor on a reading in little light causes no larger deviation, and
+// such readings strongly affect the fitted edge of a beam.)
 std::vector<size_t> rows_without_strays(const LightRun& run, const Eigen::VectorXd& residuals);
 
-// InputError for recordings that the experiment cannot explain at all: curves without an array. The
-// result does not depend on the number of threads.
+// Throws InputError for recordings that the experiment cannot model: curves without an array. The
+// result is independent of the number of threads.
 Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
                          std::vector<LightRecording> recordings,
                          std::vector<LightRecording> holdouts,

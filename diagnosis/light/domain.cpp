@@ -60,8 +60,8 @@ inference::StrengthGroup strengths_of(const LightCandidate& c, size_t term,
     if (!n.is_strength) continue;
     group.value.push_back(x != nullptr ? (*x)[k] : 0.0);
     group.scale.push_back(n.scale);
-    // A forecast may overshoot where the model bends, and the fit keeps the bounds: here signs
-    // alone count.
+    // Forecasts overshoot where the model is nonlinear, and the fit enforces the bounds, so only
+    // signs are required here.
     group.lowest.push_back(n.lowest == 0.0 ? 0.0 : -inference::infinity);
     group.highest.push_back(n.highest == 0.0 ? 0.0 : inference::infinity);
   }
@@ -74,7 +74,7 @@ LightDomain::LightDomain(const LightCandidates& all) : all_(all) {
   for (const LightCandidate& c : all.list) traits_.push_back(traits_of_light(c));
 }
 
-// Sets numbers that are not fitted but read from the recordings.
+// Sets numbers that are computed from the recordings instead of fitted.
 LightStart LightDomain::profiled(const Trial& parent, size_t candidate, Start start,
                                  const Runs& runs) const {
   if (all_[candidate].kind.scan != LightEffectKind::Scan::trapped) return start;
@@ -207,7 +207,8 @@ LightTrial LightDomain::assemble(const Trial& from, const inference::Members<Sta
           std::clamp(member.strengths[k++], c.numbers[n].lowest, c.numbers[n].highest);
     }
   }
-  // The forecast and the present values are both starts: a fit from a forecast far off may diverge.
+  // The fit starts from the forecast and, if the result is worse than before, from the present
+  // values: from a forecast far off it may diverge.
   Trial trial = fit_light(all_, candidates, predicted, from.priors, runs, effort.max_iterations);
   const bool is_worse = !(trial.fit.chi2 < from.fit.chi2);
   if (is_worse && predicted != plain) {
@@ -256,7 +257,7 @@ double LightDomain::excess_sigma(const Trial& trial, const Runs& runs) const {
     scale.neighbours = neighbours;
     excess = std::max(excess, inference::whiteness(ordered, scale).excess_sigma);
   }
-  // The level of the noise is known to a few per cent; all beyond counts too.
+  // The noise level is known to a few per cent; a larger χ² counts as excess.
   constexpr double known_to = 0.06;
   return std::max(excess, (chi2 / samples - 1.0 - known_to) / std::sqrt(2.0 / samples));
 }

@@ -10,7 +10,7 @@ class LightDomain {
  public:
   using Trial = LightTrial;
   using Run = FittedRun;
-  struct Begin {};  // single recordings have no nuisances
+  struct Begin {};  // recordings have no nuisance parameters
   using Start = LightStart;
   using Runs = std::vector<FittedRun>;
   using Effort = inference::Effort;
@@ -48,10 +48,10 @@ class LightDomain {
   std::vector<std::vector<Start>> starts(const Trial& parent, const std::vector<size_t>& candidates,
                                          const Runs& runs, const Runs& averages, int threads) const;
 
-  // Rows are never averaged, because neighbours see different light: of a long run over time every
-  // so many are taken.
+  // Rows are never averaged, because neighbours receive different light: a long run over time is
+  // thinned to every n-th row.
   Runs average(const Trial& about, const Runs& runs, size_t count) const;
-  // A wrong model of light is wrong everywhere at once: pieces are no nearer.
+  // A wrong model of light is wrong everywhere, so it is no nearer in pieces.
   Runs cut(const Runs&, size_t) const { return {}; }
   double excess_sigma(const Trial& trial, const Runs& runs) const;
 

@@ -1,6 +1,6 @@
-// Smooth laws without physics. They multiply the light, or add to the current, by a sum of a few
-// functions of one variable (two for a place), with one fitted strength each; and waves over the
-// receiver, found in the residuals of scans.
+// Empirical laws. They multiply the light, or add to the current, by a sum of functions with fitted
+// strengths. The functions have one variable (two for a place). Waves over the receiver are found
+// in the residuals of scans.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -34,7 +34,7 @@ LightCandidate light_law(const std::string& variable, const std::string& label,
   return c;
 }
 
-// Cosines of whole half waves over the receiver, up to `most` of them each way.
+// Cosines of integer half waves over the receiver, in total up to `most` in both directions.
 LightCandidate over_the_receiver(int most) {
   std::vector<Basis> basis;
   for (int i = 0; i <= most; ++i) {
@@ -48,7 +48,7 @@ LightCandidate over_the_receiver(int most) {
   return light_law("position", "unknown in position", std::move(basis));
 }
 
-// A wave over the receiver, of any direction: cycles over half of its width and height.
+// A wave over the receiver in any direction; in cycles over half of its width and height.
 LightCandidate ripple() {
   LightCandidate c;
   c.variable = "position";
@@ -196,10 +196,10 @@ std::vector<LightCandidate> empirical_light_candidates(const std::vector<FittedR
 namespace {
 
 constexpr int most_steps = 40;
-constexpr double step = 0.4;  // cycles over half of the receiver: its ends are half a cycle apart
+constexpr double step = 0.4;  // cycles over half of the receiver: half a cycle between its ends
 constexpr int along_v = 2 * most_steps + 1;
 
-// Sums over places, of each wave of the grid.
+// Sums over places for each wave of the grid.
 struct WaveSums {
   std::vector<double> re, im, twice_re, twice_im;
   double square = 0.0;
@@ -210,7 +210,7 @@ struct WaveSums {
   }
 };
 
-// Adds a place whose reading changes by `change` errors per strength and is `off` errors off.
+// Adds a place whose reading changes by `change` errors per strength and deviates by `off` errors.
 void add_place(double u, double v, double change, double off, WaveSums& sums) {
   std::array<double, along_v> cos_v, sin_v;
   for (int n = 0; n < along_v; ++n) {

@@ -8,7 +8,7 @@ namespace {
 constexpr int64_t most = 1'000'000'000;
 
 Key key_of(const EffectParameter& parameter) {
-  // A name may be that of two kinds, which can have other values.
+  // Two kinds may have a name in common but different ranges.
   const std::string range = range_of(parameter);
   const std::string meaning = "of the effect" + (range.empty() ? "" : ", " + range);
   if (parameter.count > 1) return Key::numbers(parameter.key, {}, meaning).of_size(parameter.count);
@@ -66,7 +66,7 @@ std::vector<Key::Choice> light_effects() {
     std::vector<Key> keys = place_keys(kind.index);
     for (const EffectParameter& parameter : kind.parameters) keys.push_back(key_of(parameter));
     add_choice(all, {kind.name, kind.explanation, std::move(keys)});
-    // Without light an LED has no strength.
+    // A failed LED gives no light at all, so it has no strength.
     if (kind.name == "led_derated") {
       all.push_back({"led_failed", "an LED gives no light", place_keys(kind.index)});
     }

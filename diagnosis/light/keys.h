@@ -1,4 +1,4 @@
-// Declarations of the keys of the diagnosis of light.
+// Keys of the diagnosis of light.
 #pragma once
 
 #include <vector>
@@ -7,10 +7,10 @@
 
 namespace photorque {
 
-// The instruments of light and power in [sensors].
+// Keys of the instruments of light and power in [sensors].
 std::vector<Key> light_sensor_keys();
-// The kinds of [[effect]] on light and power, from their registry. Kinds of one name are one choice
-// with the keys of all.
+// The kinds of [[effect]] on light and power, from their registry. Kinds with equal names form one
+// choice with the keys of all.
 std::vector<Key::Choice> light_effects();
 
 }  // namespace photorque

@@ -11,8 +11,8 @@
 namespace photorque {
 namespace {
 
-// χ² of the effect of the first of `terms` on the recordings, at the numbers x, that the strengths
-// of each other term cannot reproduce. The first entry is the whole effect.
+// χ² of the effect of the first of `terms` at the numbers x that the strengths of each other term
+// cannot reproduce. The first entry is the χ² of the whole effect.
 Eigen::VectorXd unlike(const LightTrial& about, const LightCandidates& all,
                        const std::vector<inference::Term<LightStart>>& terms,
                        const std::vector<FittedRun>& runs, const std::vector<double>& x) {
@@ -57,8 +57,8 @@ Eigen::VectorXd unlike(const LightTrial& about, const LightCandidates& all,
   return left;
 }
 
-// Distance of an effect without parameters, with `own` its fit: how far χ² would stay above that
-// fit where each of `others` acted in its place.
+// Equivalent for an effect without parameters whose fit is `own`: excess of χ² over that fit if
+// each of `others` replaces it.
 Eigen::VectorXd unlike_switched(const LightTrial& own, const LightTrial& without,
                                 const LightCandidates& all, const std::vector<size_t>& others,
                                 const std::vector<FittedRun>& runs) {
@@ -124,7 +124,7 @@ std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
   std::set<std::string> rivals;
   for (size_t k = 0; k < others.size(); ++k) {
     const LightCandidate& c = all[others[k]];
-    // χ² that the other cannot take up, to first order; large effects bend.
+    // Limit of the irreproducible χ², which is of first order; large effects are nonlinear.
     constexpr double beyond = 10.0, of_all = 0.02;
     const double gain = left[0];
     if (left[static_cast<Eigen::Index>(k) + 1] > beyond * within + of_all * gain) continue;
@@ -136,7 +136,7 @@ std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
     const LightTrial rival = fit_light(all, candidates, x, chosen.priors, runs, 25);
     if (rival.log_evidence > own.log_evidence - within) rivals.insert(c.kind.name);
   }
-  // And the candidates that explain the recordings as well in its place.
+  // Adds the candidates that explain the recordings equally well in its place.
   for (const LightTrial& t : answer.trials) {
     if (t.candidates.size() != chosen.candidates.size()) continue;
     if (!(t.log_evidence > chosen.log_evidence - within) || !t.objection.empty()) continue;

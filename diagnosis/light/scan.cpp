@@ -10,7 +10,7 @@
 namespace photorque {
 namespace {
 
-// All combinations of the starts that a kind states for its nonlinear parameters.
+// All combinations of the starts of a kind's nonlinear parameters.
 std::vector<std::vector<double>> grid_of_starts(const LightCandidate& c) {
   std::vector<std::vector<double>> all = {c.start()};
   for (size_t k = 0; k < c.numbers.size(); ++k) {
@@ -41,7 +41,7 @@ std::vector<LeftOfRun> left_of(const LightTrial& parent, const LightCandidates& 
   return left;
 }
 
-// The fall of χ² if a law's strengths were free, nothing else moving.
+// The fall of χ² if only the strengths of a law are freed.
 double gain_alone(const LightCandidate& c, const std::vector<double>& start,
                   const std::vector<LeftOfRun>& left) {
   std::vector<size_t> strengths;
@@ -125,7 +125,8 @@ std::vector<std::vector<LightStart>> scanned_starts(const LightTrial& parent,
 
 std::vector<double> trapped_interval(const LightTrial& parent, const LightCandidates& all,
                                      const std::vector<FittedRun>& runs) {
-  // The span of the largest sum of gains (J. Bentley, Communications of the ACM 27, 865 (1984)).
+  // The interval with the largest sum of gains (J. Bentley, Communications of the ACM 27, 865
+  // (1984)).
   const LightState state = [&] {
     LightState s = state_of(parent, all);
     s.trapped.clear();
@@ -169,7 +170,7 @@ std::vector<std::vector<double>> in_order_of_place(const LightRun& run,
   const LightRecording& r = run.recording();
   const SurfaceGrid& g = run.lab().grid();
   const double area = (g.u_high - g.u_low) * (g.v_high - g.v_low);
-  // Per attitude a block holds some twenty places.
+  // A block contains about twenty places per attitude.
   size_t attitudes = 1;
   for (size_t i = 1; i < r.rows(); ++i) {
     if (r.lab_from_body[i].coeffs() != r.lab_from_body[i - 1].coeffs()) ++attitudes;

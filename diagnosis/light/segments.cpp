@@ -23,7 +23,7 @@ std::vector<size_t> segments_of(const LightRun& run, size_t count) {
   return segment;
 }
 
-// χ² of every segment. Each segment is predicted by a fit to the rows of the other folds.
+// χ² of every segment, each predicted by a fit to the rows of the other folds.
 class Segments {
  public:
   Segments(const LightCandidates& all, const std::vector<FittedRun>& runs, int threads)

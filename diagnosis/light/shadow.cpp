@@ -1,4 +1,4 @@
-// Boxes that could cause the missing light.
+// Boxes that explain missing light.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@
 namespace photorque {
 namespace {
 
-// A ray from a lamp to a place of a scan, where it crosses the plane that is carved.
+// A ray from a lamp to a place of a scan, which may cross the carved plane.
 struct CarvingRay {
   size_t place;
   double light;  // of the lamp, in errors of the reading
@@ -58,7 +58,7 @@ struct CarvedBox {
   Vec2 size = Vec2::Zero();
 };
 
-// The rays where they cross a plane z, on a grid of elements.
+// The rays' intersections with a plane z, on a grid of elements.
 class CarvedPlane {
  public:
   CarvedPlane(const CarvingData& data, double z) : data_(data), z_(z) {
@@ -81,8 +81,8 @@ class CarvedPlane {
 
   bool is_empty() const { return hits_.empty() || !((high_ - low_).minCoeff() > 0.0); }
 
-  // The patch of elements that may be opaque which would explain most: those whose light is missing
-  // where it would arrive, in means that tolerate a few places.
+  // The best patch of elements that may be opaque: most of the light through each must be missing
+  // at its destination. The mean over its rays tolerates a few places.
   CarvedBox largest_patch() const {
     std::vector<double> sum(cells * cells, 0.0), weight(cells * cells, 0.0);
     for (const Hit& h : hits_) {
@@ -104,9 +104,9 @@ class CarvedPlane {
     return best;
   }
 
-  // The element that would explain most, if it let some of the light through, which is not asked to
-  // be missing altogether: a box smaller than the apertures has no full shadow. Grown as long as
-  // that explains more.
+  // The element that explains most if partly transparent. Its light need not be missing altogether:
+  // a box smaller than the apertures has no umbra. grown() enlarges it as long as that explains
+  // more.
   CarvedBox best_element() const {
     std::vector<double> with(cells * cells, 0.0), square(cells * cells, 0.0);
     for (const Hit& h : hits_) {
@@ -163,7 +163,7 @@ class CarvedPlane {
   }
   static size_t element(const Hit& h) { return place_of(h.x, h.y); }
 
-  // The rectangle about all that hangs together with an element; it becomes open.
+  // Bounding rectangle of all opaque elements that are connected with `seed`; marks them as open.
   static Rectangle patch_about(size_t seed, std::vector<bool>& is_open) {
     Rectangle r{cells, -1, cells, -1};
     std::vector<size_t> edge = {seed};
@@ -185,7 +185,7 @@ class CarvedPlane {
     return r;
   }
 
-  // By how much χ² falls with a rectangle of the opacity that explains most.
+  // The fall of χ² for a rectangle with the best opacity.
   CarvedBox explained(const Rectangle& r) const {
     std::vector<double> hidden(data_.missing.size(), 0.0);
     for (const Hit& h : hits_) {
@@ -226,8 +226,8 @@ std::vector<LightStart> shadow_starts(const LightTrial& parent, const LightCandi
     highest = std::max(highest, ray.to.z());
     lowest = std::min(lowest, ray.from.z());
   }
-  // Planes near enough to each other that the shadows of lamps a fifth of a radian apart fall
-  // together to some millimetres; of many rays some planes have to do.
+  // Planes are so close that the shadows of lamps a fifth of a radian apart coincide to some
+  // millimetres. For many rays fewer planes are used to save time.
   constexpr size_t many_rays = 200'000;
   const int planes = data.rays.size() < many_rays ? 60 : 24;
   const double spacing = 0.9 * (lowest - highest) / planes;

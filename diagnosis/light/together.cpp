@@ -13,14 +13,14 @@
 namespace photorque {
 namespace {
 
-// The camera is not level: as the motion feels it. Its rotation vector takes the lab's −z to
-// gravity, and the body stands turned the other way.
+// Tilt of the camera as an effect on the motion. Its rotation vector takes the lab's −z to gravity,
+// so it is opposite to that of the body.
 constexpr const char* of_motion = "gravity_tilt";
 constexpr const char* tilt_key = "tilt_rad";
-// And as the light sees it.
+// The tilt as an effect on the light.
 constexpr const char* of_light = "attitude_bias";
 
-// Before anything is known; and the error with which it is known.
+// Prior width of an unknown tilt; error below which it counts as known.
 constexpr double any_tilt_rad = 0.1, known_tilt_rad = 0.01;
 constexpr double beyond_doubt_sigma = 5.0;
 
@@ -39,7 +39,7 @@ Diagnosis light_believing(const LightRecorded& light, const Tilt& tilt) {
   return diagnose_light(light.lab, belief, light.recordings, light.holdouts, light.how);
 }
 
-// The tilt by an explanation of the light.
+// The tilt determined by the light.
 std::optional<Tilt> tilt_of_light(const Diagnosis& light) {
   for (const FittedParameter& p : light.priors_refined) {
     if (p.key != tilt_belief) continue;
@@ -49,7 +49,7 @@ std::optional<Tilt> tilt_of_light(const Diagnosis& light) {
   return std::nullopt;
 }
 
-// The tilt by the motion: as a refined prior, or as a found effect.
+// The tilt determined by the motion: a refined prior or a found effect.
 std::optional<Tilt> tilt_of_motion(const Diagnosis& motion) {
   const auto tilt_in = [](const std::vector<FittedParameter>& all,
                           const auto& is_it) -> std::optional<Tilt> {
@@ -74,8 +74,8 @@ bool names_tilt(const Diagnosis& motion) {
   return std::ranges::find(motion.effects, of_motion, &FoundEffect::kind) != motion.effects.end();
 }
 
-// The tilt by the motion alone, from `both`, the result of motion and light together; nothing where
-// `both` is hardly more precise than the light.
+// The tilt by the motion alone, with the light's information subtracted from `both`, the result of
+// motion and light. Nothing if `both` is hardly more precise than the light.
 std::optional<Tilt> beside(const Tilt& both, const Tilt& light) {
   constexpr double better = 0.7;
   if (!(both.sigma_rad.array() < better * light.sigma_rad.array()).any()) return std::nullopt;
@@ -91,7 +91,7 @@ std::optional<Tilt> beside(const Tilt& both, const Tilt& light) {
   return alone;
 }
 
-// The light moves with a small tilt in proportion: where it is not small, about itself.
+// Light is linear only in a small tilt, so a larger tilt is fitted again about its estimate.
 Diagnosis light_with_any_tilt(const LightRecorded& light) {
   constexpr double small_rad = 0.004;
   Tilt any{Vec2::Zero(), Vec2::Constant(any_tilt_rad)};
@@ -119,9 +119,9 @@ Disturbance believed_tilt(const NominalModel& nominal, const Tilt& tilt) {
   return d;
 }
 
-// As effects of either domain, where it is beyond doubt.
+// Adds the tilt to the effects of both domains if it is significant.
 void add_tilt(const std::optional<Tilt>& tilt, Diagnosis& motion, Diagnosis& light) {
-  // Its nominal value stands in no experiment.
+  // No experiment states its prior.
   const auto is_tilt = [](const FittedParameter& p) {
     return p.key == tilt_belief || p.key.ends_with(std::string("].") + tilt_key);
   };
@@ -146,7 +146,7 @@ void add_tilt(const std::optional<Tilt>& tilt, Diagnosis& motion, Diagnosis& lig
   light.effects.push_back(effect);
 }
 
-// Attitudes that the camera would have reported without noise, by the found model.
+// Noise-free attitudes that the camera would have measured according to the found model.
 std::map<double, Quat> attitudes_of(const Diagnosis& motion, const std::string& recording) {
   std::map<double, Quat> at;
   for (const RecordingSeries& series : motion.series) {
@@ -175,7 +175,7 @@ Quat turned(const Quat& from, const Vec3& by) {
   return angle > 0.0 ? Quat(from * Quat(Eigen::AngleAxisd(angle, by / angle))) : from;
 }
 
-// Between four neighbours, by the cubic whose slopes are theirs; nothing outside or in a gap.
+// Cubic interpolation with slopes from the neighbouring points; nothing outside or in a gap.
 std::optional<Quat> between(const std::map<double, Quat>& all, double time_s, double max_gap_s) {
   const auto exact = all.find(time_s);
   if (exact != all.end()) return exact->second;
@@ -215,7 +215,7 @@ Holdout both_held(const Holdout& a, const Holdout& b) {
       mean_of(a.chi2_per_sample_after, a.samples, b.chi2_per_sample_after, b.samples);
   both.samples = a.samples + b.samples;
   both.explained_fraction = std::min(a.explained_fraction, b.explained_fraction);
-  // The worse of the two is reported.
+  // The larger excess of the two is reported.
   if (b.predictive && (!a.predictive || b.predictive->sigma > a.predictive->sigma)) {
     both.predictive = b.predictive;
   }
@@ -251,7 +251,7 @@ Diagnosis diagnose_together(MotionRecorded motion, LightRecorded light) {
   const Diagnosis of_motion_first = moved();
   take_attitudes(of_motion_first, light.recordings);
   take_attitudes(of_motion_first, light.holdouts);
-  // A stated tilt is known.
+  // If a tilt is stated, it is not fitted.
   if (has_tilt(motion.nominal.model)) {
     return joined(
         of_motion_first,
@@ -263,7 +263,7 @@ Diagnosis diagnose_together(MotionRecorded motion, LightRecorded light) {
   if (of_light_alone.verdict == Verdict::unexplained || !knows_tilt(seen)) seen.reset();
   if (seen) motion.nominal.model.disturbances.push_back(believed_tilt(motion.nominal, *seen));
   const Diagnosis of_both = seen ? moved() : of_motion_first;
-  // One more tilt than the light's would be another than that.
+  // If the motion names a tilt in addition to the prior from the light, the two disagree.
   const bool disagree = seen && names_tilt(of_both);
   std::optional<Tilt> tilt = disagree ? seen : tilt_of_motion(of_both);
   if (!tilt) tilt = seen;

@@ -1,14 +1,14 @@
-// Motion and light recorded together: one answer of two.
+// Joint diagnosis of motion and light that are recorded together.
 //
-// The domains share the tilt of the body against its recorded attitude. A camera that is not level
-// makes a pendulum swing about another attitude than the upright one, as a draught does. It also
-// changes the light on the array, as dirt does. So
-//   the motion is explained first, and gives the attitude without the camera's noise,
-//   which would be noise of the light;
-//   light is explained with any tilt; where it determines the tilt,
-//   the motion is explained with that as a prior; and where the motion determines it better,
-//   light is explained again, with the result of the motion alone as a prior.
-// Light acts on the motion by the lamps' current in the recording (disturbance lamp_pressure).
+// Both domains depend on the tilt of the body relative to its recorded attitude. If the camera is
+// not level, a pendulum swings about another attitude than the upright one, as in a draught. The
+// tilt also changes the light on the array, as dirt does. The steps are:
+//   1. explain the motion; its attitude has no camera noise, which would affect the light;
+//   2. explain the light with any tilt;
+//   3. if the light determines the tilt, explain the motion with that as a prior;
+//   4. if the motion determines it better, explain the light again with the result of the motion
+//      alone as a prior.
+// Light acts on the motion by the recorded lamp current (disturbance lamp_pressure).
 #pragma once
 
 #include <optional>
@@ -37,14 +37,14 @@ struct LightRecorded {
   LightDiagnoseOptions how;
 };
 
-// A tilt that light and motion together leave beyond doubt is an effect, on either.
+// A tilt that is significant in light and motion together is reported as an effect on both.
 Diagnosis diagnose_together(MotionRecorded motion, LightRecorded light);
 
-// Gives the rows of each run the attitudes that the motion was found to have where it has the same
-// name and is explained; others keep their recorded values.
+// Replaces the attitudes of each run by those of the motion recording of equal name if the motion
+// is explained; others keep their recorded values.
 void take_attitudes(const Diagnosis& motion, std::vector<LightRecording>& runs);
 
-// Both in one, the motion first. `tilt`: what both say of it, if anything.
+// Combines both, motion first. `tilt`: the joint estimate, if any.
 Diagnosis joined(const Diagnosis& motion, const Diagnosis& light, const std::optional<Tilt>& tilt);
 
 }  // namespace photorque

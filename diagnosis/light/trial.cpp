@@ -23,7 +23,7 @@ LightState acted(const LightCandidates& all, const std::vector<size_t>& candidat
   return state;
 }
 
-// The candidate and its number that belong to a column.
+// The candidate and the number that belong to a column.
 struct Place {
   size_t member, number;
 };
@@ -39,7 +39,7 @@ std::vector<Place> places_of(const LightCandidates& all, const std::vector<size_
   return places;
 }
 
-// A recording at a state, ready for derivatives.
+// A recording at a state, prepared for derivatives.
 struct AtState {
   LightState state;
   LightFields fields;
@@ -56,8 +56,8 @@ AtState evaluated(const FittedRun& run, const LightState& state, bool slopes) {
   return at;
 }
 
-// A law that multiplies the light changes each signal in the ratio of its functions, in which it is
-// linear: no field is needed for its derivatives by a strength.
+// Whether a law multiplies the light. The signals are then linear in its strengths, and derivatives
+// require no fields.
 bool is_factor(const LightCandidate& c) {
   return c.is_empirical() && !c.kind.in_circuit;
 }
@@ -80,8 +80,8 @@ Eigen::VectorXd factor_slope(const LightCandidate& c, std::vector<double> x, siz
   return -run.run->moved(at.slopes, change);
 }
 
-// ∂(predicted/noise) by one number of one member, by central differences of an evaluation without
-// noise; from one side where the number stands on a bound.
+// ∂(predicted/noise) for one number of one member by noise-free central differences; one-sided at a
+// bound.
 Eigen::VectorXd slope_by(const LightCandidates& all, const std::vector<size_t>& candidates,
                          const Numbers& x, const Place& place, const FittedRun& run,
                          const AtState& at) {
@@ -95,7 +95,8 @@ Eigen::VectorXd slope_by(const LightCandidates& all, const std::vector<size_t>& 
   double& b = high[place.member][place.number];
   a = std::max(a - n.step, std::min(n.lowest, a));
   b = std::min(b + n.step, std::max(n.highest, b));
-  // Slopes determine the step of a fit; χ² alone decides whether it is taken.
+  // Slopes only determine the step of a fit; χ² decides whether it is accepted. Light from walls
+  // therefore stays unchanged.
   const LightRun::KnownLight near{&at.state, &at.fields, &at.light};
   const auto signals = [&](const LightState& state) {
     return run.run->signals_of(
@@ -141,13 +142,14 @@ std::vector<inference::Parameter> parameters_of(const LightCandidates& all,
   return parameters;
 }
 
-// A dead LED is one number dimmed to nothing, and likely in itself: no width of a prior is paid.
+// A failed LED is a single value with a finite prior probability, so there is no penalty for a
+// prior width.
 bool is_point(const LightCandidate& c, const LightTrial& trial, size_t member,
               Eigen::Index column) {
   return c.kind.name == "led_derated" && leaves_nothing(trial.x[member][0], trial.fit, column);
 }
 
-// Laplace's approximation: the fit's own prior, which only keeps numbers from running away, is
+// Laplace's approximation. The prior of the fit, which only keeps numbers from diverging, is
 // replaced by that of each number.
 double log_evidence_of(const LightTrial& trial, const LightCandidates& all) {
   const Thresholds::Evidence& limits = all.limits.evidence;
@@ -161,7 +163,7 @@ double log_evidence_of(const LightTrial& trial, const LightCandidates& all) {
     result += c.is_empirical() ? limits.log_prior_empirical : limits.log_prior_effect;
     for (size_t k = 0; k < c.numbers.size(); ++k) {
       const LightCandidate::Number& n = c.numbers[k];
-      // A number that a scan chose among all rows costs as much as a number that is fitted.
+      // A number that a scan selects among all rows costs as much as a fitted one.
       if (!n.is_fitted) {
         result -= 0.5 * std::log(static_cast<double>(trial.fit.samples));
         continue;
@@ -175,7 +177,7 @@ double log_evidence_of(const LightTrial& trial, const LightCandidates& all) {
         strengths.owner.push_back(i);
         strengths.value.push_back(trial.x[i][k]);
         strengths.scale.push_back(n.scale);
-        if (n.lowest == 0.0 || n.highest == 0.0) result += std::log(2.0);  // half of a Gaussian
+        if (n.lowest == 0.0 || n.highest == 0.0) result += std::log(2.0);  // half-Gaussian prior
       } else {
         const double wide = n.scale * limits.fit_prior_widths;
         hessian(at, at) += 1.0 / (n.scale * n.scale) - 1.0 / (wide * wide);

@@ -9,31 +9,31 @@ namespace photorque {
 
 struct LightTrial : inference::Explanation {
   inference::Fit fit;
-  std::vector<double> priors;          // shifts of uncertain numbers, in their sigmas
-  std::vector<std::vector<double>> x;  // of each candidate, all its numbers
+  std::vector<double> priors;          // shifts of uncertain values, in sigmas
+  std::vector<std::vector<double>> x;  // all numbers of each candidate
 };
 
-// Where a fit of a candidate starts.
+// Start of a candidate's fit.
 struct LightStart {
   std::vector<double> x;
-  double gain = inference::infinity;  // fall of χ² that a scan predicts; infinite: none was made
+  double gain = inference::infinity;  // predicted fall of χ² from a scan; infinite without one
 };
 
-// Whether a lamp's derating, fitted as `column`, leaves nothing of it.
+// Whether a lamp's derating, fitted as `column`, leaves no light.
 bool leaves_nothing(double derating, const inference::Fit& fit, Eigen::Index column);
 
-// The state of a trial.
+// The physical state of a trial.
 LightState state_of(const LightTrial& trial, const LightCandidates& all);
 
-// The experiment alone.
+// The trial without candidates.
 LightTrial nominal_light_trial(const LightCandidates& all, const std::vector<FittedRun>& runs);
 
-// Candidates with the numbers where their fit starts, fitted with the priors.
+// Fits candidates with the priors, starting from the numbers `x`.
 LightTrial fit_light(const LightCandidates& all, const std::vector<size_t>& candidates,
                      const std::vector<std::vector<double>>& x, const std::vector<double>& priors,
                      const std::vector<FittedRun>& runs, int max_iterations);
 
-// Predicts other recordings with the numbers of the trial: nothing is fitted.
+// Predicts other recordings with the trial's numbers without a fit.
 LightTrial predict_light(const LightTrial& trial, const LightCandidates& all,
                          const std::vector<FittedRun>& runs);
 
@@ -41,8 +41,8 @@ LightTrial predict_light(const LightTrial& trial, const LightCandidates& all,
 Eigen::VectorXd residuals_of(const LightTrial& trial, const LightCandidates& all,
                              const FittedRun& run);
 
-// ∂(predicted/noise) of one recording by the priors, by all that the trial's candidates fit, and
-// by the strengths of further terms at no strength; and the residuals.
+// Residuals of one recording and ∂(predicted/noise) with respect to the priors, the fitted numbers
+// of the trial's candidates, and the strengths of further terms at zero strength.
 struct LightSlopes {
   Eigen::VectorXd residuals;
   Eigen::MatrixXd slopes;
@@ -50,7 +50,7 @@ struct LightSlopes {
 LightSlopes slopes_of(const LightTrial& trial, const LightCandidates& all,
                       const std::vector<inference::Term<LightStart>>& more, const FittedRun& run);
 
-// Columns of a trial's candidate among all that is fitted.
+// Columns of a trial's candidate among all fitted numbers.
 std::vector<Eigen::Index> columns_of(const LightTrial& trial, const LightCandidates& all,
                                      size_t which);
 

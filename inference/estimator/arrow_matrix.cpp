@@ -29,7 +29,7 @@ NormalSums SumsOfRows::finish() {
 
 namespace {
 
-// A⁻¹ Bᵀ. Eigen would step along a null pointer where B has no rows.
+// A⁻¹ Bᵀ. Eigen would use pointer arithmetic on a null pointer where B has no rows.
 Eigen::MatrixXd eliminated(const Eigen::LDLT<Eigen::MatrixXd>& own, const Eigen::MatrixXd& cross) {
   if (cross.size() == 0) return Eigen::MatrixXd(cross.cols(), cross.rows());
   return own.solve(cross.transpose());
@@ -113,7 +113,7 @@ void ArrowMatrix::hold(Index i) {
   if (i >= first_shared()) {
     const Index k = i - first_shared();
     for (Eigen::MatrixXd& cross : cross_) {
-      if (per_run_ > 0) cross.row(k).setZero();  // else there is nothing behind its pointer
+      if (per_run_ > 0) cross.row(k).setZero();  // otherwise its data pointer is null
     }
     shared_.row(k).setZero();
     shared_.col(k).setZero();

@@ -9,8 +9,8 @@ namespace photorque::inference {
 
 // Sums over the data for one least-squares step.
 
-// Residuals are r = (measured − predicted)/noise, so that good ones have unit variance, and slopes
-// J = ∂(predicted/noise)/∂θ: a step δ turns r into r − J δ, to first order.
+// Residuals are r = (measured − predicted)/noise, with unit variance for a good fit, and slopes are
+// J = ∂(predicted/noise)/∂θ: to first order a step δ changes r into r − J δ.
 struct NormalSums {
   Eigen::MatrixXd matrix;    // Jᵀ J, both triangles
   Eigen::VectorXd gradient;  // Jᵀ r, which is −½ ∂χ²/∂θ
@@ -18,12 +18,12 @@ struct NormalSums {
   int64_t samples = 0;       // residuals
 };
 
-// Collects residuals one by one and adds their squares in blocks: no matrix of all slopes is kept.
+// Accumulates JᵀJ from blocks of residuals, so that the full matrix of slopes is never stored.
 class SumsOfRows {
  public:
   explicit SumsOfRows(Eigen::Index parameters);
 
-  // The next row, to be filled: the slopes, then the residual.
+  // Returns the next row to fill: the slopes, then the residual.
   auto next() {
     if (used_ == capacity) flush();
     ++samples_;
@@ -45,17 +45,18 @@ class SumsOfRows {
   int64_t samples_ = 0;
 };
 
-// The symmetric matrix of least squares over several runs.
+// The symmetric matrix of the normal equations over several runs.
 //
-// Parameters of one run alone (its initial conditions, its instrument's bias) meet the shared
-// parameters but no other run's:
+// Parameters of a single run (its initial conditions, its instrument bias) are coupled to the
+// shared parameters but not to those of other runs:
 //
 //   ⎡ A₁          B₁ᵀ ⎤
-//   ⎢     A₂      B₂ᵀ ⎥      A: own by own, B: shared by own, C: shared by shared
+//   ⎢     A₂      B₂ᵀ ⎥      A: run by run, B: shared by run, C: shared by shared
 //   ⎣ B₁  B₂  …   C   ⎦
 //
-// The runs' own are eliminated one by one, so everything costs as much as the number of runs, not
-// its third power: hundreds of short pieces of a recording are fitted together.
+// The run parameters are eliminated one run at a time (Schur complement). The cost grows linearly
+// with the number of runs instead of with its cube. Hundreds of short pieces of a recording can
+// therefore be fitted together.
 //
 // Source: B. Triggs et al., "Bundle Adjustment — A Modern Synthesis" (2000), section 6.3.
 
@@ -64,35 +65,35 @@ class ArrowMatrix {
   using Index = Eigen::Index;
 
   ArrowMatrix() = default;
-  // Zeros.
+  // Initialises with zeros.
   ArrowMatrix(Index runs, Index per_run, Index shared);
 
   Index size() const { return first_shared() + shared_.rows(); }
   Index first_shared() const { return static_cast<Index>(own_.size()) * per_run_; }
   bool all_finite() const;
 
-  // Adds one run's Jᵀ J: by its own parameters, then the shared ones.
+  // Adds the Jᵀ J of one run: first its run parameters, then the shared ones.
   void add(Index run, const Eigen::MatrixXd& square);
   void add_to_diagonal(Index i, double by);
 
   Eigen::VectorXd diagonal() const;
   Eigen::MatrixXd dense() const;
-  // By the shared parameters.
+  // The block C of the shared parameters.
   const Eigen::MatrixXd& shared() const { return shared_; }
   Eigen::VectorXd operator*(const Eigen::VectorXd& x) const;
   // diag(s) M diag(s).
   ArrowMatrix scaled(const Eigen::VectorXd& s) const;
-  // Row and column i become those of the unit matrix: parameter i is held.
+  // Replaces row and column i by those of the unit matrix, which fixes parameter i.
   void hold(Index i);
 
-  // The rest below is for matrices that are positive definite, as priors and damping make them.
+  // The functions below require a positive definite matrix, which priors and damping provide.
   Eigen::VectorXd solve(const Eigen::VectorXd& x) const;
-  // Its natural logarithm; pivots below 1e-12 of the diagonal count as that.
+  // Natural logarithm; pivots are limited to at least 1e-12 of the diagonal.
   double log_determinant() const;
-  // C − Σ B A⁻¹ Bᵀ: the information about the shared parameters with free parameters of the runs.
-  // Its inverse is the shared block of the inverse.
+  // C − Σ B A⁻¹ Bᵀ: the information about the shared parameters, marginalised over those of the
+  // runs. Its inverse is the shared block of the inverse.
   Eigen::MatrixXd shared_information() const;
-  // The information and the gradient of the shared parameters, with the runs' own eliminated.
+  // Information and gradient of the shared parameters, with the run parameters eliminated.
   NormalSums shared_sums(const Eigen::VectorXd& gradient, double chi2, int64_t samples) const;
 
  private:
@@ -115,7 +116,7 @@ struct SumsOfRuns {
   double chi2 = 0.0;
   int64_t samples = 0;
 
-  // By the shared parameters alone, the runs' own projected out; χ² is that of all as it is.
+  // Sums of the shared parameters, with the run parameters projected out; χ² is unchanged.
   NormalSums of_shared() const { return matrix.shared_sums(gradient, chi2, samples); }
 };
 

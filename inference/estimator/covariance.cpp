@@ -10,21 +10,21 @@
 namespace photorque::inference {
 namespace {
 
-constexpr double rounding = 1e-14;  // of information on a unit diagonal, per parameter
+constexpr double rounding = 1e-14;  // of the information on a unit diagonal, per parameter
 
-// One over the conditional standard error of each parameter; 1 where nothing is known.
+// Inverse conditional standard error of each parameter; 1 without information.
 Eigen::VectorXd scale_of(const Eigen::MatrixXd& information) {
   return information.diagonal().cwiseSqrt().unaryExpr(
       [](double s) { return s > 0.0 ? 1.0 / s : 1.0; });
 }
 
-// The marginal covariance of the known combinations, where others are not known. `scaled` has a
-// unit diagonal. With no parameter undetermined the matrix is left empty.
+// Marginal covariance of the determined combinations. `scaled` has a unit diagonal. If all
+// parameters are determined, the matrix is left empty.
 Covariance without_unknown(const Eigen::MatrixXd& scaled) {
   const Eigen::Index n = scaled.rows();
   const SymmetricEigen eigen = symmetric_eigen(scaled);
   const double least = rounding * static_cast<double>(n);
-  // How much of each parameter lies in the unknown combinations.
+  // Squared projection of each parameter onto the undetermined combinations.
   Eigen::VectorXd unknown = Eigen::VectorXd::Zero(n), inverse = Eigen::VectorXd::Zero(n);
   for (Eigen::Index k = 0; k < n; ++k) {
     if (eigen.values[k] > least) {
@@ -36,7 +36,7 @@ Covariance without_unknown(const Eigen::MatrixXd& scaled) {
   Covariance result;
   if (unknown.isZero(0.0)) return result;
   result.matrix = eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose();
-  // An eigenvector is good to rounding over the gap between eigenvalues.
+  // The error of an eigenvector is rounding divided by the gap between eigenvalues.
   constexpr double takes_part = 1e-6;
   for (Eigen::Index i = 0; i < n; ++i) {
     if (unknown[i] < takes_part * takes_part) continue;
@@ -69,8 +69,9 @@ Covariance covariance_of(const Eigen::MatrixXd& information) {
   const Eigen::VectorXd scale = scale_of(information);
   const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
   const Eigen::LDLT<Eigen::MatrixXd> ldlt = scaled.ldlt();
-  // The pivots bound the smallest eigenvalue from above and, but for contrived matrices, come
-  // within a factor of the size of it: far from zero they save the eigenvalues.
+  // The smallest pivot bounds the smallest eigenvalue from above and, except for contrived
+  // matrices, exceeds it by at most a factor of the matrix size. If it is far from zero, no
+  // eigenvalues are needed.
   constexpr double surely_known = 1e-9;
   Covariance result;
   if (ldlt.vectorD().size() > 0 && !(ldlt.vectorD().minCoeff() > surely_known)) {
@@ -92,7 +93,7 @@ Eigen::MatrixXd posterior_of(const Eigen::MatrixXd& information) {
 }
 
 double log_determinant(const Eigen::MatrixXd& A) {
-  // Without information there is no scale.
+  // Parameters without information have no scale.
   const Eigen::VectorXd scale = (A.diagonal().array() > 0.0).select(A.diagonal().cwiseSqrt(), 1.0);
   const Eigen::MatrixXd scaled =
       scale.cwiseInverse().asDiagonal() * A * scale.cwiseInverse().asDiagonal();

@@ -1,12 +1,12 @@
-// How well parameters are known, and which are not known at all.
+// Covariance of fitted parameters, including parameters that the data do not determine.
 //
-// The information matrix H = Jᵀ J + Σ⁻¹ (of the data and of the priors) is the inverse of the
-// covariance, and half the second derivative of χ². Where neither data nor prior say anything about
-// some combination of parameters, H is singular and that combination has no covariance. The policy
-// of this program is one: every parameter that takes part in such a combination is UNDETERMINED. It
-// is named, its standard error is infinite, and along that combination it stays where the fit
-// began. It never gets an error of zero, nor a large number that a reader might take for a
-// measurement; all others get their marginal covariance, whatever the undetermined ones may be.
+// The information matrix H = Jᵀ J + Σ⁻¹ (data and priors) is the inverse of the covariance and half
+// the second derivative of χ². If neither data nor priors determine some combination of parameters,
+// H is singular and this combination has no covariance. The program has one policy: every parameter
+// in such a combination is reported as UNDETERMINED. Its standard error is infinite, and along that
+// combination it keeps its initial value. It never gets a zero error, or a large number that a
+// reader may take for a measurement. All other parameters get their marginal covariance, whatever
+// the undetermined ones are.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,25 +15,25 @@
 namespace photorque::inference {
 
 struct Covariance {
-  Eigen::MatrixXd matrix;  // of undetermined ones: infinite on the diagonal, zero elsewhere
-  std::vector<Eigen::Index> undetermined;  // rising
+  Eigen::MatrixXd matrix;  // undetermined parameters: infinite on the diagonal, zero elsewhere
+  std::vector<Eigen::Index> undetermined;  // in ascending order
 
   bool is_determined(Eigen::Index i) const;
   double standard_error(Eigen::Index i) const;  // ≥ 0, infinite where undetermined
 };
 
-// Of a symmetric information matrix. Parameters may have units that differ by any number of orders:
-// H is scaled to a unit diagonal first. A combination counts as undetermined where its information
-// is below 1e-14 of that per parameter: the remainder is rounding of the sums. (In terms of
-// the singular values of J, 1e-7.)
+// Covariance from a symmetric information matrix. H is first scaled to a unit diagonal, because the
+// units of the parameters may differ by any number of orders. A combination is undetermined where
+// its scaled information is below 1e-14 per parameter, which is rounding of the sums (1e-7 for the
+// singular values of J).
 Covariance covariance_of(const Eigen::MatrixXd& information);
 
 // The inverse of the information as it stands, for problems whose priors make it positive definite:
-// always finite, and large where a prior alone holds a combination.
+// always finite, and large where only a prior determines a combination.
 Eigen::MatrixXd posterior_of(const Eigen::MatrixXd& information);
 
-// ln |A| of a positive definite matrix whose rows have different units. What rounding has made
-// smaller than 1e-12 of the diagonal counts as that.
+// ln |A| of a positive definite matrix whose rows have different units. Pivots are limited to at
+// least 1e-12 of the diagonal because of rounding.
 double log_determinant(const Eigen::MatrixXd& A);
 
 }  // namespace photorque::inference

@@ -1,8 +1,8 @@
-// The evidence for a model: the probability of the data under it, averaged over its parameters.
+// The evidence for a model: the likelihood of the data, averaged over the prior of its parameters.
 //
 // Laplace's approximation (D. MacKay, Information Theory, Inference, and Learning Algorithms, 2003,
-// eq. 28.5) integrates the posterior as the Gaussian that it is near its maximum. It is exact for
-// linear models, and gives the gain of χ² that additional parameters must bring.
+// eq. 28.5) replaces the posterior near its maximum by a Gaussian and integrates it. It is exact
+// for linear models, and defines how much χ² additional parameters must gain.
 #pragma once
 
 #include <limits>
@@ -13,52 +13,51 @@
 
 namespace photorque::inference {
 
-// ln p(data | model) of a fit, but for the constant −½ Σ ln(2π noise²) that all models of the same
-// data share:
+// ln p(data | model) of a fit, without the constant −½ Σ ln(2π noise²) of the data:
 //
 //   −½ χ² − Σ_priors ln σ − ½ ln |H| + ½ (parameters without a prior) ln 2π
 //
-// A parameter without a prior counts as having a flat one of density 1 in its unit: such evidences
-// compare only between models that have it in common. −1e300 where the model cannot be evaluated.
+// A parameter without a prior has a flat one of density 1 in its unit, so such evidences are
+// comparable only between models that all contain it. −1e300 where the model cannot be evaluated.
 double log_evidence(const Fit& fit);
 
-// Strengths: parameters that enter linearly and whose size is unknown beforehand, such as those
-// of an effect that was left out of a model.
+// Strengths: parameters that enter linearly and whose size is unknown in advance, such as those of
+// an effect that is missing from a model.
 struct Strengths {
-  std::vector<Eigen::Index> at;  // which of the parameters of the covariance
-  std::vector<size_t> owner;     // which effect each belongs to
+  std::vector<Eigen::Index> at;  // index of each parameter in the covariance
+  std::vector<size_t> owner;     // index of the effect that each belongs to
   std::vector<double> value;     // fitted with a flat prior
   std::vector<double> scale;     // expected size of each, > 0
 };
 
-// ln ∫ N(θ; 0, S) … over the widths of S: the width of the prior of each effect's strengths, a
-// common factor of the expected ones, is uniform in its logarithm over the range that `limits`
-// gives (a millionth to a thousand times). With θ̂ and C from a fit with a flat prior, a width
-// contributes N(θ̂; 0, C + S) but for a constant. −1e300 where the covariance is not finite.
+// ln ∫ N(θ; 0, S) … over the widths of S. The prior width of an effect's strengths is a common
+// factor of their expected sizes, log-uniform over the range in `limits` (a millionth to a thousand
+// times). With θ̂ and C from a fit with a flat prior, a width contributes N(θ̂; 0, C + S) up to a
+// constant. −1e300 where the covariance is not finite.
 double log_strength_evidence(const Strengths& strengths, const Eigen::MatrixXd& covariance,
                              size_t effects, const Thresholds::Evidence& limits = {});
 
-// Predictions of runs that were not fitted.
+// Predictions of held-out runs.
 
-// Prediction of the held-out runs by a trial that was fitted to the train runs alone. The
-// prediction includes the uncertainty of the parameters: χ² is minimised over the nuisances of the
-// held-out runs and over the parameters, with the posterior of the fit as their prior. This minimum
-// is the χ² of the predictive distribution. Its degrees of freedom are the number of readings less
-// the number of nuisances. It equals the growth of χ² when the held-out runs are fitted as well.
+// Prediction of the held-out runs by a trial that is fitted to the train runs only. It includes the
+// uncertainty of the parameters: χ² is minimised over the nuisance parameters of the held-out runs
+// and over the parameters, with the posterior of the train fit as prior. This minimum is the χ² of
+// the predictive distribution, with as many degrees of freedom as readings minus nuisance
+// parameters. It equals the growth of χ² when the held-out runs are added to the fit.
 struct Predictive {
   double chi2_per_sample = 0.0;
-  // Excess over noise in standard errors: of χ² as a whole or of the residuals over some neighbours
+  // Excess over noise [standard errors]: of the total χ² or of the means of neighbouring residuals
   // (whiteness.h), whichever is larger.
   double sigma = 0.0;
-  // Natural logarithm of the probability of the held-out runs given the others, up to a constant
-  // that all trials share.
+  // Natural logarithm of the probability of the held-out runs given the train runs, up to a
+  // constant that is common to all trials.
   double log_score = 0.0;
-  // Of the held-out runs against the fitted parameters without their errors, see expected_chi2.
+  // For the fixed fitted parameters; see expected_chi2_per_sample().
   double expected_chi2_per_sample = std::numeric_limits<double>::quiet_NaN();
 };
 
 // Expected χ² per held-out number, where each held-out run starts from its measured initial
-// conditions: 1 from noise, and tr(G C)/n from the errors of the parameters. C: the posterior of
+// conditions: 1 from noise, plus tr(G C)/n from the errors of the parameters. C: the posterior of
 // the shared parameters of `train`; G: the information of the held-out runs about them, from
 // `joint`, the fit of the same model to all runs; n: the number of held-out numbers. First order;
 // NaN where a matrix is not finite.

@@ -11,8 +11,8 @@ namespace photorque::inference {
 
 namespace {
 
-// The step of (H + λ D) δ = g, solved in the scale of each parameter; `damped`: D over the diagonal
-// of H. Those that are held do not move.
+// Solves (H + λ D) δ = g in the scale of each parameter; `damped` is D over the diagonal of H.
+// Parameters in `held` stay fixed.
 Eigen::VectorXd damped_step(const SumsOfRuns& sums, const Eigen::VectorXd& damped, double damping,
                             const std::vector<Eigen::Index>& held) {
   const Eigen::VectorXd scale = sums.matrix.diagonal().cwiseSqrt().unaryExpr(
@@ -27,8 +27,8 @@ Eigen::VectorXd damped_step(const SumsOfRuns& sums, const Eigen::VectorXd& dampe
   return scale.cwiseProduct(scaled.solve(right));
 }
 
-// Scale of the damping of each parameter: 1, or the largest diagonal of H so far over the present
-// one.
+// Damping scale of each parameter over its present diagonal of H: 1, or that of the largest
+// diagonal so far.
 class DampingScale {
  public:
   explicit DampingScale(bool keeps_largest) : keeps_largest_(keeps_largest) {}
@@ -50,8 +50,8 @@ bool leaves_bounds(const Parameter& p, double step) {
   return (p.value <= p.lowest && step < 0.0) || (p.value >= p.highest && step > 0.0);
 }
 
-// The damped step of the parameters that do not stand on a bound and push against it. Each held one
-// may set another one pushing, so the rest is solved until none does.
+// Damped step with those parameters fixed that are on a bound and whose step would leave it. Fixing
+// one may push another out, so the rest is solved again until none is.
 Eigen::VectorXd step_within_bounds(const SumsOfRuns& sums, const Parameters& parameters,
                                    const Eigen::VectorXd& damped, double damping) {
   std::vector<Eigen::Index> held;
@@ -70,14 +70,14 @@ Eigen::VectorXd step_within_bounds(const SumsOfRuns& sums, const Parameters& par
   return step;
 }
 
-// Whether χ², at its present rate, falls below the useful limit, and whether it falls at all.
+// Extrapolates the fall of χ²: whether it can reach the useful limit, and whether it stalls.
 class Outlook {
  public:
   Outlook(double worth_chi2, double creep, int max_iterations)
       : worth_chi2_(worth_chi2), creep_(creep), max_iterations_(max_iterations) {}
 
-  // After a step, taken or not. What fell by a factor in the last steps may fall by its square in
-  // as many that are left, but not by more.
+  // Call after each step, accepted or not. The logarithm of χ² is assumed to fall at most twice as
+  // fast per remaining step as over the last steps.
   bool is_lost(const SumsOfRuns& sums, int iteration) {
     constexpr double acceleration = 2.0;
     fallen_.push_back(sums.chi2);
@@ -85,7 +85,7 @@ class Outlook {
     const double left = static_cast<double>(max_iterations_ - iteration);
     return std::log(sums.chi2 / worth_chi2_) > acceleration * fall() * left;
   }
-  // After is_lost(). What fits well is followed to its end.
+  // Call after is_lost(). A good fit is iterated to convergence.
   bool creeps(const SumsOfRuns& sums) const {
     constexpr double misfit_per_sample = 1.2;
     if (fallen_.size() <= memory || fall() >= creep_) return false;
@@ -95,7 +95,7 @@ class Outlook {
  private:
   static constexpr size_t memory = 6;
 
-  // The logarithm of χ², in each of the last steps.
+  // Mean decrease of ln χ² per step over the last steps.
   double fall() const {
     return std::log(fallen_[fallen_.size() - 1 - memory] / fallen_.back()) / memory;
   }
@@ -105,13 +105,13 @@ class Outlook {
   std::vector<double> fallen_;
 };
 
-// A window that is not the whole only brings the start of the next one near.
+// Fits to shorter windows only provide a start for the next window.
 constexpr int iterations_of_first_windows = 20;
 constexpr double gain_in_first_windows = 1.0;
-// By how much χ² of a stopped fit may be above the useful limit.
+// Factor by which the χ² of a fit that reached the iteration limit may exceed the useful limit.
 constexpr double still_falling = 4.0;
-// χ² over the useful limit, where the whole runs start: predictions off by a thousand standard
-// errors, from which no slope leads back.
+// Limit of χ² over the useful limit at the start of whole runs. Beyond it predictions are off by a
+// thousand standard errors, and no gradient leads back.
 constexpr double off_course = 1e6;
 
 class Fitter {
@@ -131,7 +131,7 @@ class Fitter {
     const Request whole{!is_hopeless, 1.0, is_hopeless ? 0.0 : infinity};
     Evaluation last = ended_at_ ? std::move(*ended_at_) : evaluate(model_, now_, whole);
     result.parameters = model_.parameters(now_);
-    // Short runs are not given up half-way: their χ² may be known all the same.
+    // Short runs are always evaluated in full, so their χ² is finite even after a failure.
     result.chi2 = is_hopeless ? infinity : last.sums.chi2;
     result.data_chi2 = is_hopeless ? infinity : last.data_chi2;
     result.samples = last.sums.samples;
@@ -149,7 +149,7 @@ class Fitter {
   }
 
  private:
-  // Leaves in `ended_at_` the model's evaluation of the whole runs at the end, if that is known.
+  // Stores the evaluation of the whole runs at the end of the fit in `ended_at_`, if known.
   Termination fit_window(double window) {
     ended_at_.reset();
     const bool grew = window == 1.0 && options_.windows.size() > 1;
@@ -160,27 +160,28 @@ class Fitter {
     }
     Evaluation now = evaluate(model_, now_, {true, window});
     const Termination termination = iterate(now, window);
-    // χ² only grows with the window.
+    // χ² grows monotonically with the window.
     const double margin = termination == Termination::max_iterations ? still_falling : 1.0;
     is_lost_ = window < 1.0 && now.sums.chi2 > margin * options_.worth_chi2;
     if (window == 1.0 && termination != Termination::not_evaluable) ended_at_ = std::move(now);
     return termination;
   }
 
-  // From `now`, which stays the evaluation at the point reached.
+  // Iterates from `now`; on return `now` is the evaluation at the final point.
   Termination iterate(Evaluation& now, double window) {
     double damping = options_.initial_damping;
     DampingScale scale(options_.keep_largest_scale);
     const bool is_whole = window == 1.0;
-    // More steps in the first windows are for models that must be fitted, however poor their start.
+    // The full number of steps in the first windows is reserved for models that must be fitted,
+    // however poor their start is.
     const bool is_brief = !is_whole && options_.worth_chi2 < infinity;
     const int most = is_brief ? std::min(options_.max_iterations, iterations_of_first_windows)
                               : options_.max_iterations;
     const double least_gain = is_brief ? gain_in_first_windows : options_.min_gain;
     Outlook outlook(is_whole ? options_.worth_chi2 : infinity, is_whole ? options_.creep : 0.0,
                     most);
-    // After a step that went as predicted the next is likely to be taken: its derivatives, which
-    // hold χ² as well, are asked for at once.
+    // After a step that gains as predicted, the next one is likely to be accepted. Its derivatives,
+    // which include χ², are then requested at once.
     bool is_on_course = false, was_refused = false;
     for (int iteration = 0; iteration < most; ++iteration) {
       if (!std::isfinite(now.sums.chi2)) return Termination::not_evaluable;
@@ -193,7 +194,7 @@ class Fitter {
         continue;
       }
       const double predicted_gain = step.dot(2.0 * now.sums.gradient - now.sums.matrix * step);
-      // Not "<": a perfect fit has nothing to gain and asks for nothing.
+      // Not "<": a perfect fit has a predicted gain of zero and has converged.
       if (!(predicted_gain > std::max(least_gain, options_.min_gain_fraction * now.sums.chi2))) {
         if (options_.polish) polish(step, predicted_gain, damping, window, now);
         return Termination::converged;
@@ -212,7 +213,8 @@ class Fitter {
       }
       now_ = std::move(tried);
       is_on_course = at.sums.chi2 < now.sums.chi2 - 0.25 * predicted_gain;
-      // Along a curved minimum a damping of a tenth would be refused again, at every second step.
+      // Along a curved minimum, reducing λ tenfold after a rejection would cause a rejection at
+      // every second step.
       const double eased = was_refused ? damping : damping * 0.1;
       damping = std::max(is_on_course ? eased : damping * 3.0, options_.min_damping);
       was_refused = false;
@@ -223,13 +225,14 @@ class Fitter {
     return Termination::max_iterations;
   }
 
-  // A step of a few standard errors at most.
+  // A step of at most a few standard errors.
   static bool is_short(double predicted_gain) {
     constexpr double few_sigma = 3.0;
     return predicted_gain < few_sigma * few_sigma;
   }
 
-  // Takes a step untested, and others as long as each predicts to gain less than half of the last.
+  // Accepts a step without a test, and further steps as long as each predicted gain is less than
+  // half of the previous one.
   void polish(Eigen::VectorXd step, double gain, double damping, double window, Evaluation& now) {
     for (int k = 0; k < options_.max_iterations; ++k) {
       const Eigen::VectorXd tried = model_.stepped(now_, step);
@@ -251,7 +254,7 @@ class Fitter {
   Eigen::VectorXd now_;
   std::optional<Evaluation> ended_at_;
   int iterations_ = 0;
-  bool is_lost_ = false;  // a window's χ² alone is more than is worth the fit
+  bool is_lost_ = false;  // χ² of a window alone exceeds worth_chi2
 };
 
 }  // namespace
@@ -321,7 +324,7 @@ Fit fit(const ForwardModel& model, const Eigen::VectorXd& start, const Options& 
   return Fitter(model, start, options).run();
 }
 
-// A fit in words.
+// Text report of a fit.
 
 namespace {
 
@@ -341,11 +344,11 @@ const char* words_of(Termination termination) {
   return "";
 }
 
-// The reason for the value of a parameter other than the data; empty: the data determine it.
+// Reason for the value of a parameter other than the data; empty if the data determine it.
 const char* determined_by(const Parameter& p, double standard_error, bool is_determined) {
   if (!is_determined) return "undetermined";
   if (p.value <= p.lowest || p.value >= p.highest) return "on its bound";
-  // The data shrink the prior's width by less than a hundredth.
+  // The data reduce the width of the prior by less than one per cent.
   constexpr double by_prior_alone = 0.99;
   if (p.has_prior() && standard_error > by_prior_alone * p.sigma) return "by its prior alone";
   return "";

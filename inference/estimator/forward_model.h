@@ -1,11 +1,11 @@
 // The interface between the estimator and a model with parameters.
 //
-// A forward model predicts recordings ("runs") for parameters θ. The estimator never sees a
-// recording; of every run it asks for sums over the residuals, whitened by their noise
-// (NormalSums), and of the whole for the parameters' priors. A point θ is a vector of coordinates
-// that the model alone understands: a parameter may live on a manifold, as an attitude does, whose
-// four quaternion components move along three directions. What the estimator adds to a point is a
-// step, in the order of Parameters, through stepped().
+// A forward model predicts recordings ("runs") for parameters θ. The estimator has no access to
+// recordings. It requests, for each run, sums over residuals whitened by their noise (NormalSums),
+// and, for the whole, the parameters with their priors. A point θ is a vector of coordinates that
+// only the model interprets. It may lie on a manifold, such as an attitude, whose four quaternion
+// components have three degrees of freedom. The estimator therefore changes a point only through
+// stepped(), with a step in the order of Parameters.
 #pragma once
 
 #include <functional>
@@ -17,9 +17,9 @@ namespace photorque::inference {
 
 // Request for the evaluation of one run.
 struct Request {
-  bool derivatives = true;  // false: χ² and the number of samples suffice
+  bool derivatives = true;  // false: only χ² and samples are required
   double window = 1.0;      // only the first part of the run, as a fraction in (0, 1]
-  // A run whose χ² alone exceeds this may be given up as if it could not be evaluated.
+  // The model may abort a run whose χ² alone exceeds this, as if it could not be evaluated.
   double give_up_above = infinity;
 };
 
@@ -27,36 +27,35 @@ class ForwardModel {
  public:
   virtual ~ForwardModel() = default;
 
-  // All parameters where they stand at a point, with their priors. Names, bounds and widths do not
-  // depend on the point; the mean of a prior may. Nothing but `value` is used of a parameter
-  // without prior and bounds.
+  // All parameters at a point, with their priors. Names, bounds and widths are independent of the
+  // point; the mean of a prior may depend on it. Only `value` is used of a parameter without prior
+  // and bounds.
   virtual Parameters parameters(const Eigen::VectorXd& at) const = 0;
 
-  // The sums of one run, priors left out: by the parameters of that run, then the shared ones.
-  // NumericalError where the model cannot be evaluated, which counts as infinitely bad.
+  // Sums of one run without priors: first over its run parameters, then over the shared ones.
+  // Throws NumericalError where the model cannot be evaluated; χ² then counts as infinite.
   virtual NormalSums sums(const Eigen::VectorXd& at, Eigen::Index run,
                           const Request& request) const = 0;
 
-  // The point that a step leads to. A parameter that the step takes past a bound ends on it
-  // exactly.
+  // The point after a step. A parameter that would pass a bound ends exactly on it.
   virtual Eigen::VectorXd stepped(const Eigen::VectorXd& at, const Eigen::VectorXd& step) const = 0;
 };
 
-// The sums of all runs and of the priors at a point.
+// Sums of all runs and of the priors at a point.
 struct Evaluation {
   SumsOfRuns sums;                   // χ² is infinite where the model cannot be evaluated
-  double data_chi2 = infinity;       // without the priors
+  double data_chi2 = infinity;       // excluding the priors
   std::vector<double> run_chi2;      // of each run
   std::vector<int64_t> run_samples;  // of each run
 };
 
 Evaluation evaluate(const ForwardModel& model, const Eigen::VectorXd& at, const Request& request);
 
-// Forward models whose residuals are a plain function of their parameters' values.
+// Forward models whose residuals are a plain function of the values of their parameters.
 
 // Whitened residuals r = (measured − predicted)/noise of a run and, where `slopes` is not null,
-// their slopes J = ∂(predicted/noise)/∂θ, a column for each parameter. `values`: the run's own
-// parameters, then the shared ones. Residuals that are not finite count as infinitely bad.
+// their slopes J = ∂(predicted/noise)/∂θ, one column per parameter. `values`: the run parameters,
+// then the shared ones. Non-finite residuals count as infinite χ².
 using ResidualFunction = std::function<void(const Eigen::VectorXd& values, Eigen::Index run,
                                             Eigen::VectorXd& residuals, Eigen::MatrixXd* slopes)>;
 
@@ -64,10 +63,10 @@ using ResidualFunction = std::function<void(const Eigen::VectorXd& values, Eigen
 class ResidualModel final : public ForwardModel {
  public:
   ResidualModel(Parameters parameters, ResidualFunction residuals);
-  // One run, all parameters shared.
+  // A single run with all parameters shared.
   ResidualModel(std::vector<Parameter> parameters, ResidualFunction residuals);
 
-  // The values that the parameters were given with.
+  // The initial values of the parameters.
   Eigen::VectorXd start() const;
 
   Parameters parameters(const Eigen::VectorXd& at) const override;
@@ -80,8 +79,8 @@ class ResidualModel final : public ForwardModel {
   ResidualFunction residuals_;
 };
 
-// Slopes by central differences of `step` (absolute: parameters are logarithms, or of order one);
-// good to step² times the third derivative, and to 1e-16/step.
+// Slopes by central differences with `step` (absolute: parameters are logarithms or of order one).
+// The error is step² times the third derivative, plus 1e-16/step from rounding.
 ResidualFunction with_differences(
     std::function<Eigen::VectorXd(const Eigen::VectorXd& values)> residuals, double step = 1e-5);
 

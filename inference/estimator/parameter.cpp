@@ -20,9 +20,10 @@ class CheapestWay {
         place_(static_cast<size_t>(at.size()), Place::free),
         step_(Eigen::VectorXd::Zero(at.size())) {}
 
-  // Each turn puts one on the bound that it is beyond, or lets one go that pulls to within: the one
-  // that does so most, which soon ends but may go in circles; after a while the first one, which
-  // ends for certain (K. G. Murty, Opsearch 11 (1974) 123).
+  // Active-set iteration. Each turn fixes one parameter on the bound that it violates, or releases
+  // one whose release lowers χ². At first the worst one is chosen, which is fast but may cycle;
+  // after 3 n turns the first one, which terminates for certain (K. G. Murty, Opsearch 11 (1974)
+  // 123).
   Eigen::VectorXd run() {
     constexpr Eigen::Index most_turns = 1000;
     for (Eigen::Index turn = 0; turn < most_turns; ++turn) {
@@ -48,7 +49,7 @@ class CheapestWay {
     double most = rounding;
     for (Eigen::Index i = 0; i < at_.size(); ++i) {
       const double reached = at_[i].value + step_[i];
-      // How far beyond a bound, or half of how χ² falls on the way from it, in standard errors.
+      // Bound violation, or half the slope of χ² towards the interior [standard errors].
       double wrong = 0.0;
       Place to = Place::free;
       switch (place_[static_cast<size_t>(i)]) {
@@ -71,7 +72,7 @@ class CheapestWay {
     return change;
   }
 
-  // The step of all that are free that costs least, the others on their bounds.
+  // Minimum-cost step of all free parameters, with the others on their bounds.
   void solve() {
     ArrowMatrix scaled = information_.scaled(scale_);
     Eigen::VectorXd fixed = Eigen::VectorXd::Zero(at_.size());
@@ -92,7 +93,7 @@ class CheapestWay {
 
   const ArrowMatrix& information_;
   const Parameters& at_;
-  Eigen::VectorXd scale_;  // one over the root of the diagonal
+  Eigen::VectorXd scale_;  // inverse root of the diagonal
   std::vector<Place> place_;
   Eigen::VectorXd step_;
 };

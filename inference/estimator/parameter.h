@@ -15,23 +15,23 @@ inline constexpr double infinity = std::numeric_limits<double>::infinity();
 // One number to be estimated.
 struct Parameter {
   std::string name;
-  std::string unit;    // empty where it has none, or where the name ends in it
-  double value = 0.0;  // where it stands now
-  // The Gaussian prior N(mean, sigma²). An infinite sigma is no prior at all.
+  std::string unit;    // empty if dimensionless or if the name ends in it
+  double value = 0.0;  // present value
+  // The Gaussian prior N(mean, sigma²); an infinite sigma means no prior.
   double mean = 0.0;
   double sigma = infinity;  // > 0
-  // The fit does not leave these; lowest < highest.
+  // Bounds of the fit; lowest < highest.
   double lowest = -infinity;
   double highest = infinity;
 
   bool has_prior() const { return sigma < infinity; }
 };
 
-// All parameters of a problem, in the one order that steps, gradients and matrices use: those of
-// the first run, those of the second, …, then those that all runs share. Every run has as many.
+// All parameters of a problem, in the order of all steps, gradients and matrices: those of the
+// first run, those of the second, …, then the shared ones. Every run has the same number.
 struct Parameters {
   std::vector<std::vector<Parameter>>
-      of_run;  // nuisances: where a run began, its instrument's bias
+      of_run;  // nuisance parameters: initial conditions, instrument bias
   std::vector<Parameter> shared;
 
   Eigen::Index runs() const { return static_cast<Eigen::Index>(of_run.size()); }
@@ -47,12 +47,12 @@ struct Parameters {
   }
 };
 
-// The way back to the bounds of parameters that were fitted without them.
+// Projection onto the bounds after a fit without bounds.
 
-// The step δ from the optimum `at` to within the bounds of all parameters by which χ² grows least:
-// min δᵀ H δ with lowest ≤ θ + δ ≤ highest, H the information there, positive definite. What is
-// correlated moves along: to bring one of several numbers back whose sum alone is ill known, all of
-// them move. Zero where nothing is beyond a bound. By an active set (Nocedal & Wright, Numerical
+// The step δ from the optimum `at` to within all bounds that raises χ² least: min δᵀ H δ with
+// lowest ≤ θ + δ ≤ highest, where H is the positive definite information there. Correlated
+// parameters move too: if only the sum of several is ill determined, bringing one back to its bound
+// moves all. Zero if no bound is violated. Active-set method (Nocedal & Wright, Numerical
 // Optimization, 2nd ed. 2006, section 16.5).
 Eigen::VectorXd step_to_bounds(const ArrowMatrix& information, const Parameters& at);
 

@@ -1,13 +1,13 @@
-// Score tests: how much χ² would fall if parameters were freed that now stand at zero effect,
-// computed from the slopes at the present fit alone (C. R. Rao, Proc. Camb. Phil. Soc. 44 (1948)
-// 50).
+// Score tests predict how much χ² falls if parameters that are fixed at zero effect are freed. They
+// use the slopes at the present fit alone (C. R. Rao, Proc. Camb. Phil. Soc. 44 (1948) 50).
 //
-// Of the information matrix and gradient of all parameters, fitted ones f and candidates c,
+// Let f denote the fitted parameters and c the candidates in the information matrix and gradient of
+// all parameters. With the fitted parameters projected out, those of the candidates are
 //
-//   S = H_cc − H_cf H_ff⁻¹ H_fc,   s = g_c − H_cf H_ff⁻¹ g_f
+//   S = H_cc − H_cf H_ff⁻¹ H_fc,   s = g_c − H_cf H_ff⁻¹ g_f.
 //
-// is what the data say about the candidates with everything fitted projected out: freeing them
-// lowers χ² by sᵀ S⁻¹ s, at the change S⁻¹ s. Both are exact where the model is linear.
+// Freeing the candidates changes them by S⁻¹ s and lowers χ² by sᵀ S⁻¹ s. Both are exact for linear
+// models.
 #pragma once
 
 #include <vector>
@@ -22,26 +22,25 @@ struct Score {
   Eigen::MatrixXd information;  // inverse covariance of the estimate
 };
 
-// From the information S about some parameters and their gradient s, in the space that the data
-// determine at all. `before`: the diagonal of the information before anything was projected out;
-// a remainder below 1e-8 of it is rounding.
+// Solves for parameters with information S and gradient s, in the subspace that the data determine.
+// `before`: the diagonal of the information before projection; a remainder below 1e-8 of it is
+// rounding.
 Score solve_score(const Eigen::MatrixXd& S, const Eigen::VectorXd& s,
                   const Eigen::VectorXd& before);
 
-// S and s of all parameters after the first `fitted` ones of some sums (with the priors).
+// S and s of all parameters after the first `fitted` ones of some sums (priors included).
 struct Projected {
   Eigen::MatrixXd information;
   Eigen::VectorXd gradient;
   Eigen::VectorXd before;  // argument of solve_score()
 
-  // Of the parameters `which` together.
+  // Score of the parameters `which` together.
   Score score(const std::vector<Eigen::Index>& which) const;
-  // Of the parameters [first, first + count).
+  // Score of the parameters [first, first + count).
   Score score(Eigen::Index first, Eigen::Index count) const;
 };
 Projected project_out(const NormalSums& sums, Eigen::Index fitted);
-// Projects out the first `fitted` parameters of several runs; all parameters of single runs are
-// among them.
+// Projects out the first `fitted` parameters of several runs, which include all run parameters.
 Projected project_out(const SumsOfRuns& sums, Eigen::Index fitted);
 
 }  // namespace photorque::inference

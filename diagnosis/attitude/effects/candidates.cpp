@@ -1,4 +1,4 @@
-// The catalogue of candidates, each with the sizes to be expected of it on the machine at hand.
+// The catalogue of candidates, with parameter scales for the machine at hand.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,14 +11,14 @@ namespace photorque {
 
 namespace {
 
-// Of one run: a few states as they were read, and how much the rates changed.
+// Sampled motion of one run: some states from the readings, and the scale of the acceleration.
 struct ReadMotion {
   std::vector<PlatformState> states;
   double acceleration_rad_s2 = 0.0;
   double acceleration_m_s2 = 0.0;  // of a sliding body
 };
 
-// Places and velocities of a sliding body, as they were read at block `i`.
+// Position and velocity of a sliding body at block `i`, from the readings.
 std::array<double, 4> place_at(const Observation& seen, size_t i, size_t reach) {
   std::array<double, 4> place{};
   const size_t from = i - std::min(i, reach), to = std::min(seen.blocks() - 1, i + reach);
@@ -53,7 +53,7 @@ Vec3 rate_at(const Observation& seen, size_t i, size_t reach) {
     }
   }
   if (seen.rows_of(i, vector_channels + static_cast<int>(Scalar::rate_magnitude)) > 0.0) {
-    // About which axis is not known: as much about each.
+    // The axis is unknown: the rate is assumed to be equal about all three.
     const double magnitude = seen.scalar[static_cast<size_t>(Scalar::rate_magnitude)].value[i];
     rate = magnitude / std::sqrt(3.0) * Vec3::Ones();
   }
@@ -66,7 +66,7 @@ Vec3 rate_at(const Observation& seen, size_t i, size_t reach) {
 ReadMotion read_motion(const AttitudeModel& model, const Observation& seen) {
   constexpr size_t most_states = 40;
   const size_t stride = std::max<size_t>(1, seen.blocks() / most_states);
-  // Attitudes so far apart determine a rate.
+  // Distance of attitudes [blocks] from which a rate is computed.
   const size_t reach = std::max<size_t>(1, seen.blocks() / 8);
   ReadMotion motion;
   Vec3 least = Vec3::Constant(1e308), most = -least, slowest = least, fastest = most;
@@ -93,8 +93,8 @@ ReadMotion read_motion(const AttitudeModel& model, const Observation& seen) {
   return motion;
 }
 
-// Mean square of the torque of one disturbance over the motion [N² m²]: about the axis of a
-// platform with one axis; of a force on a sliding body [N²].
+// Mean square of the torque of one disturbance over the motion [N² m²], for a one-axis platform
+// about its axis; for a force on a sliding body of the force [N²].
 double mean_square_action(const Disturbance& disturbance, const AttitudeModel& nominal,
                           const std::vector<Observation>& runs,
                           const std::vector<ReadMotion>& motions) {
@@ -111,7 +111,7 @@ double mean_square_action(const Disturbance& disturbance, const AttitudeModel& n
       PlatformState own = Dynamics(model).initial_state(state.rate_body_rad_s);
       own.time_s = state.time_s;
       own.lab_from_body = state.lab_from_body;
-      // Place and velocity stand last.
+      // Position and velocity are the last four states.
       if (platform.slides()) {
         std::copy(state.extra.end() - 4, state.extra.end(), own.extra.end() - 4);
       }
@@ -127,7 +127,7 @@ double mean_square_action(const Disturbance& disturbance, const AttitudeModel& n
   return count > 0.0 ? sum / count : 0.0;
 }
 
-// Components of an array that exert nothing about the one axis, where another one does.
+// Excludes components of an array that have no effect about the single axis if another has one.
 void leave_out_what_does_nothing(const std::vector<double>& actions, Candidate& c) {
   constexpr double nothing = 1e-9;
   for (size_t p = 0; p < actions.size(); ++p) {
@@ -141,11 +141,11 @@ void leave_out_what_does_nothing(const std::vector<double>& actions, Candidate& 
   }
 }
 
-// The catalogue's sizes are those of platforms on air bearings. On a bicycle wheel or a spacecraft
-// they are wrong by many decades. There the size of every strength is set by the recorded rates:
-// its torque over the recorded motion is the mean moment of inertia times the range of the rates
-// over the duration. Does nothing for a platform on an air bearing, nor to effects without a
-// torque.
+// The scales of the catalogue are those of platforms on air bearings. For a bicycle wheel or a
+// spacecraft they are wrong by many decades. For such machines the scale of every strength is set
+// from the recorded rates: its torque over the recorded motion then equals the mean moment of
+// inertia times the range of the rates over the duration. Platforms on air bearings and effects
+// without a torque are unchanged.
 void scale_to_machine(const NominalModel& nominal, const std::vector<Observation>& runs,
                       std::vector<Candidate>& candidates) {
   const Platform& platform = nominal.model.platform;
@@ -198,7 +198,8 @@ Candidate candidate_of(const Effect& effect, const DisturbanceContext& context) 
   c.effect = effect;
   c.start = disturbance_of(effect, context);
   for (const Parameter& parameter : c.start.parameters) {
-    // A fixed detail of the law (the rate below which a contact creeps) is not fitted.
+    // Details of a law without a key in the catalogue (the rate below which a contact creeps) are
+    // fixed.
     const auto key = std::find_if(effect.keys.begin(), effect.keys.end(),
                                   [&](const EffectKey& k) { return k.key == parameter.key; });
     c.scale.push_back(key == effect.keys.end() ? 0.0 : key->scale);
@@ -218,7 +219,7 @@ Candidate candidate_of(const EmpiricalLaw& law) {
   c.law = law;
   c.start = law.disturbance;
   for (size_t p = 0; p < law.disturbance.parameters.size(); ++p) {
-    // An exponent, a time constant.
+    // Exponents and time constants are searched.
     const bool own = p < law.shape.first_coefficient();
     c.scale.push_back(own ? law.own_scale : law.scale);
     c.lowest.push_back(own ? law.lowest : -1e308);
@@ -246,7 +247,8 @@ CoveredMotion covered_by(const std::vector<Observation>& runs) {
       covered.has_forces = covered.has_forces || held.commands_force();
       covered.has_wheel = covered.has_wheel || held.wheel != WheelSpeeds{};
     }
-    // Light that is always the same pushes as a draught does.
+    // Constant light is indistinguishable from a draught, so its current must change by this
+    // fraction.
     constexpr double least_change = 0.05;
     covered.led_current_A = std::max(covered.led_current_A, brightest_A);
     covered.has_lamps = covered.has_lamps || dimmest_A < (1.0 - least_change) * brightest_A;
@@ -272,7 +274,7 @@ CoveredMotion covered_by(const std::vector<Observation>& runs) {
   return covered;
 }
 
-// Whether some recorded attitude is far from the first of its run.
+// Whether some recorded attitude differs from the first of its run by a large angle.
 bool turns(const std::vector<Observation>& runs) {
   constexpr double far_rad = 0.3;
   return std::any_of(runs.begin(), runs.end(), [&](const Observation& seen) {
@@ -295,7 +297,7 @@ bool turns(const std::vector<Observation>& runs) {
   });
 }
 
-// Rates about an axis: those of a gyro, or of angles across a sixteenth of the run.
+// Rates about an axis from a gyro, or from angles over a sixteenth of the run.
 std::vector<double> rates_about(const Observation& seen, const Vec3& axis) {
   std::vector<double> rate_rad_s, angle_rad, time_s;
   size_t before = seen.blocks();
@@ -324,13 +326,13 @@ std::vector<double> rates_about(const Observation& seen, const Vec3& axis) {
   return rate_rad_s;
 }
 
-// Whether every run turns one way about `axis`, and ever more slowly; it may stop.
+// Whether every run rotates in one direction about `axis` and slows down; it may stop.
 bool only_slows_down(const std::vector<Observation>& runs, const Vec3& axis) {
   return std::all_of(runs.begin(), runs.end(), [&](const Observation& seen) {
     const std::vector<double> rate_rad_s = rates_about(seen, axis);
     if (rate_rad_s.empty()) return false;
     const auto [least, most] = std::minmax_element(rate_rad_s.begin(), rate_rad_s.end());
-    // Fraction of the largest rate that noise alone may give to a wheel at rest, or in a short
+    // Fraction of the largest rate that noise may produce for a wheel at rest or in a short
     // segment.
     constexpr double little = 0.02;
     return std::min(-*least, *most) < little * std::max(-*least, *most) &&
@@ -338,7 +340,8 @@ bool only_slows_down(const std::vector<Observation>& runs, const Vec3& axis) {
   });
 }
 
-// Velocities of a sliding body over an eighth of the run, along lab x and y, from places alone.
+// Velocities of a sliding body along lab x and y, by central differences of positions over plus and
+// minus an eighth of the run.
 std::vector<Vec2> velocities_m_s(const Observation& seen) {
   std::vector<Vec2> place_m, velocity;
   std::vector<double> time_s;
@@ -359,7 +362,7 @@ std::vector<Vec2> velocities_m_s(const Observation& seen) {
   return velocity;
 }
 
-// Whether the sliding body goes straight on in every run, and ever more slowly; it may stop.
+// Whether the sliding body moves in one direction and slows down in every run; it may stop.
 bool only_slides_out(const std::vector<Observation>& runs) {
   return std::ranges::all_of(runs, [](const Observation& seen) {
     const std::vector<Vec2> velocity = velocities_m_s(seen);
@@ -374,7 +377,7 @@ bool only_slides_out(const std::vector<Observation>& runs) {
   });
 }
 
-// Whether a candidate of the size to be expected makes the motion depend on the attitude.
+// Whether a candidate of the expected size makes the motion depend on the attitude.
 bool needs_attitude(const Candidate& c, AttitudeModel model) {
   Disturbance acting = c.start;
   for (size_t p = 0; p < acting.parameters.size(); ++p) {
@@ -396,7 +399,7 @@ std::optional<double> braking_power(const Candidate& candidate, AttitudeModel mo
   }
   model.disturbances = {std::move(acting)};
   if (slides) model.disturbances.push_back(translation());
-  // Along the motion: the action at this rate about the axis, or at this speed along x.
+  // The force along x at this speed, or the torque about the axis at this rate.
   const auto action = [&](double motion) {
     PlatformState state =
         Dynamics(model).initial_state(pushes ? Vec3::Zero().eval() : motion * model.platform.axis);
@@ -442,7 +445,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
                           const Thresholds& limits) {
   const DisturbanceContext context = nominal.context();
   const CoveredMotion covered = covered_by(runs);
-  // A spacecraft's experiment has no latitude.
+  // The experiment of a spacecraft has no latitude.
   const bool floats_in_laboratory =
       !context.platform.has_bearing() && context.environment.latitude_rad != 0.0 &&
       std::any_of(runs.begin(), runs.end(),
@@ -484,12 +487,13 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
   }
   for (Effect& effect : catalogue(context)) {
     if (!has_channel(effect.how.needs)) continue;
-    // A law without parameters acts already or not.
+    // A law without parameters is not a candidate if the nominal model contains it.
     const auto& acting = nominal.model.disturbances;
     const bool acts = std::any_of(acting.begin(), acting.end(),
                                   [&](const Disturbance& d) { return d.kind == effect.kind; });
     if (effect.keys.empty() && acts) continue;
-    // About one axis, where no torque is known, all torques are per unit of inertia.
+    // For rotation about one axis without known torques, all torques are relative to the inertia,
+    // so its error is not identifiable.
     if (effect.how.inertia_change_kg_m2 != nullptr && context.platform.turns_about_one_axis() &&
         !covered.has_commands) {
       continue;
@@ -511,8 +515,8 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
   if (context.platform.slides() && !sees_turn) {
     std::erase_if(all.list, [](const Candidate& c) { return !is_force(c.effect.how.needs); });
   }
-  // Where the yaw hardly changes, a law of the yaw is not distinguished from a constant, nor a
-  // force that turns with the body.
+  // If yaw hardly changes, laws of yaw, and forces that rotate with the body, are indistinguishable
+  // from a constant.
   if (!context.platform.has_air_bearing() && !turns(runs)) {
     const bool always = depends_on_attitude(nominal.model);
     std::erase_if(all.list, [&](const Candidate& c) {
@@ -522,13 +526,13 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     });
   }
   if (context.platform.turns_about_one_axis()) {
-    // About a level axis the direction of body x in the plane is constant, and so is the tilt about
-    // an upright axis: a law of it would duplicate another law.
+    // About a level axis the yaw is constant, and about an upright axis the tilt: a law of it would
+    // duplicate another law.
     const bool is_level = std::abs(context.platform.axis.z()) < 0.5;
     std::erase_if(all.list,
                   [&](const Candidate& c) { return c.variable == (is_level ? "yaw" : "tilt"); });
-    // A weight pulls back about a level axis, and a twisted line would do so nearly alike.
-    // A sliding body carries no line that is known to twist.
+    // About a level axis a weight exerts a restoring torque, and a twisted line a nearly equal one.
+    // A sliding body has no known line.
     const bool has_weight =
         context.platform.slides() || std::ranges::any_of(all.list, [&](const Candidate& c) {
           return c.effect.how.needs == Requirement::gravity && pulls_back(c, nominal.model);
@@ -538,7 +542,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
              pulls_back(c, nominal.model);
     });
   }
-  // While the rate keeps its sign, friction is also a steady torque, and its sign is known.
+  // While the rate keeps its sign, friction equals a steady torque, and its sign is known.
   if (context.platform.turns_about_one_axis() && only_slows_down(runs, context.platform.axis) &&
       std::erase_if(all.list, [](const Candidate& c) { return c.effect.how.steady; }) > 0) {
     all.remark =
@@ -553,7 +557,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
         "or a "
         "pull against the motion";
   }
-  // The attitude is unknown.
+  // Without an attitude state, effects that depend on it cannot be evaluated.
   if (nominal.model.holds_attitude) {
     std::erase_if(all.list, [&](const Candidate& c) { return needs_attitude(c, nominal.model); });
   }

@@ -34,7 +34,8 @@ MotionFunction harmonic(int order) {
 // A formula holds up to twice the recorded range, a table only within it.
 constexpr double formula_reach = 2.0;
 
-// Of tilt or rate, 1 at a tenth of a radian (a second); `seen` is the largest in the recordings.
+// A power of tilt or rate, normalised to 1 at 0.1 rad or 0.1 rad/s; `seen` is the maximum in the
+// recordings.
 MotionFunction power_of(MotionVariable variable, double exponent, double seen) {
   MotionFunction f{.of = variable, .form = power, .reference = 0.1, .own = exponent};
   if (seen > 0.0) f.range = {{0.0, formula_reach * seen}};
@@ -61,7 +62,7 @@ MotionFunction cosines_over(double duration_s, int count) {
           .range = {{0.0, duration_s}}};
 }
 
-// Evenly from zero to the largest tilt that was seen.
+// Evenly spaced knots from zero to the largest recorded tilt.
 MotionFunction tilt_table(double tilt_rad) {
   constexpr int knots = 8;
   std::vector<double> at;
@@ -138,7 +139,8 @@ std::vector<EmpiricalLaw> empirical_laws(const CoveredMotion& covered, double to
                             .orders = {order},
                             .reference = reference_N_m};
     };
-    // Fractions of the command: a coefficient is the torque at a command of 1 N m.
+    // The variable is the fraction of the command: a coefficient is the torque at a command of 1 N
+    // m.
     all.push_back(law("cross talk", {{cross_talk}, {commanded(1, 1.0)}}, 0.2));
     all.push_back(law("square", {{command}, {commanded(2, 1e-4)}}, 2e-5));
   }

@@ -13,13 +13,13 @@ namespace photorque {
 
 namespace {
 
-// Of swinging masses about the three body axes, beside the body.
+// State of oscillators about the three body axes, relative to the body.
 struct Swing {
   Vec3 angle_rad = Vec3::Zero(), rate_rad_s = Vec3::Zero();
 };
 
-// φ'' + 2 ζ ω φ' + ω² φ = −dω_body/dt, from rest beside the body, the acceleration constant between
-// readings: exact for uneven times.
+// Solves φ'' + 2 ζ ω φ' + ω² φ = −dω_body/dt, starting at rest relative to the body. The
+// acceleration is constant between readings, so the solution is exact for uneven times.
 std::vector<Swing> swings(const PropagatedRun& run, double frequency_Hz, double damping) {
   const double angular_frequency = 2.0 * pi * frequency_Hz;
   const double decay = damping * angular_frequency;
@@ -42,10 +42,10 @@ std::vector<Swing> swings(const PropagatedRun& run, double frequency_Hz, double 
   return result;
 }
 
-// Takes the mean over `window` neighbours (odd) from every row.
+// Subtracts the moving average over `window` neighbours (odd) from every row.
 void take_out_slow(Eigen::MatrixXd& rows, Eigen::Index window) {
   const Eigen::Index n = rows.rows(), half = window / 2;
-  Eigen::MatrixXd until(n + 1, rows.cols());  // sums of the rows before
+  Eigen::MatrixXd until(n + 1, rows.cols());  // sums of the preceding rows
   until.row(0).setZero();
   for (Eigen::Index i = 0; i < n; ++i) until.row(i + 1) = until.row(i) + rows.row(i);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -55,7 +55,7 @@ void take_out_slow(Eigen::MatrixXd& rows, Eigen::Index window) {
   }
 }
 
-// Of one channel, where it was read: the whitened answer to each appendage, then the residual.
+// Rows of one channel at its readings: the whitened response to each appendage, then the residual.
 Eigen::MatrixXd answers(const PropagatedRun& run, const std::vector<Swing>& swing,
                         const std::vector<Vec3>& axes, const std::vector<Vec3>& answer_body,
                         Eigen::Index channel) {
@@ -108,17 +108,18 @@ Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inert
 
 namespace {
 
-// Mostly short pulses (the start or end of a command) excite appendages, so that a resonance looks
-// as wide as its damping: enough of it for the grid of frequencies.
+// Mostly short pulses (the start or end of a command) excite appendages, so a resonance appears as
+// wide as its damping. This damping is wide enough for the frequency grid.
 constexpr double scanned_damping = 0.08;
 
-// An appendage starts by turning with the body; its rate is counted about its axis.
+// The appendage initially rotates with the body; its rate is that about its axis.
 void set_axis(Disturbance& d, const Vec3& unit) {
   set_vector(d, "axis", unit);
   state_of(d, "rate_rad_s").per_body_rate = unit;
 }
 
-// Light appendages of one frequency about six axes: their matrices J a aᵀ span the symmetric ones.
+// Light appendages of one frequency about six axes: their matrices J a aᵀ span all symmetric
+// matrices.
 ScoreGroup appendages(const Disturbance& start, double frequency_Hz,
                       double damping = scanned_damping) {
   ScoreGroup group;
@@ -140,7 +141,7 @@ std::vector<Vec3> axes_of(const ScoreGroup& group) {
   return axes;
 }
 
-// As the strengths of six appendages(): the one about `axis`.
+// Strengths of the six appendages() that are equivalent to one about `axis`.
 Eigen::VectorXd as_six(const Vec3& axis) {
   const Mat3 M = axis * axis.transpose();
   Eigen::VectorXd six(6);
@@ -155,9 +156,9 @@ struct Mode {
   double scanned_Hz = 0.0;
 };
 
-// An appendage of `strength_kg_m2` about `axis`, as scored where it has no recoil on the platform.
-// With μ = J aᵀI⁻¹a its swing is that of frequency f/√(1 − μ), driven by 1/(1 − μ) times the
-// acceleration: of so much, the score finds J/(1 − μ) at f/√(1 − μ).
+// Converts a scored strength about `axis`, which neglects the recoil on the platform, into an
+// appendage with recoil. With μ = J aᵀI⁻¹a, an appendage of frequency f swings at f/√(1 − μ),
+// driven by 1/(1 − μ) times the acceleration. The score therefore finds J/(1 − μ) at f/√(1 − μ).
 Disturbance heavy(const Disturbance& light, const Vec3& axis, double strength_kg_m2,
                   const Mat3& inertia_kg_m2) {
   constexpr double most = 0.5;
@@ -171,7 +172,7 @@ Disturbance heavy(const Disturbance& light, const Vec3& axis, double strength_kg
   return d;
 }
 
-// The appendage with the largest part of the effect of all six: about an eigenvector of Σ J a aᵀ.
+// The single appendage with the largest gain, about an eigenvector of Σ J a aᵀ over all six.
 Mode best_appendage(const ScoreGroup& group, const Score& score, const Mat3& inertia_kg_m2) {
   Mode best;
   if (score.estimate.size() != 6) return best;
@@ -202,9 +203,9 @@ Score together(const Score& a, const Score& b) {
   return solve_score(information, gradient, information.diagonal());
 }
 
-// The score of appendages that swing far faster than the platform moves, from the score of the same
-// appendages at another such frequency: beside what is a part of the inertia, whatever it swings
-// with, the platform feels −J a (a·ω)''/(2πf)².
+// Score of appendages that swing far faster than the platform moves, extrapolated from the score at
+// another such frequency. Besides a constant part of the inertia, which is independent of
+// frequency, the platform feels −J a (a·ω)''/(2πf)².
 Score carried_at(const Score& carried, double scored_Hz, double frequency_Hz) {
   const double grows = scored_Hz * scored_Hz / (frequency_Hz * frequency_Hz);
   Score at = carried;
@@ -218,9 +219,9 @@ struct Tuned {
   Score ringing;
 };
 
-// Frequency and damping near `frequency_Hz` at which ringing gains most. An appendage that rings
-// long keeps its phase only where its frequency is right: a fit that starts farther off ends in
-// another minimum.
+// Frequency and damping near `frequency_Hz` with the largest gain of ringing. A weakly damped
+// appendage stays in phase only at the right frequency: a fit that starts farther off ends in
+// another local minimum.
 Tuned tuned(const std::vector<PropagatedRun>& runs, const Mat3& inertia_kg_m2,
             const std::vector<Vec3>& axes, double frequency_Hz) {
   constexpr double first_reach = 0.1, least_damping = 0.004;
@@ -228,7 +229,7 @@ Tuned tuned(const std::vector<PropagatedRun>& runs, const Mat3& inertia_kg_m2,
   Tuned best{frequency_Hz, scanned_damping,
              score_of_ringing(runs, inertia_kg_m2, axes, frequency_Hz, scanned_damping)};
   double reach = first_reach;
-  // The steps stay about as wide as the resonance.
+  // The frequency steps remain about as wide as the resonance.
   for (double damping = 0.5 * scanned_damping; damping > least_damping; damping *= 0.5) {
     const double centre_Hz = best.frequency_Hz;
     for (int k = -steps; k <= steps; ++k) {
@@ -253,8 +254,8 @@ std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit
     return seen.duration_s() / static_cast<double>(seen.blocks());
   };
   const double highest_Hz = std::min(max_Hz, 0.4 / interval_s(runs.front()));
-  // Below it, a swing passes through enough of the averages, and the platform's own motion takes
-  // part in it; above, it is too slow to.
+  // Below this frequency averages resolve a swing, and the platform's motion couples to it. Above
+  // it, the platform moves too slowly to couple.
   const double slow_Hz = 0.14 / interval_s(slow_runs.front());
   const Mat3& inertia_kg_m2 = fit.best.model.platform.inertia_kg_m2;
   const std::vector<Prediction> propagated = residuals_of(fit, runs);
@@ -262,7 +263,7 @@ std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit
   for (size_t run = 0; run < runs.size(); ++run) all.push_back({runs[run], propagated[run]});
   std::vector<Start> starts;
   const std::vector<Vec3> axes = axes_of(appendages(start, slow_Hz));
-  // What swings fast turns along with slow motion, as a part of the inertia.
+  // A fast appendage follows slow motion like a rigid part of the inertia.
   constexpr double stiff = 5.0;  // times slow_Hz
   const Score carried = score(fit, slow_runs, {appendages(start, stiff * slow_Hz)}).front();
   const auto at = [&](const Tuned& t) {

@@ -1,4 +1,4 @@
-// Appendages that swing: screening, and starts for their frequency and axis.
+// Flexible appendages: screening, and starts for their frequency and axis.
 #pragma once
 
 #include "attitude/observation/prediction.h"
@@ -7,8 +7,7 @@
 
 namespace photorque {
 
-// Screening for appendages that swing fast, without propagating the platform again for each
-// frequency.
+// Screening for fast appendages that avoids a propagation of the platform for each frequency.
 
 // One run propagated along a fit.
 struct PropagatedRun {
@@ -18,16 +17,16 @@ struct PropagatedRun {
 
 // The score of light appendages about these axes [body, unit vectors], one strength J [kg m²] each,
 // all of one frequency and damping (fraction of critical). The motion of each appendage under the
-// fitted motion is exact. The response of the platform assumes that it is free within a swing: δω =
-// −J I⁻¹ a φ'. Parts slower than a swing are removed from readings and responses, in place of a
-// projection of the fitted parameters.
+// fitted motion is exact. The platform is assumed to be free within a swing: δω = −J I⁻¹ a φ'.
+// Instead of a projection of the fitted parameters, parts slower than a swing are removed from
+// readings and responses.
 Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inertia_kg_m2,
                        const std::vector<Vec3>& axes, double frequency_Hz, double damping);
 
-// Starts for an appendage that swings: its frequency and axis.
+// Starts for a flexible appendage: its frequency and axis.
 
-// The best flexible modes to add to `fit`, at most three. `start` is the disturbance with
-// its expected strength, `slow_runs` averages of the runs, sufficient for slow motion.
+// The best flexible modes to add to `fit`, at most three. `start` is the disturbance with its
+// expected strength; `slow_runs` are averages of the runs, sufficient for slow motion.
 std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit,
                                         const std::vector<Observation>& runs,
                                         const std::vector<Observation>& slow_runs,

@@ -17,8 +17,8 @@ bool changes_inertia(const Disturbance& d) {
 
 namespace {
 
-// Largest change of inertia that the stated uncertainties allow: three standard deviations, over
-// the moment.
+// Largest relative change of a moment of inertia within three standard deviations of the stated
+// uncertainties.
 double stated_inertia_change(const Trial& trial) {
   constexpr double sigmas = 3.0;
   const Mat3& nominal_kg_m2 = trial.fit.best.model.platform.inertia_kg_m2;
@@ -33,14 +33,14 @@ double stated_inertia_change(const Trial& trial) {
   return largest;
 }
 
-// The largest change of a principal moment by a fitted error of the inertia, as a fraction of the
-// nominal one. The torque equation is homogeneous: hardly any inertia at all explains nearly
-// everything, but platforms are weighed more accurately.
+// Largest relative change of a principal moment by fitted inertia errors. The torque equation is
+// homogeneous, so nearly zero inertia would explain almost anything, but platforms are measured
+// more accurately.
 double inertia_change(const Trial& trial) {
   const Mat3& nominal_kg_m2 = trial.fit.best.model.platform.inertia_kg_m2;
   const Vec3 nominal = nominal_kg_m2.selfadjointView<Eigen::Lower>().eigenvalues();
   double largest = 0.0;
-  // Its nominal value moves within the same limits.
+  // Errors of an uncertain nominal inertia count too.
   for (const Disturbance& d : trial.fit.best.model.disturbances) {
     const DisturbanceKind* kind = find_kind(d.kind);
     if (kind == nullptr || kind->screening.inertia_change_kg_m2 == nullptr) continue;
@@ -51,8 +51,8 @@ double inertia_change(const Trial& trial) {
   return largest;
 }
 
-// A kind that the nominal model also has may be corrected downwards, but the sum must stay within
-// its physical bound.
+// A correction of a kind in the nominal model may be negative, but the sum must remain within its
+// physical bound.
 std::string sum_objection(const AttitudeModel& model) {
   for (const DisturbanceKind& kind : disturbance_kinds()) {
     const std::optional<LeastSum>& least = kind.screening.least_sum;
@@ -103,8 +103,8 @@ std::string objection_to(const Trial& trial, const Candidates& all) {
   return sum_objection(trial.fit.best.model);
 }
 
-// The key without which the effect is zero, or another effect (a spring without stiffness is a
-// slope): the first that has strengths, or else the moment of inertia of the swinging part. Empty:
+// The key without which the effect is zero or another effect (a spring without stiffness is a
+// slope): the first with strengths, otherwise the moment of inertia of the swinging part. Empty:
 // the effect has no size.
 std::string key_of_size(const Candidate& c) {
   for (size_t p = 0; p < c.scale.size(); ++p) {
@@ -116,7 +116,7 @@ std::string key_of_size(const Candidate& c) {
   return "";
 }
 
-// In standard errors; not a number for an effect that has no size.
+// Significance in standard errors; NaN for an effect without a size.
 double significance(const Trial& trial, const Candidates& all, size_t which) {
   const Candidate& c = all[trial.candidates[which]];
   const std::string size = key_of_size(c);
@@ -128,7 +128,7 @@ double significance(const Trial& trial, const Candidates& all, size_t which) {
   for (size_t p = 0; p < c.scale.size(); ++p) {
     if (!c.is_fitted(p)) continue;
     const Eigen::Index at = where[k++];
-    // An empirical law has one size under many keys, and a shape that is searched.
+    // All coefficients of an empirical law together are its size; its searched shape is not.
     const bool is_size = c.empirical() ? !c.searched[p] : c.start.parameters[p].key == size;
     if (!is_size) continue;
     linear.emplace_back(
@@ -156,7 +156,7 @@ double log_evidence(const Trial& trial, const Candidates& all) {
   if (!std::isfinite(fit.chi2)) return -1e300;
   inference::ArrowMatrix hessian = fit.hessian;
   double result = -0.5 * fit.chi2;
-  // The parameters that are not searched, in units of their expected sizes.
+  // Strengths: the fitted parameters that are not searched, in units of their expected sizes.
   inference::Strengths strengths;
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
     const Candidate& c = all[trial.candidates[i]];
@@ -172,7 +172,7 @@ double log_evidence(const Trial& trial, const Candidates& all) {
         strengths.value.push_back(
             fit.best.model.disturbances[trial.disturbances[i]].parameters[p].value);
         strengths.scale.push_back(c.scale[p]);
-        if (c.lowest[p] == 0.0) result += std::log(2.0);  // half of a Gaussian
+        if (c.lowest[p] == 0.0) result += std::log(2.0);  // half-Gaussian prior
         continue;
       }
       const double sigma = c.scale[p], wide = sigma * limits.fit_prior_widths;
@@ -181,7 +181,7 @@ double log_evidence(const Trial& trial, const Candidates& all) {
     }
     for (size_t s = 0; s < c.start.states.size(); ++s) {
       result -= static_cast<double>(fit.best.runs.size()) *
-                std::log(limits.own_state_sigma);  // prior of its start
+                std::log(limits.own_state_sigma);  // prior of its initial value
     }
   }
   result -= 0.5 * hessian.log_determinant();

@@ -5,14 +5,14 @@
 
 namespace photorque {
 
-// Laplace's approximation of the evidence. The fit's own prior is far wider than the nominal model
-// of an effect; here it is replaced by the expected size of an effect.
+// Laplace's approximation of the evidence. The prior of the fit, which is far too wide, is replaced
+// by one with the expected size of the effect.
 double log_evidence(const Trial& trial, const Candidates& all);
 
-// States the significance of each of the trial's candidates, its evidence, and the objection to it.
+// Sets the significance of each candidate of the trial, its evidence, and its physical objection.
 void judge(Trial& trial, const Candidates& all);
 
-// Whether a kind enters as a change of the inertia.
+// Whether a disturbance is a change of the inertia.
 bool changes_inertia(const Disturbance& d);
 
 }  // namespace photorque

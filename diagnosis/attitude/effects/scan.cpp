@@ -23,15 +23,15 @@ double last_reading_s(const std::vector<Observation>& runs) {
   return end;
 }
 
-// Power at even frequencies from 0, each channel's noise alone making 1.
+// Power at even frequencies from 0, normalised to 1 for the noise of each channel.
 struct ResidualSpectrum {
   double step_Hz = 0.0;
   std::vector<double> power;
 };
 
-// Adds the power of one channel of a run; NaN where it was not read. Readings are filed in bins of
-// a quarter of a block, which moves their phases by less than 0.4 rad. Beyond half of the rate at
-// which the channel was read there are mirror images only.
+// Adds the power of one channel of a run (NaN: not read). Readings are binned to a quarter of a
+// block, with phase errors below 0.4 rad. Frequencies above half of the channel's sampling rate are
+// omitted, because they contain only aliases.
 void add_power(const std::vector<double>& white, const Observation& seen,
                ResidualSpectrum& spectrum) {
   const size_t bins = 2 * spectrum.power.size();
@@ -56,8 +56,8 @@ void add_power(const std::vector<double>& white, const Observation& seen,
   }
 }
 
-// Adds all channels of one run. The gyro counts in body axes and, rotated, in lab axes: a vibration
-// from outside has one frequency in lab axes, while a rotating platform splits it.
+// Adds all channels of one run. Gyro readings count in body axes and in lab axes: an external
+// vibration has one frequency in lab axes, which a rotating platform splits.
 void add_power(const Prediction& prediction, const Observation& seen, ResidualSpectrum& spectrum) {
   std::array<std::vector<double>, 9> channels;
   for (size_t i = 0; i < prediction.residual.size(); ++i) {
@@ -69,7 +69,7 @@ void add_power(const Prediction& prediction, const Observation& seen, ResidualSp
   for (const std::vector<double>& channel : channels) add_power(channel, seen, spectrum);
 }
 
-// The key of an effect that need not be searched: the strength of what jumps or swings.
+// The key that requires no search: the strength of a jump or an oscillation.
 const std::string& strength_of(const Candidate& c) {
   const std::vector<EffectKey>& keys = c.effect.keys;
   const auto found = std::ranges::find_if(keys, [](const EffectKey& k) { return !k.searched; });
@@ -77,8 +77,8 @@ const std::string& strength_of(const Candidate& c) {
   return found->key;
 }
 
-// How often the motion that the fit predicts repeats in its first run: turns of the body, or swings
-// of a component of its rate about the mean.
+// Number of cycles of the predicted motion in its first run: turns of the body, or oscillations of
+// a component of its rate about the mean.
 double cycles(const Fit& fit, const Observation& seen) {
   PredictionOptions options;
   options.keep_residuals = true;
@@ -100,9 +100,9 @@ double cycles(const Fit& fit, const Observation& seen) {
   return std::max(turned_rad / (2.0 * pi), 0.5 * std::ranges::max(crossings));
 }
 
-// Starts of an effect that sets in at an instant: those of a grid with the largest gains. A motion
-// that repeats makes a maximum of the gain each time, and a fit does not leave the one where it
-// starts: the grid has several instants in each.
+// Starts of an effect that begins at an instant: the grid points of largest gain. A periodic motion
+// gives a maximum of the gain in each cycle, and a fit does not leave its maximum. The grid
+// therefore has several instants per cycle.
 std::vector<Start> instant_starts(const Candidate& c, const Trial& parent,
                                   const std::vector<Observation>& runs,
                                   const Thresholds::Scoring& limits) {
@@ -130,8 +130,8 @@ std::vector<Start> instant_starts(const Candidate& c, const Trial& parent,
   return starts;
 }
 
-// A function without a law, from each value of its exponent or time constant: the best, with the
-// coefficients that the score test expects of it.
+// Starts of an empirical law: the best value of its exponent or time constant among its starts,
+// with coefficients predicted by the score test.
 std::vector<Start> empirical_starts(const Candidate& c, const Trial& parent,
                                     const std::vector<Observation>& runs,
                                     const Thresholds::Scoring& limits) {
@@ -156,19 +156,19 @@ std::vector<Start> empirical_starts(const Candidate& c, const Trial& parent,
   return {{d, scores[best].gain}};
 }
 
-// Below this frequency, sinusoids excite the platform's own motion: the slopes of the whole
-// trajectory then contain more information than the residual's power.
+// Below this frequency, sinusoids excite the platform's motion, and the slopes of the whole
+// trajectory contain more information than the power of the residual.
 double slowest_line_Hz(const std::vector<Observation>& runs) {
   return std::min(0.2, 100.0 / span_s(runs));
 }
 
-// Both phases of a tone, of which the strengths are wanted.
+// Both phases of a tone, with their strengths as parameters.
 ScoreGroup sine_and_cosine(const Disturbance& tone, const std::string& strength, double f_Hz) {
   const Disturbance sine = with_parameter(tone, "frequency_Hz", f_Hz);
   return {{sine, with_parameter(sine, "phase", pi / 2)}, indices_of(tone, strength, 3)};
 }
 
-// Frequencies below slowest_line_Hz() at which a sinusoid of this kind would gain most.
+// Frequencies below slowest_line_Hz() with the largest gains of a sinusoid of this kind.
 std::vector<double> slow_frequencies_Hz(const Disturbance& tone, const std::string& strength,
                                         const Fit& at, const std::vector<Observation>& runs,
                                         const Thresholds::Scoring& limits) {
@@ -204,7 +204,8 @@ std::vector<Start> sinusoid_starts(const Candidate& c, const Trial& parent,
   std::vector<Score> scores;
   for (const double f_Hz : frequencies_Hz) {
     groups.push_back(sine_and_cosine(c.start, strength, f_Hz));
-    // Each alone: fast ones make short steps for all that share their pass.
+    // Scored separately: fast sinusoids would force short integration steps on all groups of a
+    // pass.
     scores.push_back(score(parent.fit, runs, {groups.back()}).front());
   }
   double best = 0.0;
@@ -216,7 +217,7 @@ std::vector<Start> sinusoid_starts(const Candidate& c, const Trial& parent,
     Eigen::Matrix<double, 3, 2> amplitude;
     amplitude.col(0) = scores[i].estimate.head<3>();
     amplitude.col(1) = scores[i].estimate.tail<3>();
-    // The direction in which the swing is largest: the last eigenvector of A Aᵀ.
+    // The direction of the largest amplitude: the last eigenvector of A Aᵀ.
     const Vec3 along = symmetric_eigen(amplitude * amplitude.transpose()).vectors.col(2);
     const Vec2 parts = amplitude.transpose() * along;
     Disturbance d = groups[i].disturbances.front();
@@ -235,7 +236,7 @@ std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observa
   for (const Observation& seen : runs) {
     interval_s = std::min(interval_s, seen.duration_s() / static_cast<double>(seen.blocks() - 1));
   }
-  // A quarter of a line's width apart, up to where blocks show their mirror images.
+  // Frequency steps of a quarter of a line width, up to where blocks cause aliases.
   constexpr double bins_a_block = 4.0;
   const double bins = 4.0 * bins_a_block * span_s(runs) / interval_s;
   const size_t size = std::bit_ceil(static_cast<size_t>(bins));

@@ -1,5 +1,5 @@
-// Starts for effects whose parameters enter nonlinearly (a frequency, an instant, an axis): the fit
-// would not find them from anywhere.
+// Starts for effects with nonlinear parameters (a frequency, an instant, an axis), which a fit
+// finds only from a nearby start.
 #pragma once
 
 #include <algorithm>
@@ -12,22 +12,21 @@
 
 namespace photorque {
 
-// Frequencies at which the residual of a fit has power, strongest first [Hz], at most `most`, above
-// those of the platform's own motion.
+// At most `most` frequencies [Hz] at which the residual of a fit has power, strongest first, above
+// those of the platform's motion.
 std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observation>& runs,
                                         const Thresholds::Scoring& limits, size_t most = 4);
 
-// Starts of the fit of a candidate added to `parent`: one, or the best ones of a scan. `slow_runs`
-// are averages of the runs, sufficient for slow effects; `lines_Hz` are the parent's
-// line_frequencies_Hz().
+// Starts for a candidate added to `parent`: one, or the best of a scan. `slow_runs` are averages of
+// the runs, sufficient for slow effects; `lines_Hz` are the parent's line_frequencies_Hz().
 std::vector<Start> starts_of(const Candidate& candidate, const Trial& parent,
                              const std::vector<Observation>& runs,
                              const std::vector<Observation>& slow_runs,
                              const std::vector<double>& lines_Hz,
                              const Thresholds::Scoring& limits);
 
-// From the first reading to the last [s], of all pieces and recordings on their clock: an effect of
-// one frequency keeps its phase from piece to piece.
+// Time from the first to the last reading of all pieces and recordings [s], on their common clock:
+// an effect of one frequency stays in phase across pieces.
 inline double span_s(const std::vector<Observation>& runs) {
   double start_s = runs.front().time_s.front(), end_s = runs.front().time_s.back();
   for (const Observation& seen : runs) {
@@ -37,7 +36,7 @@ inline double span_s(const std::vector<Observation>& runs) {
   return end_s - start_s;
 }
 
-// Indices of the `most` largest values that are larger than both neighbours.
+// Indices of the `most` largest local maxima.
 inline std::vector<size_t> peaks(const std::vector<double>& value, size_t most) {
   std::vector<size_t> found;
   for (size_t i = 0; i < value.size(); ++i) {
@@ -56,7 +55,7 @@ inline Disturbance with_parameter(const Disturbance& like, std::string_view key,
   return d;
 }
 
-// Indices of the parameters of one key with so many components.
+// Indices of the parameters of a key with `components` components.
 inline std::vector<int> indices_of(const Disturbance& d, std::string_view key, size_t components) {
   const auto first = static_cast<int>(index_of(d, key));
   std::vector<int> all;

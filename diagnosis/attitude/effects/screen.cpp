@@ -17,12 +17,12 @@ std::vector<int> parameters_of(const ScoreGroup& group, const Disturbance& d) {
   return all;
 }
 
-// Information of the data about the parameters of some groups. All fitted parameters, and the
-// initial values of the groups' states, are projected out.
+// Information of the data about the parameters of some groups, with all fitted parameters and the
+// initial values of the groups' states projected out.
 struct GroupsAtFit {
   inference::Projected all;
-  std::vector<Eigen::Index> begin;  // of each group's parameters, and the end
-  bool known = false;               // false: it could not be propagated
+  std::vector<Eigen::Index> begin;  // index of each group's first parameter, and the end
+  bool known = false;               // false: propagation failed
 };
 
 GroupsAtFit project(const Fit& at, const std::vector<Observation>& runs,
@@ -33,7 +33,7 @@ GroupsAtFit project(const Fit& at, const std::vector<Observation>& runs,
   for (size_t g = first; g < last; ++g) {
     result.begin.push_back(static_cast<Eigen::Index>(extra.size()));
     for (const Disturbance& d : groups[g].disturbances) {
-      // It would act at once.
+      // A disturbance without parameters would change the model itself.
       if (d.parameters.empty()) continue;
       const size_t index = add_disturbance(h, d);
       for (const int p : parameters_of(groups[g], d)) extra.push_back({index, p});
@@ -75,7 +75,7 @@ std::vector<Score> score(const Fit& at, const std::vector<Observation>& runs,
 
 namespace {
 
-// A candidate's strengths as a group; where they stand in the sums is added to `columns`.
+// The strengths of a candidate as a group; adds their columns in the sums to `columns`.
 inference::StrengthGroup group_of(const inference::Term<Start>& term, size_t at,
                                   const Candidates& all, bool acts,
                                   const std::vector<Eigen::Index>& where,
@@ -100,7 +100,7 @@ inference::StrengthGroup group_of(const inference::Term<Start>& term, size_t at,
   return group;
 }
 
-// Sets the strength to zero, where the derivative by it is needed, whatever a scan found.
+// Sets the strengths to zero, where the derivatives are needed, also if a scan found others.
 Disturbance without_strength(const Candidate& c, Disturbance d) {
   for (size_t p = 0; p < c.scale.size(); ++p) {
     if (c.is_strength(p)) d.parameters[p].value = 0.0;
@@ -108,7 +108,7 @@ Disturbance without_strength(const Candidate& c, Disturbance d) {
   return d;
 }
 
-// Sums by some columns, all others projected out.
+// Sums for some columns, with all others projected out.
 inference::LinearProblem projected_on(const inference::SumsOfRuns& of_runs,
                                       const std::vector<Eigen::Index>& columns) {
   const inference::NormalSums sums = of_runs.of_shared();
@@ -138,7 +138,7 @@ inference::LinearProblem linear_problem(const Trial& at, const Candidates& all,
   std::vector<Free> extra;
   std::vector<inference::StrengthGroup> groups;
   std::vector<Eigen::Index> columns;
-  // The columns of the shared sums: those of h.free in their order, then the extra ones.
+  // Columns of the shared sums: those of h.free in their order, then the extra ones.
   Eigen::Index next = 0;
   for (const Free& f : h.free) next += f.per_run ? 0 : 1;
   for (size_t t = 0; t < terms.size(); ++t) {

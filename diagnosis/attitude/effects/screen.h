@@ -1,4 +1,4 @@
-// Score tests (inference/estimator/score.h) of disturbances that a model does not have yet.
+// Score tests (inference/estimator/score.h) of disturbances that a model lacks.
 #pragma once
 
 #include "diagnosis/attitude/effects/trial.h"
@@ -10,20 +10,20 @@ namespace photorque {
 using inference::Score;
 using inference::solve_score;
 
-// One group of parameters that would enter together.
+// A group of parameters that are added together.
 struct ScoreGroup {
   std::vector<Disturbance> disturbances;
   std::vector<int> parameters = {};  // of each disturbance; empty: all
 };
 
-// All groups in one pass (some in several, so that memory stays bounded). A group that cannot be
-// propagated has gain 0.
+// Scores all groups in one pass, or in several to limit memory. A group that cannot be propagated
+// has gain 0.
 std::vector<Score> score(const Fit& at, const std::vector<Observation>& runs,
                          const std::vector<ScoreGroup>& groups);
 
-// The strengths of terms about a trial (inference/subsets.h), everything else that is fitted
-// projected out. The first of `terms` are the trial's own; fast effects make no group. In one pass
-// with all their parameters: for runs of some thousand blocks.
+// The linear problem of the strengths of terms about a trial (inference/subsets.h), all other
+// fitted parameters projected out. The first `terms` are the trial's own; fast effects form no
+// group. All parameters are evaluated in one pass, for runs of some thousand blocks.
 inference::LinearProblem linear_problem(const Trial& at, const Candidates& all,
                                         const std::vector<inference::Term<Start>>& terms,
                                         const std::vector<Observation>& runs);

@@ -47,8 +47,8 @@ Disturbance disturbance_of(const Effect& effect, const DisturbanceContext& conte
 
 namespace {
 
-// Resets a diverged fit to the nominal model and to the first readings of each run, because its
-// parameters are no start.
+// Resets a diverged fit to the nominal model and the first readings of each run, because its
+// parameters are useless as a start.
 void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observation>& runs) {
   const auto& found = parent.disturbances;
   for (const Free& f : h.free) {
@@ -67,9 +67,9 @@ bool inertia_is_bent(const Hypothesis& h, size_t nominal_disturbances) {
   });
 }
 
-// The fit from `h`. The torque equation is homogeneous, so that a model without an effect moves its
-// inertia first. An added effect then only finds the local minimum beside that inertia: it is
-// therefore fitted from the stated values as well.
+// Fits from `h` and, if its inertia is shifted, also from the stated values. The torque equation is
+// homogeneous, so a model that lacks an effect shifts its inertia first; an added effect then only
+// finds the local minimum near that inertia.
 Fit fit_unbent(const Hypothesis& h, size_t nominal_disturbances,
                const std::vector<Observation>& runs, const FitSettings& settings,
                const Thresholds& limits) {
@@ -87,14 +87,15 @@ Fit fit_unbent(const Hypothesis& h, size_t nominal_disturbances,
   return straight.chi2 < bent.chi2 ? straight : bent;
 }
 
-// All that is fitted of a candidate that stands at `index` in the model.
+// Adds the fitted parameters of a candidate, whose disturbance has index `index` in the model.
 void free_parameters(Hypothesis& h, const Candidate& c, size_t index, const Thresholds& limits) {
   for (size_t p = 0; p < c.scale.size(); ++p) {
     if (!c.is_fitted(p)) continue;
     Free f{index, static_cast<int>(p)};
     f.mean = c.searched[p] ? h.parameter(f).value : 0.0;
     f.sigma = limits.evidence.fit_prior_widths * c.scale[p];
-    // The effect may be zero about one of several axes.
+    // Strengths of effects of free bodies are bounded too: one may be zero about one of several
+    // axes.
     if (c.searched[p] || c.effect.of_free_bodies) {
       f.lowest = c.lowest[p];
       f.highest = c.highest[p];
@@ -103,7 +104,7 @@ void free_parameters(Hypothesis& h, const Candidate& c, size_t index, const Thre
   }
 }
 
-// Adds a candidate with all that is fitted of it. Returns its disturbance.
+// Adds a candidate and its fitted parameters. Returns the index of its disturbance.
 size_t add_free(Hypothesis& h, const Candidate& c, const Disturbance& start,
                 const Thresholds& limits) {
   const size_t index = add_disturbance(h, start);
@@ -111,7 +112,7 @@ size_t add_free(Hypothesis& h, const Candidate& c, const Disturbance& start,
   return index;
 }
 
-// Without the candidates of a trial: their disturbances stand behind the nominal ones.
+// The hypothesis without the candidates of a trial, whose disturbances follow the nominal ones.
 Hypothesis nominal_part(const Trial& trial) {
   Hypothesis h = trial.fit.best;
   const auto is_candidates = [&](size_t d) {
@@ -182,7 +183,7 @@ inference::Members<Start> without_forecast(inference::Members<Start> members) {
   return members;
 }
 
-// Everything that the trial has is among the members.
+// Whether the members include all candidates of the trial.
 bool adds_to(const Trial& trial, const inference::Members<Start>& members) {
   return std::all_of(trial.candidates.begin(), trial.candidates.end(), [&](size_t c) {
     return std::any_of(members.begin(), members.end(),
@@ -190,7 +191,7 @@ bool adds_to(const Trial& trial, const inference::Members<Start>& members) {
   });
 }
 
-// Windows in which there is something to fit.
+// Windows long enough to be fitted.
 std::vector<double> growing_windows(const Thresholds& limits,
                                     const std::vector<Observation>& runs) {
   size_t shortest = std::numeric_limits<size_t>::max();
@@ -231,8 +232,8 @@ Trial assemble(const Trial& from, const Candidates& all, const inference::Member
   FitSettings near = settings;
   near.max_start_chi2 = std::max(all.limits.fitting.max_start_growth * from.fit.chi2,
                                  all.limits.diverged_chi2_per_sample * from.fit.samples);
-  // Without removed members, the first step of a fit from the trial is the forecast, and also moves
-  // the initial conditions of each run. With removed members, the forecast is the nearest start.
+  // If no candidate is removed, the first step of a fit from the trial equals the forecast and also
+  // moves the initial conditions of each run. Otherwise the forecast is the nearest start.
   Trial trial = assembled(from, all, adds_to(from, members) ? without_forecast(members) : members,
                           runs, near);
   if (!std::isfinite(trial.fit.chi2)) {
@@ -284,7 +285,7 @@ Trial within_physics(const Trial& trial, const Candidates& all,
     result.fit = fit(start, runs, settings);
     return result.fit.chi2 < trial.fit.chi2 + all.limits.leaders.near_chi2;
   };
-  // After a long way back, the other parameters may be off.
+  // If the bound is far away, the other parameters may be off: growing windows are tried too.
   return leads_back({1.0}) || leads_back(all.limits.fitting.diverged_windows) ? result : trial;
 }
 
@@ -319,7 +320,7 @@ Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
     const std::vector<double>& own = from.fit.best.runs[run].initial.extra;
     if (extra.size() != own.size()) extra = own;
   }
-  // From a start that is far worse than where the trial is, it would only come back.
+  // A fit from a start that is far worse than the trial would only return to it.
   FitSettings near = settings;
   near.max_start_chi2 = std::max(all.limits.fitting.max_start_growth * trial.fit.chi2,
                                  all.limits.diverged_chi2_per_sample * trial.fit.samples);

@@ -1,4 +1,4 @@
-// The effects that may be missing, and models that contain some of them, fitted in full.
+// The effects that may be missing, and fully fitted models with some of them.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace photorque {
 
 // The effects that may be missing: every kind of disturbance that a recording can reveal, with the
-// priors of its parameters. The priors stand in the kinds' own files.
+// priors of its parameters, which are defined in the files of the kinds.
 
 // One parametrisation of a kind.
 struct Effect {
@@ -32,14 +32,14 @@ std::vector<Effect> catalogue(const DisturbanceContext& context);
 // The disturbance with every parameter at its start.
 Disturbance disturbance_of(const Effect& effect, const DisturbanceContext& context);
 
-// Candidates that may explain the residual, and models that contain some of them, fitted in full.
+// Candidates for the residual, and fitted models with some of them.
 
 struct NominalModel;  // attitude/propagation/run.h
 
 // An effect of the catalogue, or an empirical law.
 struct Candidate {
   std::string label;     // "magnetic_dipole", "unknown in yaw: 3 periods a turn"
-  std::string variable;  // of an empirical law; empty: an effect of the catalogue
+  std::string variable;  // of an empirical law; empty for the catalogue
   Effect effect;         // empty kind for an empirical law
   EmpiricalLaw law;      // empty for an effect of the catalogue
   Disturbance start;
@@ -49,9 +49,9 @@ struct Candidate {
 
   bool empirical() const { return !variable.empty(); }
   bool is_fitted(size_t p) const { return scale[p] > 0.0; }
-  // Enters linearly, with unknown strength.
+  // Whether it is linear with unknown strength.
   bool is_strength(size_t p) const { return is_fitted(p) && !searched[p]; }
-  // Whether a parameter need not be searched.
+  // Whether any parameter requires no search.
   bool has_linear_strength() const {
     return std::any_of(searched.begin(), searched.end(), [](bool b) { return !b; });
   }
@@ -62,18 +62,19 @@ struct Candidate {
   }
 };
 
-// The power of the rate, or of the speed of a sliding body, by which a candidate brakes (0:
-// friction). Nothing where it does anything else. `model`: of the platform.
+// The power of the rate (sliding body: speed) with which a candidate brakes; 0 is friction. Nothing
+// if it has another action. `model` is that of the platform.
 std::optional<double> braking_power(const Candidate& candidate, AttitudeModel model);
 
-// Whether a candidate pulls what turns about one axis back to an angle, as a weight or a twisted
-// line does, whatever the rate: alike a sixth of a turn and a third of a turn away from it.
+// Whether a candidate on a one-axis platform exerts a restoring torque towards an angle, as a
+// weight or twisted line does, independently of the rate: with one sign up to a third of a turn
+// away.
 bool pulls_back(const Candidate& candidate, AttitudeModel model);
 
-// Where the fit of a candidate starts.
+// Start of a candidate's fit.
 struct Start {
   Disturbance disturbance;
-  // Fall of χ² that a scan predicts; infinite where nothing was scanned.
+  // Predicted fall of χ² from a scan; infinite without a scan.
   double gain = std::numeric_limits<double>::infinity();
 };
 
@@ -82,12 +83,12 @@ struct Candidates {
   std::vector<Candidate> list;
   Thresholds limits;
   double longest_run_s = 0.0;
-  std::string remark = {};  // on effects that are not tried; empty: none
+  std::string remark = {};  // on omitted effects; empty: none
 
   const Candidate& operator[](size_t i) const { return list[i]; }
   size_t size() const { return list.size(); }
 };
-// A law without a name as a candidate.
+// An empirical law as a candidate.
 Candidate candidate_of(const EmpiricalLaw& law);
 Candidates all_candidates(const NominalModel& nominal, const std::vector<Observation>& runs,
                           const Thresholds& limits = {});
@@ -95,24 +96,24 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
 // The nominal model and some candidates. The evidence is Laplace's approximation (MacKay,
 // Information Theory, Inference, and Learning Algorithms, 2003, eq. 28.5).
 struct Trial : inference::Explanation {
-  std::vector<size_t> disturbances;  // where each candidate stands in the model
+  std::vector<size_t> disturbances;  // index of each candidate's disturbance in the model
   Fit fit;
 };
 
 Trial nominal_trial(const Fit& nominal, const Candidates& all);
 
-// The trial with every number of its candidates within its physical bounds. If one was beyond, the
-// others are refitted; if that fit diverges, the trial is returned as it is. Its evidence is
+// The trial with all parameters of its candidates within physical bounds. If one is beyond, the
+// others are refitted; if that fit diverges, the trial is returned unchanged. The evidence is
 // unchanged.
 Trial within_physics(const Trial& trial, const Candidates& all,
                      const std::vector<Observation>& runs);
 
-// Adds a candidate, its parameters starting from `start`, and fits.
+// Adds a candidate whose parameters start from `start`, and fits.
 Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const Disturbance& start,
              const std::vector<Observation>& runs, const FitSettings& settings = {});
 
-// Fits the trial with another candidate in the place of its `which`-th, from `start`. Neither may
-// have states.
+// Replaces the `which`-th candidate by another that starts from `start`, and fits. Neither may have
+// states.
 Trial exchange(const Trial& trial, const Candidates& all, size_t which, size_t candidate,
                const Disturbance& start, const std::vector<Observation>& runs,
                const FitSettings& settings = {});
@@ -121,17 +122,18 @@ Trial exchange(const Trial& trial, const Candidates& all, size_t which, size_t c
 Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observation>& runs,
             const std::vector<RunStart>& starts, const FitSettings& settings = {});
 
-// Refits the trial from the end of another trial on the same runs: from its starts, and its values
-// of all parameters that both have. The fit of a long tumbling run may end in one of many local
-// minima; the results of others are a second chance.
+// Refits the trial from the end of another trial on the same runs: from its initial conditions and
+// its values of all common parameters. The fit of a long tumbling run may end in one of many local
+// minima; results of other trials give another start.
 Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
                  const std::vector<Observation>& runs, const FitSettings& settings = {});
 
-// The nominal model with these members alone, from where `from`, which has any others, ended.
+// The nominal model with exactly these members, fitted from the end of `from`, which may have other
+// candidates.
 Trial assemble(const Trial& from, const Candidates& all, const inference::Members<Start>& members,
                const std::vector<Observation>& runs, const FitSettings& settings = {});
 
-// The trial's own candidates as they were fitted.
+// The candidates of the trial with their fitted values.
 std::vector<inference::Term<Start>> terms_of(const Trial& trial);
 
 // Indices of a candidate's parameters among the shared ones of the fit.

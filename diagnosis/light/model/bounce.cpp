@@ -1,4 +1,4 @@
-// Light by way of a wall, once.
+// Light after one reflection at a wall.
 #include <algorithm>
 #include <cmath>
 
@@ -39,8 +39,8 @@ std::vector<WallPatch> patches_of(const LightLab& lab, const LightWall& wall) {
   return patches;
 }
 
-// The fraction of the diffuse light of a triangle that meets a unit area at a point, over its area:
-// Lambert's sum over the edges of the part above the point's horizon (M. Cohen, J. Wallace,
+// Form factor of a triangle at a point: irradiance per unit of diffuse light that leaves a unit
+// area. Lambert's sum over the edges of the part above the point's horizon (M. Cohen, J. Wallace,
 // Radiosity and Realistic Image Synthesis, 1993, eq. 4.13).
 double near_share(const std::array<Vec3, 3>& triangle, const Vec3& point, const Vec3& normal) {
   std::array<Vec3, 4> corner;
@@ -62,9 +62,9 @@ double near_share(const std::array<Vec3, 3>& triangle, const Vec3& point, const 
   return std::abs(sum) / (2.0 * pi);
 }
 
-// Fraction of the light of a patch; a distant patch counts as if all of it were at its centre.
+// Form factor of a patch; a distant patch is treated as a point source at its centre.
 double share_of(const WallPatch& patch, const Vec3& point, const Vec3& normal) {
-  constexpr double far2 = 64.0;  // distance over size, squared: good to some tenths of a per cent
+  constexpr double far2 = 64.0;  // (distance/size)²; error of some tenths of a per cent
   const Vec3 to = point - patch.centre_m;
   const double r2 = to.squaredNorm();
   const double leaves = patch.normal.dot(to), arrives = -normal.dot(to);
@@ -73,7 +73,7 @@ double share_of(const WallPatch& patch, const Vec3& point, const Vec3& normal) {
   return arrives > 0.0 ? leaves * arrives / (r2 * r2) * patch.area_m2 / pi : 0.0;
 }
 
-// Of all lamps at once. Outputs of one attitude stand side by side, and so do their groups.
+// Fields of all lamps at once. Outputs of one attitude are contiguous, and so are their groups.
 std::vector<LampField> diffuse_fields(const LightSites& sites, std::vector<Illumination>& lamps,
                                       const WallExchange& wall, size_t index) {
   const auto patches = static_cast<Eigen::Index>(wall.patches.size());
@@ -104,7 +104,7 @@ std::vector<LampField> diffuse_fields(const LightSites& sites, std::vector<Illum
   return fields;
 }
 
-// A mirror shows a point what the point's own mirror image would see through the wall.
+// A mirror shows a point the view from the point's mirror image through the wall.
 LampField specular_field(const LightLab& lab, Illumination& lamp, const LightWall& wall,
                          size_t index) {
   static const std::vector<Vec2> disc = even_disc(64);

@@ -51,8 +51,8 @@ double Illumination::on(const Vec3& point, const Vec3& normal, size_t skipped) c
   const Obstacles::Open open =
       obstacles_->visible(point, at_->body_from_lamp.translation_m, at_->side, at_->up, skipped);
   if (open.moment.isZero()) return open.fraction * E;
-  // One side of an aperture gives a point more light than the other: to first order as much as all
-  // of it would if it stood there.
+  // The irradiance varies over the aperture. To first order a visible part contributes like the
+  // whole aperture shifted to its position.
   constexpr double aside = 0.5;
   const double step_m = aside * at_->side.norm();
   double E_open = open.fraction * E;

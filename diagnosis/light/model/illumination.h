@@ -1,7 +1,7 @@
-// Light of each lamp alone on the places of a recording.
+// Irradiance by each lamp separately on the places of a recording.
 //
-// A lamp's light on a point is that of its aperture (raytrace/direct/disc_light.h), less the parts
-// of the aperture that boxes and the scene hide. A wall reflects light once, diffusely or
+// The light of a lamp on a point is that of its aperture (raytrace/direct/disc_light.h), minus the
+// parts of the aperture that boxes and the scene hide. Walls reflect light once, diffusely or
 // like a mirror; everything else is black.
 #pragma once
 
@@ -18,21 +18,21 @@
 
 namespace photorque {
 
-// Places on the receiver and when each is looked at. An output is a point (one of a scan) or the
-// weighted mean over the points of a cell.
+// Places on the receiver and their times. An output is one point of a scan, or the weighted mean
+// over the points of a cell.
 struct LightSites {
   struct Group {
-    size_t first_point = 0, count = 0;  // of `points_body_m`
+    size_t first_point = 0, count = 0;  // range of `points_body_m`
   };
   std::vector<Vec3> points_body_m;
   std::vector<double> weights;
-  std::vector<Group> groups;  // a point, or a cell
+  std::vector<Group> groups;  // one point, or one cell
   struct Output {
     size_t attitude = 0, group = 0;
   };
   std::vector<Output> outputs;
-  std::vector<Quat> lab_from_body;  // of each attitude
-  bool enters_cells = false;        // counted behind the cells' front
+  std::vector<Quat> lab_from_body;  // for each attitude
+  bool enters_cells = false;        // includes transmission through the front of cells
 };
 
 // Parameters of a lamp's light except its power.
@@ -52,8 +52,8 @@ LampGeometry geometry_of(const LightState& state, size_t lamp, bool enters_cells
 // Irradiance [W/m²] of one lamp at full power on every output.
 using LampField = std::vector<double>;
 
-// A field that is known, whose geometry may differ in the boxes: it holds wherever none of either
-// comes near.
+// A known field for a geometry that may differ in the boxes. It is reused for all outputs that are
+// affected by no box of either geometry.
 struct KnownField {
   const LampGeometry* geometry;
   const LampField* field;
@@ -66,7 +66,7 @@ struct LampAtAttitude {
   RigidTransform body_from_lamp;
   Mat3 lamp_from_body;
   Vec3 offset_m;
-  Vec3 side, up;  // the disc's radii
+  Vec3 side, up;  // radii of the disc
 
   LampAtAttitude(const RigidTransform& lab_from_lamp, const Quat& lab_from_body, double radius_m);
 };
@@ -75,23 +75,23 @@ constexpr size_t no_wall = std::numeric_limits<size_t>::max();
 
 class Illumination {
  public:
-  // All references must outlive this.
+  // All references must outlive this object.
   Illumination(const LightLab& lab, const LampSet& lamps, const LightSites& sites,
                const LampGeometry& geometry);
 
   void move_to(size_t attitude);
 
-  // The light at a point of the body on a surface of this normal, with all obstacles except one
-  // wall.
+  // The irradiance at a point of the body on a surface with this normal, with all obstacles except
+  // one wall.
   double on(const Vec3& point, const Vec3& normal, size_t skipped) const;
   const Vec3& lamp_body_m() const { return at_->body_from_lamp.translation_m; }
   const LampAtAttitude& lamp() const { return *at_; }
 
-  // Whether a box may stand between the lamp and any point of an output, at the attitude moved to.
+  // Whether a box may hide a part of the lamp from any point of an output at the present attitude.
   bool meets_boxes(size_t output) const;
 
-  // Sums weight times at(point) over the places of each output, in turn; where known(output) points
-  // to a number, that is the sum.
+  // Computes Σ weight · at(point) over the places of each output. If known(output) is not null, its
+  // target is used as the sum.
   template <typename At, typename Known>
   LampField over_places(const At& at, const Known& known) {
     LampField field(sites_.outputs.size(), 0.0);
@@ -120,23 +120,24 @@ class Illumination {
   std::optional<Obstacles> obstacles_;
 };
 
-// A small piece of a wall, its normal on the side of the receiver.
+// A small part of a wall with its normal on the side of the receiver.
 struct WallPatch {
   std::array<Vec3, 3> corners_m;
   Vec3 centre_m, normal;
   double area_m2;
 };
 
-// Exchange of light between a wall and the places of a recording, whatever lamp shines.
+// Exchange of light between a wall and the places of a recording, independent of the lamps.
 struct WallExchange {
   std::vector<WallPatch> patches;
-  // Of every group of places, by patch: the light on it over that which leaves the patch.
+  // For each group of places (rows) and patch (columns): the irradiance per light that leaves the
+  // patch.
   Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> shares;
 };
 WallExchange exchange_with(const LightLab& lab, const LightSites& sites, size_t wall);
 
-// Light of each lamp by way of a wall that throws back all that it gets: diffusely, or like a
-// mirror where `diffuse` is null.
+// Light of each lamp after reflection at a wall with reflectance 1: diffuse, or specular if
+// `diffuse` is null.
 std::vector<LampField> wall_fields(const LightLab& lab, const LampSet& lamps,
                                    const LightSites& sites,
                                    const std::vector<LampGeometry>& geometries, size_t wall,

@@ -51,7 +51,7 @@ std::shared_ptr<const LampSet> LightLab::lamps_with(double divergence) const {
   return set;
 }
 
-// Over the heights at which receiver and walls may stand, whichever way the body is turned.
+// Tabulates the heights at which receiver and walls may be in any attitude of the body.
 void LightLab::tabulate(LampSet& set) const {
   double reach_m = 0.0;
   for (const double u : {grid().u_low, grid().u_high}) {
@@ -178,8 +178,8 @@ void LightLab::place_cells() {
   }
 }
 
-// Spots that are wide against a cell need few points: with half a cell h and a Gaussian spot of
-// standard deviation s, four err by some 2e-5 (h/s)^8. Edges of shadows need many.
+// If spots are wide compared with cells, few points suffice: for half a cell h and a Gaussian spot
+// of standard deviation s, four points err by some 2e-5 (h/s)^8. Shadow edges require many.
 size_t LightLab::points_of_rule() const {
   if (!walls().empty()) return 12;
   const Vec3 middle =
@@ -192,7 +192,8 @@ size_t LightLab::points_of_rule() const {
     narrowest_m =
         std::min(narrowest_m, away_m * std::tan(std::min(1.5, lamps_->lights[l]->half_flux_rad())));
   }
-  const double ratio = half_m / (narrowest_m / 1.1774);  // half of the flux within 1.18 deviations
+  const double ratio =
+      half_m / (narrowest_m / 1.1774);  // half of the flux is within 1.18 deviations
   return ratio < 1.1 ? 4 : ratio < 2.2 ? 6 : 12;
 }
 
@@ -231,7 +232,8 @@ std::vector<const CellModel*> LightLab::models() const {
 }
 
 CellTables LightLab::cell_laws(double temperature_K, double leak_S, bool tabulated) const {
-  constexpr double largest_A_m2 = 2000.0;  // five suns on silicon; beyond it the exact solution
+  constexpr double largest_A_m2 =
+      2000.0;  // five suns on silicon; the exact solution is used beyond
   struct Kind {
     const CellModel* model;
     double area_m2;

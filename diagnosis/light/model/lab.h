@@ -1,4 +1,4 @@
-// The nominal model of lamps, receiver and array, made ready for the forward model of light.
+// The nominal model of lamps, receiver and array, prepared for the forward model of light.
 #pragma once
 
 #include <memory>
@@ -14,34 +14,34 @@ namespace photorque {
 
 class LampTable;  // diagnosis/light/model/lamp_table.h
 
-// Noise of the readings as stated, one standard deviation; 0: not stated.
+// Stated noise of the readings, one standard deviation; 0: not stated.
 struct LightNoise {
   double irradiance_W_m2 = 0.0, relative = 0.0;
   double voltage_V = 0.0, current_A = 0.0;
   std::optional<double> tracker_step_V;
 };
 
-// All lamps with beams of one width.
+// All lamps with beams of equal relative width.
 struct LampSet {
   std::vector<Beam> beams;
-  // Of each beam; those of one emitter share one.
+  // For each beam; beams of one emitter share an entry.
   std::vector<std::shared_ptr<const DiscLight>> lights;
   std::vector<std::shared_ptr<const LampTable>> tables;
 };
 
-// Active area of a cell on the receiver, with a rule to average over it.
+// Active area of a cell on the receiver, with a quadrature rule for averages over it.
 struct LightCell {
   CellRectangle rectangle;
   double area_m2 = 0.0;
-  double photocurrent_factor = 1.0;  // of what its light would give a cell like the others
+  double photocurrent_factor = 1.0;  // relative to an average cell in equal light
   std::vector<Vec3> points_body_m;
   std::vector<double> weights;  // sum 1
 };
 
 class LightLab {
  public:
-  // InputError where there is no flat receiver, or a lamp without an aperture. `experiment` must
-  // outlive this.
+  // Throws InputError without a flat receiver, or for a lamp without an aperture. `experiment` must
+  // outlive this object.
   explicit LightLab(const Experiment& experiment);
 
   const Experiment& experiment() const { return experiment_; }
@@ -56,23 +56,23 @@ class LightLab {
   const std::vector<LightCell>& cells() const { return cells_; }
   // The model of each cell.
   std::vector<const CellModel*> models() const;
-  // The cells' diodes at a temperature, with a leak more across each. `tabulated`: worth its time
-  // where hundreds of points follow.
+  // The cells' diodes at a temperature, each with an additional leak. `tabulated` is worthwhile if
+  // hundreds of points follow.
   CellTables cell_laws(double temperature_K, double leak_S, bool tabulated) const;
-  // Photocurrent over light [A/W] at the reference temperature.
+  // Photocurrent per light [A/W] at the reference temperature.
   double responsivity_A_W() const { return responsivity_A_W_; }
 
   // The point of the receiver at map coordinates u, v.
   Vec3 point_body_m(double u_m, double v_m) const;
   Vec3 normal_body() const { return grid().normal_body; }
-  // Over which the light of the sharpest lamp falls off on the receiver: the standard deviation of
-  // the Gaussian spot that is as bright and as steep.
+  // Width over which the light of the sharpest lamp falls off on the receiver: the standard
+  // deviation of a Gaussian spot of equal brightness and maximum slope.
   double narrowest_edge_m() const;
 
-  // The lamps with all beams' widths multiplied, > 0.
+  // The lamps with the widths of all beams multiplied by `divergence` > 0.
   std::shared_ptr<const LampSet> lamps_with(double divergence) const;
 
-  // No effect acts beside the nominal model.
+  // The state without additional effects.
   LightState nominal() const { return parts_.nominal(); }
 
  private:

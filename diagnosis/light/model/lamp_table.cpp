@@ -10,9 +10,9 @@ namespace photorque {
 namespace {
 
 constexpr int mirrored = 2;           // nodes at negative slopes
-constexpr double steepest_rad = 1.4;  // that are tabulated
+constexpr double steepest_rad = 1.4;  // limit of the table
 
-// Weights of six even nodes −2 … 3 at a place t in [0, 1].
+// Lagrange weights of six evenly spaced nodes −2 … 3 at a position t in [0, 1].
 std::array<double, 6> lagrange_weights(double t) {
   const double a = t + 2.0, b = t + 1.0, c = t, d = t - 1.0, e = t - 2.0, f = t - 3.0;
   return {-b * c * d * e * f / 120.0, a * c * d * e * f / 24.0,  -a * b * d * e * f / 12.0,
@@ -45,7 +45,7 @@ double LampTable::place_of(double height_m) const {
 }
 
 std::vector<LampTable::Node> LampTable::nodes_at(double step) const {
-  // Coefficients of the powers from the values at Chebyshev's points.
+  // Polynomial coefficients from the values at Chebyshev points.
   Eigen::Matrix<double, terms, terms> powers;
   std::array<double, terms> height_m;
   for (size_t k = 0; k < terms; ++k) {
@@ -70,7 +70,7 @@ std::vector<LampTable::Node> LampTable::nodes_at(double step) const {
       }
     }
     nodes[static_cast<size_t>(i) + mirrored] = node;
-    // The light along the axis is even in the slope, that away from it odd.
+    // The light along the axis is an even function of the slope, that away from it an odd one.
     if (i > 0 && i <= mirrored) {
       for (Eigen::Array2d& c : node) c[1] = -c[1];
       nodes[static_cast<size_t>(mirrored - i)] = node;
@@ -83,7 +83,7 @@ Eigen::Array2d LampTable::factors(double slope, double height_m) const {
   const double x = slope / step_, whole = std::floor(x), t = place_of(height_m);
   const auto first = static_cast<size_t>(whole);  // two nodes below the slope
   const std::array<double, 6> weights = lagrange_weights(x - whole);
-  // All coefficients between the nodes at once, then the polynomial.
+  // Interpolates all coefficients between the nodes, then evaluates the polynomial.
   using Coefficients = Eigen::Array<double, 2 * terms, 1>;
   Coefficients between = Coefficients::Zero();
   for (size_t k = 0; k < weights.size(); ++k) {
@@ -101,7 +101,8 @@ bool LampTable::holds() const {
     const double h = lowest_m_ + (highest_m_ - lowest_m_) * (j + 0.3) / heights;
     const double axis = light_->factors_W_m2(0.0, h)[0];
     for (int i = 0; i < slopes; ++i) {
-      // Closer where the light is; in the middle between nodes, where polynomials err most.
+      // Test points are denser near the axis, and midway between nodes, where the polynomial error
+      // is largest.
       const double part = (i + 0.5) / slopes;
       const double s = (std::floor(part * part * largest_slope_ / step_) + 0.5) * step_;
       const Eigen::Array2d off = factors(s, h) - light_->factors_W_m2(s * h, h);

@@ -1,4 +1,4 @@
-// Irradiance of a lamp on points, tabulated: a diagnosis asks for it millions of times.
+// Tabulated irradiance of a lamp on points, which a diagnosis evaluates millions of times.
 #pragma once
 
 #include <array>
@@ -9,18 +9,17 @@
 
 namespace photorque {
 
-// With s = d/h the slope under which a point at the distance d from the axis and the height h sees
-// the middle of the aperture, h² times both factors of DiscLight is a smooth function of s whose
-// shape hardly changes with (R/h)²: polynomials of degree five in s, whose nodes lie evenly, and
-// in (R/h)². They are compared with the quadrature when they are made, and refined
-// until they differ by less than 1e-6 of the light on the axis. Beams with edges have kinks and are
-// not tabulated.
+// Let s = d/h be the slope at which a point at distance d from the axis and height h sees the
+// middle of the aperture. Then h² times both factors of DiscLight is a smooth function of s that
+// hardly depends on (R/h)². It is tabulated by polynomials of degree five in s (even nodes) and in
+// (R/h)². They are compared with the quadrature on construction and refined to an error below 1e-6
+// of the light on the axis. Beams with edges have kinks and are not tabulated.
 class LampTable {
  public:
-  // For heights between these; elsewhere it integrates. `light` is kept.
+  // Tabulates heights between these limits; other heights are integrated. Keeps `light`.
   LampTable(std::shared_ptr<const DiscLight> light, double lowest_m, double highest_m);
 
-  // As DiscLight::irradiance_W_m2.
+  // Equals DiscLight::irradiance_W_m2().
   double irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const;
   double radius_m() const { return light_->radius_m(); }
 
@@ -37,7 +36,7 @@ class LampTable {
   double lowest_m_, highest_m_;
   double middle_ = 0.0, half_ = 1.0;  // of (R/h)²
   double step_ = 0.0, largest_slope_ = 0.0;
-  std::vector<Node> nodes_;  // from the slope −2 steps on; empty: nothing is tabulated
+  std::vector<Node> nodes_;  // starts at −2 steps of slope; empty: not tabulated
 };
 
 }  // namespace photorque

@@ -25,15 +25,15 @@ bool crosses(const ShadowBox& box, const Vec3& from, const Vec3& to) {
   return enter < leave;
 }
 
-// Of a sphere, from the straight line between two points.
+// Whether a sphere touches the straight line between two points.
 bool may_reach(const Vec3& centre, double radius, const Vec3& from, const Vec3& to) {
   const Vec3 d = to - from;
   const double t = std::clamp((centre - from).dot(d) / d.squaredNorm(), 0.0, 1.0);
   return (from + t * d - centre).squaredNorm() < radius * radius;
 }
 
-// Whether a line from the point to a disc can pass a wall: point and disc do not lie on one side of
-// each of its triangles.
+// Whether a line from the point to a disc can cross a wall: false if point and disc are on one side
+// of each of its triangles.
 bool may_pass(const LightWall& wall, const Vec3& point, const Vec3& disc, double radius) {
   return std::ranges::any_of(wall.triangles, [&](const std::array<Vec3, 3>& t) {
     const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
@@ -46,7 +46,7 @@ double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-// Of a part of the disc of radius 1.
+// Area and first moment of a part of the disc of radius 1.
 struct DiscPart {
   double area = 0.0;
   Vec2 moment = Vec2::Zero();  // ∫ d dA
@@ -58,14 +58,14 @@ struct DiscPart {
   }
 };
 
-// Between two directions from the centre, with the sign of the turn from the first to the second.
+// Sector between two directions from the centre, signed by the direction of rotation.
 DiscPart sector(const Vec2& p, const Vec2& q) {
   const Vec2 from = p.normalized(), to = q.normalized();
   return {0.5 * std::atan2(cross(p, q), p.dot(q)),
           Vec2(to.y() - from.y(), from.x() - to.x()) / 3.0};
 }
 
-// Of the disc and the triangle of its centre and two points, signed likewise.
+// Intersection of the disc with the triangle of its centre and two points, signed likewise.
 DiscPart disc_part(const Vec2& a, const Vec2& b) {
   const Vec2 d = b - a;
   const double square = d.squaredNorm(), along = a.dot(d);
@@ -117,16 +117,16 @@ Obstacles::Open without(const DiscPart& hidden, double opacity) {
   return {std::clamp(1.0 - part * hidden.area, 0.0, 1.0), -part * hidden.moment};
 }
 
-// A point's view onto an aperture, in radii from its middle.
+// A point's view of an aperture, in units of its radius.
 class View {
  public:
   View(const Vec3& point, const Vec3& lamp, const Vec3& side, const Vec3& up)
       : point_(point), away_(lamp - point), side_(side), up_(up), normal_(side.cross(up)) {
     height_ = normal_.dot(away_);
   }
-  // Of the way to the aperture's plane.
+  // Fraction of the distance to the plane of the aperture.
   double part(const Vec3& at) const { return normal_.dot(at - point_) / height_; }
-  // Of parts that are neither behind the point nor beyond the aperture.
+  // Projection of parts that are neither behind the point nor beyond the aperture.
   Vec2 project(const Vec3& at) const {
     const Vec3 there = (at - point_) / part(at) - away_;
     return Vec2(there.dot(side_), there.dot(up_)) / side_.squaredNorm();
@@ -139,9 +139,9 @@ class View {
 
 constexpr double nearest_part = 1e-4;
 
-// The part of the aperture that a sheet hides. Nothing for other walls, whose parts may hide the
-// same, and for a sheet that reaches beyond the aperture's plane. Parts behind the point hide
-// nothing.
+// The part of the aperture that a sheet hides; parts behind the point hide nothing. Returns nothing
+// for other walls, whose triangles may overlap, and for a sheet that extends beyond the plane of
+// the aperture.
 std::optional<DiscPart> hidden_by(const LightWall& wall, const View& view) {
   if (!wall.is_sheet) return std::nullopt;
   DiscPart hidden;
@@ -184,7 +184,7 @@ bool crosses(const std::array<Vec3, 3>& t, const Vec3& from, const Vec3& to) {
   if (u < 0.0 || u > 1.0) return false;
   const Vec3 q = s.cross(a);
   const double v = d.dot(q) / det, along = b.dot(q) / det;
-  constexpr double touch = 1e-9;  // the surfaces at its ends do not hide it
+  constexpr double touch = 1e-9;  // excludes the surfaces at both ends
   return v >= 0.0 && u + v <= 1.0 && along > touch && along < 1.0 - touch;
 }
 

@@ -5,17 +5,17 @@
 
 namespace photorque {
 
-// Points that cover a disc of radius 1 evenly, in a spiral of golden angles.
-// Source: H. Vogel, Mathematical Biosciences 44, 179 (1979).
+// Evenly distributed points on a disc of radius 1, in a spiral of golden angles. Source: H. Vogel,
+// Mathematical Biosciences 44, 179 (1979).
 std::vector<Vec2> even_disc(size_t count);
 
-// Whether the straight line between two points passes a triangle, its ends aside.
+// Whether the straight line between two points crosses a triangle; its ends are excluded.
 bool crosses(const std::array<Vec3, 3>& triangle, const Vec3& from, const Vec3& to);
 
-// At one attitude.
+// Obstacles at one attitude.
 class Obstacles {
  public:
-  // Lab and boxes are kept by reference.
+  // Keeps references to lab and boxes.
   Obstacles(const LightLab& lab, const std::vector<ShadowBox>& boxes, const Quat& lab_from_body);
 
   bool any() const { return !boxes_.empty() || !lab_.walls().empty(); }
@@ -24,15 +24,15 @@ class Obstacles {
   bool meets_boxes(const Vec3& point, const Vec3& lamp, double radius_m) const;
 
   // The visible part of a lamp's aperture from a point: its fraction, and the first moment over the
-  // whole aperture: the mean distance from the centre, in radii along `side` and `up`, with hidden
-  // parts counted as 0.
+  // whole aperture. The moment is the mean position relative to the centre, in radii along `side`
+  // and `up`, where hidden parts count as 0.
   struct Open {
     double fraction = 1.0;
     Vec2 moment = Vec2::Zero();
   };
-  // Body frame; `side` and `up` span the disc and have its radius. `skipped`: a wall that does not
-  // count, none where it is past the last. Exact for a flat wall or a box alone, and smooth as it
-  // moves; else from 100 points of the aperture.
+  // All in the body frame; `side` and `up` span the disc and have its radius. `skipped`: index of a
+  // wall to ignore; past the end: none. A single flat wall or box is exact and varies smoothly;
+  // otherwise 100 points of the aperture are tested.
   Open visible(const Vec3& point, const Vec3& lamp, const Vec3& side, const Vec3& up,
                size_t skipped) const;
 

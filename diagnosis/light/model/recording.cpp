@@ -23,7 +23,7 @@ namespace {
 
 constexpr double absent = std::numeric_limits<double>::quiet_NaN();
 
-// Index of a column in a row, and its unit in SI.
+// Index of a column in a row, and its conversion to SI.
 struct LightColumn {
   size_t place = 0;
   double to_SI = 1.0;
@@ -32,7 +32,7 @@ struct LightColumn {
 class LightHeader {
  public:
   LightHeader(std::string_view line, const LightColumns& columns) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // as spreadsheets write it
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // written by spreadsheets
     for (std::string_view cell : cells_of(line)) {
       if (cell.starts_with(byte_order_mark)) cell.remove_prefix(byte_order_mark.size());
       if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') {
@@ -42,7 +42,7 @@ class LightHeader {
       for (const auto& [name, written] : columns) {
         if (written == cell) cell = name;
       }
-      // As some instruments write it.
+      // Names used by some instruments.
       if (cell == "V") cell = "voltage_V";
       if (cell == "I") cell = "current_A";
       const KeyUnit unit = unit_of_key(cell);
@@ -53,10 +53,10 @@ class LightHeader {
   }
   size_t columns() const { return names_.size(); }
   const std::vector<std::string>& names() const { return names_; }
-  // The cells as they stand in the file.
+  // The header cells as written.
   const std::vector<std::string>& written() const { return written_; }
 
-  // By its name in SI, or in another unit of the same quantity.
+  // Finds a column by its name in SI, or in another unit of the quantity.
   std::optional<LightColumn> find(const std::string& name) const {
     const KeyUnit wanted = unit_of_key(name);
     for (size_t i = 0; i < names_.size(); ++i) {
@@ -79,8 +79,8 @@ class LightHeader {
   }
 
  private:
-  // Where the file has a column `written` for the quantity `name`, its others of that quantity do
-  // not count.
+  // If the file has the column `written` for the quantity `name`, other columns of that quantity
+  // are ignored.
   void ignore_beside(const std::string& name, const std::string& written) {
     if (std::ranges::find(written_, written) == written_.end()) return;
     const KeyUnit wanted = unit_of_key(name);
@@ -107,14 +107,15 @@ bool next_line(TextLines& lines, std::string_view& line) {
   return false;
 }
 
-// The beginning of a file: a header of this reader, or of curves as instruments write them.
+// The beginning of a file: a header of this reader, or of curves in instrument formats.
 struct Beginning {
   std::optional<LightHeader> header;
   bool is_curve = false;
   std::vector<std::string> cells;  // of the header, as written
 };
 
-// Preambles need not be comments: the header is the first line that names what a recording has.
+// Preambles may lack comment marks: the header is the first line that identifies a kind of
+// recording.
 Beginning find_header(TextLines& lines, const LightColumns& columns) {
   constexpr int most = 200;
   std::string_view line;
@@ -150,7 +151,7 @@ ColumnsOfLight columns_of(const LightHeader& header, LightRecording::Kind kind) 
   return c;
 }
 
-// An attitude of which a part is missing, or named otherwise, would pass for that of the
+// Rejects an incomplete or misnamed attitude, which would silently be replaced by that of the
 // experiment.
 void require_whole_attitude(const LightHeader& header, const ColumnsOfLight& columns,
                             const std::filesystem::path& path) {
@@ -165,7 +166,7 @@ void require_whole_attitude(const LightHeader& header, const ColumnsOfLight& col
   }
 }
 
-// One row of a file; each reader says why it is left out, or nothing.
+// Reads one row; each function returns the reason for a rejection, or an empty string.
 class RowReader {
  public:
   RowReader(const ColumnsOfLight& columns, const UsualCircumstances& usual, LightRecording& into)
@@ -216,7 +217,7 @@ class RowReader {
   }
 
  private:
-  // Of readings that have noise, a second with all digits of the first is a copy of it.
+  // In readings with noise, a second row with identical digits is a copy.
   bool is_new() {
     uint64_t hash = 0;
     for (const std::string_view cell : *cells_) {
@@ -252,7 +253,7 @@ class RowReader {
   std::unordered_set<uint64_t> seen_;
 };
 
-// Steady segments of the lamps' current by their means: its noise is not that of the light.
+// Replaces steady segments of the lamp current by their means: its noise does not affect the light.
 void smooth_steady(std::vector<double>& lamps) {
   if (lamps.size() < 3) return;
   std::vector<double> steps;
@@ -265,7 +266,8 @@ void smooth_steady(std::vector<double>& lamps) {
              std::min(beyond * *middle / median_of_noise, least_change * std::ranges::max(lamps)));
 }
 
-// Currents of lamps over the largest. What hardly changes is noise of a constant one.
+// Lamp currents relative to the largest; cleared if they hardly vary, which is noise of a constant
+// current.
 void make_relative(std::vector<double>& lamps) {
   constexpr double changes = 0.05;
   if (lamps.empty()) return;
@@ -279,7 +281,7 @@ void make_relative(std::vector<double>& lamps) {
   for (double& current : lamps) current /= brightest;
 }
 
-// The named columns that the cells of a header lack.
+// The named columns that a header lacks.
 std::set<std::string> absent_of(const LightColumns& named, const std::vector<std::string>& cells) {
   std::set<std::string> absent_columns;
   for (const auto& [name, written] : named) {
@@ -288,7 +290,7 @@ std::set<std::string> absent_of(const LightColumns& named, const std::vector<std
   return absent_columns;
 }
 
-// Curves in other words than this reader's.
+// Reads curves in instrument formats.
 LightRecording curves_of_instrument(const std::filesystem::path& path,
                                     const UsualCircumstances& usual, const LightColumns& named) {
   const std::string text = whole_text(path);
@@ -358,7 +360,7 @@ std::vector<LightRecording> sweeps_of(const LightRecording& recording) {
     curves.back().rows_read = static_cast<int64_t>(rows[number].size());
     curves.back().rejected.clear();
   }
-  // Rows left out of the file are counted once.
+  // Counts rejected rows of the file only once.
   for (const auto& [reason, count] : recording.rejected) {
     if (curves.size() > 1) curves.front().rows_read += count;
   }
@@ -431,7 +433,7 @@ LightRecording read_light_recording(const std::filesystem::path& path,
     }
     if (!reason.empty()) ++recording.rejected[reason];
   }
-  // A few torn rows are left out; where most are, something else is wrong, such as decimal commas.
+  // A few torn rows are omitted. If most are torn, the cause is another, such as decimal commas.
   if (2 * of_wrong_length > recording.rows_read) {
     throw InputError(
         {path.string(), first_of_wrong_length}, "",

@@ -1,9 +1,9 @@
 // Recordings of light and power: scans of irradiance, sweeps of current over voltage, runs of an
-// array under a tracker. The header of a file determines which of the three it is.
+// array with a tracker. The header of a file determines the kind.
 //
-// CSV (also .csv.gz), columns in any order, comments from # on. Rows that cannot be read are left
-// out and counted; wild readings are found later, against a model (diagnosis/light/diagnose.h).
-// Sweeps may be written as instruments do, which photovoltaics/fit/curve_text.h reads.
+// CSV (also .csv.gz) with columns in any order and comments after #. Unreadable rows are omitted
+// and counted; outliers are detected later, relative to a model (diagnosis/light/diagnose.h).
+// Sweeps may have instrument formats, which photovoltaics/fit/curve_text.h reads.
 #pragma once
 
 #include <cstdint>
@@ -28,30 +28,30 @@ struct LightRecording {
   Kind kind = Kind::scan;
   std::string name;  // path as given
 
-  // One entry per row that was kept; quantities that the kind lacks are empty. The irradiance of a
-  // sweep is what a sensor beside the array saw; NaN where a row has none.
+  // One entry per accepted row; quantities that the kind lacks are empty. The irradiance of a sweep
+  // is that of a sensor beside the array; NaN where a row has none.
   std::vector<double> u_m, v_m, irradiance_W_m2;
   std::vector<double> voltage_V, current_A;
   std::vector<double> time_s;
   std::vector<Quat> lab_from_body;
   std::vector<double> temperature_K;
   std::vector<int> sweep;
-  // Of runs with dimmed lamps: their current over its largest, to which their light is taken to
-  // be proportional. Empty where it hardly changes.
+  // For runs with dimmed lamps: lamp current relative to its maximum; the light is assumed to be
+  // proportional to it. Empty if it hardly varies.
   std::vector<double> lamp_light;
 
-  // False: each row has the value of the experiment.
+  // False: all rows have the value of the experiment.
   bool has_attitudes = true, has_temperatures = true;
   int64_t rows_read = 0;                    // data rows in the file
   std::map<std::string, int64_t> rejected;  // by reason: "torn row", "unreadable", …
-  std::set<std::string> absent_columns;     // that were named and the file has not
+  std::set<std::string> absent_columns;     // columns that are named but absent
   size_t rows() const { return lab_from_body.size(); }
-  // The chosen rows alone.
+  // Selects rows.
   LightRecording part(const std::vector<size_t>& rows) const;
 };
 
-// The curves of a recording, by their number in `sweep`, in the order in which they begin; where
-// there are several, each name says which it is.
+// The curves of a recording by their number in `sweep`, in order of their first rows. If there are
+// several, each name contains the number.
 std::vector<LightRecording> sweeps_of(const LightRecording& recording);
 
 // The median of the finite values; NaN where there is none.
@@ -66,14 +66,14 @@ struct UsualCircumstances {
 // Names of columns in the file by those above, as [recording] columns states them.
 using LightColumns = std::map<std::string, std::string>;
 
-// By a file's header; nothing for files that cannot be read, or have another.
+// Kind of a file by its header; nothing for unreadable files and other headers.
 std::optional<LightRecording::Kind> light_kind_of(const std::filesystem::path& path,
                                                   const LightColumns& columns = {});
 
-// Whether a file's header is one of these. False for files that cannot be read.
+// Whether a file has such a header. False for unreadable files.
 bool is_light_recording(const std::filesystem::path& path, const LightColumns& columns = {});
 
-// InputError with file and line when there is no such header or no usable row.
+// Throws InputError with file and line without such a header or a usable row.
 LightRecording read_light_recording(const std::filesystem::path& path,
                                     const UsualCircumstances& usual,
                                     const LightColumns& columns = {});

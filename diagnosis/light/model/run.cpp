@@ -10,7 +10,7 @@ namespace {
 
 constexpr size_t no_cell = static_cast<size_t>(-1);
 
-// The median of some readings, which noise and one outlier cannot move far.
+// The median of some readings, which is robust to noise and one outlier.
 double middle_of(std::vector<double> values) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), at, values.end());
@@ -111,8 +111,8 @@ void LightRun::face_walls() {
   }
 }
 
-// A platform moves smoothly, and light on its cells smoothly with it: it is evaluated at some rows
-// and interpolated by cubics of the time in between. From knot to knot cells move by little of the
+// A platform moves smoothly, and so the light on its cells varies smoothly. It is evaluated at some
+// rows and interpolated by cubics in time. Between knots, cells move by a small fraction of the
 // steepest spot's standard deviation: at a tenth of it a cubic errs by some 1e-5 of the light.
 void LightRun::choose_knots() {
   const LightRecording& r = recording_;
@@ -192,7 +192,7 @@ LampField LightRun::expanded(LampField field) const {
 void LightRun::find_noise() {
   const LightNoise& noise = lab_->noise();
   if (!is_scan()) {
-    // Squares of readings over less would be no numbers.
+    // Squares of readings divided by less would overflow.
     constexpr double least = 1e-12;
     if (!(noise.voltage_V >= least) || !(noise.current_A >= least)) {
       throw InputError(
@@ -207,7 +207,8 @@ void LightRun::find_noise() {
     throw InputError({lab_->experiment().file.path.string()}, "sensors.irradiance", "no noise",
                      "noise_W_m2 or relative_noise > 0, the error of a reading");
   }
-  // Of the light itself and not of one reading of it, whose own noise would weigh low ones more.
+  // Relative noise refers to the local median instead of each reading: otherwise the reading's
+  // noise would give low readings a higher weight.
   const std::vector<double>& E = recording_.irradiance_W_m2;
   const double floor_W_m2 = 1e-3 * middle_of(E);
   for (size_t i = 0; i < E.size(); ++i) {

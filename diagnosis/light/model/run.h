@@ -1,8 +1,8 @@
-// A recording of the forward model: its expected readings for a state.
+// A recording with its forward model: expected readings for a state.
 //
-// From the state follow, one after the other, each lamp's light on every place, the
-// signals (readings of a scan; photocurrents of every cell at every instant), and the residuals,
-// whitened by their noise:
+// The state determines, in this order, the light of each lamp on every place, the signals (readings
+// of a scan; photocurrents of every cell at every instant), and the residuals, whitened by their
+// noise:
 //   scan    (measured − predicted)/σ
 //   sweep   the signed distance of a point from the curve, in errors of voltage and current
 //   run     voltage and current of the maximum that the tracker holds; the distance from the curve
@@ -21,7 +21,7 @@
 
 namespace photorque {
 
-// Fields of all lamps and walls at one state; parts are shared with others of the same geometry.
+// Fields of all lamps and walls at one state; fields of equal geometry are shared.
 struct LightFields {
   struct Part {
     LampGeometry geometry;
@@ -31,47 +31,47 @@ struct LightFields {
   std::map<std::pair<size_t, bool>, std::vector<Part>> walls;  // by wall and whether specular
 };
 
-// How the residuals move with the signals.
+// Derivatives of the residuals with respect to the signals.
 struct SignalSlopes {
-  // Scans: ∂r/∂signal of each residual. Others: of each residual by every cell's photocurrent.
+  // Scans: ∂r/∂signal of each residual. Others: derivatives by every cell's photocurrent.
   std::vector<double> of_scan;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> by_photocurrent;
 };
 
 class LightRun {
  public:
-  // InputError where a sweep or a run has no array, or no noise is stated or found.
+  // Throws InputError if a sweep or a run has no array, or if noise is neither stated nor found.
   LightRun(const LightLab& lab, LightRecording recording);
 
   const LightRecording& recording() const { return recording_; }
   const LightLab& lab() const { return *lab_; }
-  // Which of the recordings of a diagnosis it is, from 0; those held out come after the others.
+  // Number of the recording in a diagnosis, from 0; held-out recordings come last.
   int number() const { return number_; }
   void set_number(int number) { number_ = number; }
   size_t rows() const { return recording_.rows(); }
-  // Residuals, and which row and channel each belongs to.
+  // Number of residuals, and the channel of each.
   size_t samples() const { return sample_row_.size(); }
   const std::vector<int>& sample_channel() const { return sample_channel_; }
-  // "irradiance_W_m2", "current_A", "array_voltage_V", …, by channel.
+  // Channel names: "irradiance_W_m2", "current_A", "array_voltage_V", …
   const std::vector<std::string>& channels() const { return channels_; }
   double row_noise(size_t row) const { return irradiance_sigma_[row]; }
 
-  // The rows chosen alone.
+  // Selects rows.
   LightRun part(const std::vector<size_t>& rows) const;
-  // Of a scan: fields of this recording at the rows chosen, for its part.
+  // For a scan: selects the fields of the chosen rows for its part.
   static LightFields part(const LightFields& fields, const std::vector<size_t>& rows);
-  // The recording and noise with another nominal model.
+  // Copies the recording and its noise to another nominal model.
   LightRun in(const LightLab& lab) const;
   // Multiplies all noise.
   void scale_noise(double factor);
 
-  // Parts of `near` stay where they are the same. Light by way of walls takes long, and changes
-  // little where lamps move a little: kept, it stays unchanged when the lamps change.
+  // Reuses parts of `near` with equal geometry. Light from walls is slow to compute and varies
+  // little for small lamp movements: with `kept` it is reused even if the lamps move.
   enum class Walls { followed, kept };
   LightFields fields(const LightState& state, const LightFields* near,
                      Walls walls = Walls::followed) const;
-  // Light of all lamps on every output, before effects that act on all light. Given a state with
-  // known light, only the lamps that differ are added again.
+  // Light of all lamps on every output, before effects that act on all light. With known light of a
+  // near state, only the lamps that differ are recomputed.
   struct KnownLight {
     const LightState* state;
     const LightFields* fields;
@@ -79,7 +79,7 @@ class LightRun {
   };
   std::vector<double> light(const LightState& state, const LightFields& fields,
                             const KnownLight* near = nullptr) const;
-  // `light` is that of the state.
+  // `light` must be that of the state.
   std::vector<double> signals_of(const LightState& state, std::vector<double> light) const;
   std::vector<double> signals(const LightState& state, const LightFields& fields) const {
     return signals_of(state, light(state, fields));
@@ -87,24 +87,23 @@ class LightRun {
   // `slopes` may be null.
   Eigen::VectorXd residuals(const LightState& state, const std::vector<double>& signals,
                             SignalSlopes* slopes) const;
-  // Of the residuals, by a change of the signals.
+  // Change of the residuals for a change of the signals.
   Eigen::VectorXd moved(const SignalSlopes& slopes, const std::vector<double>& change) const;
 
-  // Of runs: by how much χ² of each row falls if the tracker stands at a maximum that is not the
-  // highest.
+  // For runs: the fall of χ² of each row if the tracker is at a maximum that is not the highest.
   std::vector<double> gain_if_trapped(const LightState& state,
                                       const std::vector<double>& signals) const;
 
-  // Expected readings: of a scan the irradiance; of others voltage and current (of a sweep the
-  // current at the measured voltage).
+  // Expected readings: irradiance of a scan; voltage and current of runs; current of a sweep at the
+  // measured voltage.
   struct Expected {
     double irradiance_W_m2 = 0.0, voltage_V = 0.0, current_A = 0.0;
   };
   std::vector<Expected> expected(const LightState& state) const;
 
-  // Where each output is, and when.
+  // Position, time and conditions of each output.
   const std::vector<Circumstance>& circumstances() const { return circumstances_; }
-  // The array under the light of a row.
+  // The curve of the array in the light of a row.
   ArrayCurve curve(const LightState& state, const std::vector<double>& signals, size_t row) const;
 
  private:
@@ -115,7 +114,7 @@ class LightRun {
   void place_cells();
   void face_walls();
   void find_noise();
-  // Of some rows of a scan whose light is known already.
+  // Some rows of a scan whose light is known.
   struct PartOf {
     const LightRun* whole;
     const std::vector<size_t>* rows;
@@ -124,9 +123,9 @@ class LightRun {
   void find_circumstances(const PartOf* known);
   void number_samples();
   bool is_trapped(const LightState& state, size_t row) const;
-  // χ² of a reading about a maximum.
+  // χ² of a reading relative to a maximum.
   double chi2_at(const ArrayPoint& maximum, size_t row) const;
-  // The maximum at which the tracker stands; none in the dark.
+  // The maximum at which the tracker operates; none in the dark.
   struct Held {
     ArrayPoint at, highest;
     bool is_corner = false;  // see ArrayCurve::Scan
@@ -140,7 +139,8 @@ class LightRun {
   LampField expanded(LampField field) const;
   CellTables cells_at(double temperature_K, double leak_S) const;
 
-  // A row between some attitudes at which light is evaluated: places among the knots, weights.
+  // Interpolation of a row between attitudes at which light is evaluated: indices of knots,
+  // weights.
   struct Between {
     std::array<uint32_t, 4> knot{};
     std::array<double, 4> weight{};
@@ -149,10 +149,10 @@ class LightRun {
   LightRecording recording_;
   LightSites sites_;
   std::vector<std::shared_ptr<const WallExchange>> exchange_;  // with each wall
-  std::vector<Between> between_;  // of runs, per row; empty: light is evaluated where it counts
+  std::vector<Between> between_;           // of runs, per row; empty: no interpolation
   std::map<double, CellTables> cells_at_;  // of sweeps, by temperature
   std::vector<size_t> first_output_;       // of each row; rows of one curve share theirs
-  std::vector<size_t> cell_of_point_;      // scans: whose rectangle a row lies in; else none
+  std::vector<size_t> cell_of_point_;      // scans: the cell that contains a row, or none
   std::vector<double> irradiance_sigma_;   // scans, per row
   int number_ = 0;
   double noise_factor_ = 1.0;

@@ -1,5 +1,5 @@
-// The light that a recording looks at: fields of its lamps and walls, their sum, and effects on
-// it as a whole.
+// The light on the places of a recording: fields of lamps and walls, their sum, and effects on the
+// sum.
 #include <algorithm>
 #include <cmath>
 
@@ -71,7 +71,7 @@ LightFields LightRun::fields(const LightState& state, const LightFields* near, W
       result.lamps.push_back(near->lamps[l]);
       continue;
     }
-    // Between the attitudes at which a run is evaluated nothing is known of single outputs.
+    // Interpolated runs are evaluated at knots, for which the field per output is not known.
     std::optional<KnownField> known;
     if (near != nullptr && between_.empty()) {
       known = {&near->lamps[l].geometry, near->lamps[l].field.get()};
@@ -80,7 +80,7 @@ LightFields LightRun::fields(const LightState& state, const LightFields* near, W
         expanded(lamp_field(*lab_, lamp_set(), sites_, geometry, known)));
     result.lamps.push_back({std::move(geometry), std::move(field)});
   }
-  // Light by way of walls takes long, and is kept as long as the lamps stay where they are.
+  // Light from walls is slow to compute and is reused while the lamps are unchanged.
   std::vector<LampGeometry> geometries;
   for (size_t l = 0; l < lab_->lamps(); ++l) geometries.push_back(geometry_of(state, l, false));
   if (near != nullptr) {

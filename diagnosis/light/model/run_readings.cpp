@@ -1,5 +1,5 @@
 // Readings of a recording whose light is known: currents and voltages of the array, residuals, and
-// the derivatives of both by the light.
+// their derivatives with respect to the light.
 #include <algorithm>
 #include <cmath>
 
@@ -44,9 +44,9 @@ double LightRun::chi2_at(const ArrayPoint& maximum, size_t row) const {
   return (v * v + i * i) / (noise_factor_ * noise_factor_);
 }
 
-// The highest maximum, or, where the tracker is trapped, the one from which the reading is least
-// far. (One that the light has just taken away or brought up may stand in the model's light and not
-// in the true one, or the other way round: a corner counts, and so does the highest.)
+// The highest maximum or, if the tracker is trapped, the one nearest to the reading. (Near its
+// appearance a maximum may exist in the modelled light but not in the true light, or vice versa.
+// Corners and the highest maximum are therefore included.)
 std::optional<LightRun::Held> LightRun::held_maximum(const ArrayCurve& curve, bool is_trapped,
                                                      size_t row) const {
   if (!is_trapped) {
@@ -164,7 +164,8 @@ std::vector<double> LightRun::gain_if_trapped(const LightState& state,
                                               const std::vector<double>& signals) const {
   std::vector<double> gain(rows(), 0.0);
   if (!holds_maximum()) return gain;
-  // Of a reading at the highest: few of those may lie between the others.
+  // Penalty for a reading at the highest maximum: only few of them may be within a trapped
+  // interval.
   constexpr double loss = 10.0;
   for (size_t row = 0; row < rows(); ++row) {
     const ArrayCurve array = curve(state, signals, row);
@@ -186,7 +187,7 @@ std::vector<LightRun::Expected> LightRun::expected(const LightState& state) cons
     }
     const ArrayCurve at = curve(state, signal, row);
     if (!holds_maximum()) {
-      // The current at the measured voltage: an error of the current far above its own.
+      // The current at the measured voltage: nearest() with a huge error of the current.
       constexpr double far = 1e6;
       const auto p = at.nearest({recording_.voltage_V[row], recording_.current_A[row]},
                                 {lab_->noise().voltage_V, far * lab_->noise().current_A});

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double silicon_gap_eV = 1.121;
 
-// A fit may try numbers that no cell has; there it finds a bad curve and no error.
+// A fit may try unphysical parameters; they give a bad curve instead of an error.
 CellParameters at_state(const ModuleCell& cell, const ModuleState& state) {
   const double T = std::clamp(state.temperature_K, 100.0, 800.0), T0 = cell.temperature_K,
                light = std::max(state.light, 1e-6);
@@ -56,9 +56,9 @@ CellParameters with_breakdown(CellParameters p, const ModuleState::Breakdown& b)
   return p;
 }
 
-// A module under construction.
+// A module during construction.
 struct ModuleString {
-  int left = 0;  // cells like the others that no substring has yet
+  int left = 0;  // average cells that are not assigned to a substring
   ArrayWiring wiring{{{}}};
   CellTables laws;
   std::vector<double> light_A;
@@ -79,7 +79,7 @@ ArrayCurve module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
   const double light_A = cell.photocurrent_A * state.light;
   ModuleString module;
   module.left = wiring.cells - state.bypassed;
-  // Changed cells, then as many of the others as their diode bypasses beside them.
+  // Changed cells, then average cells up to the number that their diode bypasses.
   struct Group {
     ArrayWiring::Substring substring;
     int cells;
@@ -103,7 +103,7 @@ ArrayCurve module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
     add(s.count, [&] { return std::vector{module.add_cell(law, light_A)}; });
   }
   for (const auto& c : state.cracked) {
-    // Two parts of one cell in parallel, one of them behind a resistance.
+    // Two parts of one cell in parallel, one of them in series with a resistance.
     const CellParameters whole = with_breakdown(usual, c.breakdown);
     const auto law = part_of(whole, 1.0 - c.fraction, 0.0),
                cut = part_of(whole, c.fraction, c.resistance_ohm);

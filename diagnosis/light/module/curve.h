@@ -1,15 +1,15 @@
-// The current-voltage curve of a module of like cells in even light, some of which are not alike.
+// Current-voltage curve of a module of equal cells in uniform light, some of which are changed.
 //
-// The module is one string of photovoltaics/network, in which like cells under like light are
-// evaluated once. Temperature and light act on a cell of ideality n as
+// The module is one string of photovoltaics/network, in which equal cells in equal light are
+// evaluated once. A cell of ideality n depends on temperature and light as
 //
 //   I₀(T) = I₀ (T/T₀)^(3/n) exp(E/(n k) (1/T₀ − 1/T)),   R_sh(S) = R_sh S₀/S,
 //
-// E the gap of silicon. Real modules depart from that law: ideality and resistances also follow
-// powers of light and temperature, which are nuisances (Translation). Source: W. De Soto, S. A.
-// Klein, W. A. Beckman, Solar Energy 80, 78 (2006), eq. 12–15, here with the voltage of the
-// junction over n in the exponent, so that the open-circuit voltage tends to the gap at T = 0
-// whatever n is.
+// where E is the gap of silicon. Real modules deviate from that law: ideality and resistances also
+// follow powers of light and temperature, which are nuisance parameters (Translation). Source: W.
+// De Soto, S. A. Klein, W. A. Beckman, Solar Energy 80, 78 (2006), eq. 12–15, here with the
+// junction voltage over n in the exponent. The open-circuit voltage then tends to the gap at T = 0
+// for every n.
 #pragma once
 
 #include <vector>
@@ -18,14 +18,14 @@
 
 namespace photorque {
 
-// Departures from the law above: R_s ∝ S^a (T/T₀)^b, n ∝ S^c (T/T₀)^d, R_sh ∝ S^(e − 1). The
-// saturation current follows n so that the open-circuit voltage at S₀, T₀ stays.
+// Deviations from the law above: R_s ∝ S^a (T/T₀)^b, n ∝ S^c (T/T₀)^d, R_sh ∝ S^(e − 1). The
+// saturation current follows n so that the open-circuit voltage at S₀, T₀ is unchanged.
 struct Translation {
   double series_by_light = 0.0, series_by_temperature = 0.0, ideality_by_light = 0.0,
          ideality_by_temperature = 0.0, shunt_by_light = 0.0;
 };
 
-// One cell of the module at the reference's light and temperature.
+// One cell of the module at the light and temperature of the reference.
 struct ModuleCell {
   double photocurrent_A = 0.0, saturation_A = 0.0, ideality = 1.0, series_ohm = 0.0,
          shunt_ohm = 1e4, temperature_K = 298.15;
@@ -34,12 +34,12 @@ struct ModuleCell {
 
 // Effects on the module.
 struct ModuleState {
-  double light = 1.0;  // over the reference's
+  double light = 1.0;  // relative to the reference
   double temperature_K = 298.15;
-  double series_ohm = 0.0;  // more, of the whole module
-  double shunt_S = 0.0;     // more, across every cell
-  int bypassed = 0;         // cells whose bypass diode is shorted
-  // Of a cell in reverse (J. W. Bishop 1988).
+  double series_ohm = 0.0;  // additional, of the whole module
+  double shunt_S = 0.0;     // additional, across every cell
+  int bypassed = 0;         // number of cells with a shorted bypass diode
+  // Reverse breakdown of a cell (J. W. Bishop 1988).
   struct Breakdown {
     double fraction = 0.0, voltage_V = -15.0, exponent = 3.0;
   };
@@ -47,10 +47,10 @@ struct ModuleState {
     int count = 0;
     double factor = 1.0;  // of their light
     Breakdown breakdown = {};
-    bool is_bypassed = true;  // their bypass diode is not open
+    bool is_bypassed = true;  // false: their bypass diode is open
   };
   std::vector<Shaded> shaded;
-  // A part of a cell's area that the rest reaches through a resistance alone.
+  // A part of a cell's area that is connected to the rest only through a resistance.
   struct Cracked {
     int count = 0;
     double fraction = 0.0, resistance_ohm = 0.0;
@@ -62,10 +62,10 @@ struct ModuleState {
     double shunt_S = 0.0;
   };
   std::vector<Shunted> shunted;
-  // The light changes while the voltage rises, by u = V over the largest of the curve:
-  // light · (1 + change (u − 1/2) + bend (6u² − 6u + 1)).
+  // The light varies during the sweep with u = V over the largest voltage of the curve: light · (1
+  // + change (u − 1/2) + bend (6u² − 6u + 1)).
   double light_change = 0.0, light_bend = 0.0;
-  double bypass_drop = 1.0;  // of the bypass diodes, over that of the wiring
+  double bypass_drop = 1.0;  // forward drop of the bypass diodes relative to that of the wiring
 };
 
 struct ModuleWiring {
@@ -74,13 +74,12 @@ struct ModuleWiring {
   double bypass_drop_V = 0.5;
 };
 
-// All changed cells of one kind are under one diode.
-// The light does not change.
+// The curve in constant light. All changed cells of one kind are under one diode.
 ArrayCurve module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
                         const ModuleState& state);
 
-// Points of the curve at rising voltages, with the light as it changes: to first order, which is
-// within 0.1 % of the short-circuit current for changes of 20 %.
+// Points of the curve at rising voltages in varying light. First order: the error is within 0.1 %
+// of the short-circuit current for changes of 20 %.
 std::vector<ArrayCurve::SlopedPoint> module_points(const ModuleWiring& wiring,
                                                    const ModuleCell& cell, const ModuleState& state,
                                                    const std::vector<double>& voltage_V);

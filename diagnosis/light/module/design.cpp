@@ -8,8 +8,8 @@
 namespace photorque {
 namespace {
 
-// One number for all references, or one for each file; `files` says of which file each is. What
-// the curves say themselves comes first.
+// One number for all references, or one for each file; `files` is the file index of each. Values in
+// the curves themselves have priority.
 std::vector<double> of_references(const Settings& s, const std::string& key, double usual,
                                   const Range& range, const std::vector<size_t>& files,
                                   const std::vector<double>& said) {

@@ -31,7 +31,7 @@
 namespace photorque {
 
 struct ModuleActing {
-  ModuleState state;  // light and temperature aside
+  ModuleState state;  // without light and temperature
   double warmer_K = 0.0;
 };
 
@@ -40,8 +40,9 @@ struct ModuleDesign {
   int bypass_every = 0;  // 0: no bypass diodes
   double bypass_drop_V = 0.5;
   std::vector<std::filesystem::path> reference_files;
-  std::vector<LightRecording> references;  // a curve each
-  // Of each reference, or empty: all have reference_temperature_K, and no sensor saw their light.
+  std::vector<LightRecording> references;  // one per curve
+  // For each reference. If empty, all have reference_temperature_K, and their light is not
+  // measured.
   std::vector<double> reference_temperatures_K, reference_irradiances_W_m2;
   std::vector<RatedPoint> datasheet;
   TemperatureSlopes slopes;
@@ -49,18 +50,18 @@ struct ModuleDesign {
   double temperature_K = 298.15, temperature_sigma_K = 2.0;
   std::optional<double> current_noise_A;
   double voltage_noise_V = 0.0;  // 0: a ten-thousandth of the open-circuit voltage
-  // Effects on the recordings, by the name of the curve; "": on all of them.
+  // Effects on the recordings by name of the curve; "" applies to all.
   std::map<std::string, ModuleActing> acting;
   LightColumns columns;  // of all files: [recording] columns
 };
 
-// All effects on a curve, whose name may begin with folders.
+// All effects on a curve, whose name may include folders.
 ModuleActing acting_on(const ModuleDesign& design, const std::string& curve);
 
-// Reads [module] of an experiment whose files stand in `folder`. InputError for bad keys.
+// Reads [module] of an experiment whose files are in `folder`. Throws InputError for bad keys.
 ModuleDesign read_module(const Settings& root, const std::filesystem::path& folder);
 
-// [module] and its effects as they are declared.
+// Keys of [module] and its effects.
 Key module_table();
 // The kinds of [[effect]] on a module, with their keys.
 std::vector<Key::Choice> module_effects();

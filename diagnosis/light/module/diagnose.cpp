@@ -32,7 +32,7 @@ ModuleRun run_of(const LightRecording& r, const ModuleDesign& design, const Modu
   return run;
 }
 
-// A curve alone.
+// Data of a single curve.
 ModuleData of_one_curve(const ModuleRun& whole) {
   ModuleData data;
   auto [train, held] = split_curve(whole);
@@ -42,8 +42,9 @@ ModuleData of_one_curve(const ModuleRun& whole) {
   return data;
 }
 
-// Every curve alone: the nominal model first, and all hypotheses where that leaves something.
-// `light`: of each over the reference, by the nominal model.
+// Diagnoses every curve separately: the nominal model first, and all hypotheses if it leaves a
+// residual. `light` returns the light of each curve relative to the reference, by the nominal
+// model.
 std::vector<Diagnosis> each_curve(const ModuleDesign& design, const ModuleNominal& nominal,
                                   const ModuleData& all, const ModuleDiagnoseOptions& options,
                                   std::vector<double>& light) {
@@ -94,8 +95,8 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
       data.held.push_back(std::move(held));
     }
   }
-  // Curves of which some differ and others do not, or more than a joint fit is made for, are
-  // explained one by one.
+  // If only some of the curves differ, or there are too many for a joint fit, they are explained
+  // one by one.
   constexpr size_t few = 4;
   Diagnosis d;
   bool is_done = false;

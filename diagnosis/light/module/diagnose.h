@@ -1,8 +1,8 @@
-// `diagnose` for a module in sunlight: current-voltage curves against the module as it was.
+// `diagnose` for a module in sunlight: compares current-voltage curves with the undamaged module.
 //
-// Reference curves or a datasheet → one diode with its uncertainty → every hypothesis fitted to the
-// recordings, with light and temperature of each curve as its nuisances → evidence, with the
-// held-out data → the decision of inference/decide.h.
+// The steps are: reference curves or a datasheet → one diode with its uncertainty → fit of every
+// hypothesis to the recordings → evidence, with the held-out data → the decision of
+// inference/decide.h. Light and temperature of each curve are nuisance parameters of the fits.
 #pragma once
 
 #include "diagnosis/diagnosis.h"
@@ -13,13 +13,13 @@ namespace photorque {
 
 struct ModuleDiagnoseOptions {
   int threads = 0;  // 0: all
-  // Of each curve: of longer ones every so many points are used.
+  // Limit per curve; longer ones are thinned.
   size_t max_points = 160;
   Thresholds limits;
 };
 
-// Without holdouts every fourth segment of each curve is held out. InputError for recordings that
-// are no curves. The same result for any number of threads.
+// Without holdouts every fourth segment of each curve is held out. Throws InputError for recordings
+// other than curves. The result is independent of the number of threads.
 Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRecording>& recordings,
                           const std::vector<LightRecording>& holdouts,
                           const ModuleDiagnoseOptions& options = {});

@@ -12,7 +12,8 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-// The points of a curve in segments of `block` of them for which `is_held` says no, and the others.
+// Divides a curve into segments of `block` points: those for which `is_held` is false, and the
+// others.
 std::pair<ModuleRun, ModuleRun> split_curve(const ModuleRun& run, size_t block,
                                             const std::function<bool(size_t segment)>& is_held) {
   ModuleRun train = run, held = run;
@@ -28,8 +29,8 @@ std::pair<ModuleRun, ModuleRun> split_curve(const ModuleRun& run, size_t block,
   return {std::move(train), std::move(held)};
 }
 
-// χ² of segments of the curves, each predicted from a fit that left out a fifth of the segments.
-// A segment holds several parts of every curve, because damage changes a part of a curve.
+// χ² of segments of the curves, each predicted from a fit that leaves out a fifth of the segments.
+// A segment has several parts of every curve, because damage changes only a part of a curve.
 std::vector<double> chi2_of_segments(const ModuleFitter& fitter, const ModuleHypothesis& h,
                                      const ModuleTrial& trial, const std::vector<ModuleRun>& runs,
                                      const Thresholds& limits) {
@@ -58,7 +59,7 @@ std::vector<double> chi2_of_segments(const ModuleFitter& fitter, const ModuleHyp
   return chi2;
 }
 
-// Excess of the residuals of a fit over noise [sigma].
+// Residual structure of a fit [sigma].
 double excess_of(const ModuleFitter& fitter, const ModuleHypothesis& h, const ModuleTrial& trial,
                  const std::vector<ModuleRun>& runs, const Thresholds& limits) {
   std::vector<inference::ChannelResiduals> channels;
@@ -71,8 +72,8 @@ double excess_of(const ModuleFitter& fitter, const ModuleHypothesis& h, const Mo
                   (trial.fit.data_chi2 / samples - 1.0) / std::sqrt(2.0 / samples));
 }
 
-// The χ² of what one diode and its translation leave of healthy curves: their errors, which the
-// standard deviations of the points count once in a length of correlation.
+// Expected χ² of healthy curves from the errors of one diode and its translation. The standard
+// deviations of the points count these errors once per correlation length.
 double chi2_of_healthy(const ModuleNominal& nominal, const std::vector<ModuleRun>& runs) {
   double chi2 = 0.0;
   for (const ModuleRun& run : runs) {
@@ -82,8 +83,8 @@ double chi2_of_healthy(const ModuleNominal& nominal, const std::vector<ModuleRun
   return chi2;
 }
 
-// Whether the largest number of cells of a kind that was tried is beyond doubt more likely than
-// fewer: then the effect spreads over the module in a way that this kind only imitates.
+// Whether the largest tested number of cells of a kind is clearly more likely than fewer. The
+// effect is then distributed over the module in a way that this kind only mimics.
 bool is_at_largest_count(const ModuleAnswer& answer, const std::string& kind,
                          double min_log_evidence_gain) {
   double largest = -INFINITY, fewer = -INFINITY;
@@ -98,7 +99,7 @@ bool is_at_largest_count(const ModuleAnswer& answer, const std::string& kind,
   return most > 1 && largest > fewer + min_log_evidence_gain;
 }
 
-// The hypotheses of one kind, which differ in their number of cells, fitted to curves.
+// The hypotheses of one kind, which differ in the number of cells, with their fits.
 struct Family {
   std::vector<ModuleHypothesis> hypotheses;
   std::vector<ModuleTrial> trials;
@@ -115,7 +116,7 @@ std::vector<Family> families_of(const std::vector<ModuleHypothesis>& hypotheses)
   return families;
 }
 
-// By rising numbers of cells, until two in turn are hopeless beside the best.
+// Fits rising numbers of cells, until two in succession are hopeless compared with the best.
 void fit_family(const ModuleFitter& fitter, const std::vector<ModuleRun>& runs, Family& family) {
   double best = -INFINITY;
   int behind = 0;
@@ -132,7 +133,7 @@ const ModuleTrial& best_of(const Family& family) {
   return *std::ranges::max_element(family.trials, {}, &ModuleTrial::log_evidence);
 }
 
-// Where shaded cells are no worse than `least`, cracked ones that look like them.
+// If shaded cells are no worse than `least`, adds cracked cells with a similar curve.
 void add_crack_like_shade(const ModuleFitter& fitter, const ModuleDesign& design,
                           const ModuleNominal& nominal, const std::vector<ModuleRun>& runs,
                           double least, std::vector<Family>& families) {
@@ -153,8 +154,9 @@ void add_crack_like_shade(const ModuleFitter& fitter, const ModuleDesign& design
   families.push_back(std::move(like));
 }
 
-// Fits all hypotheses but the first, which is fitted, to the curves for training; the best of each
-// kind and those that are not hopeless beside the best of all then to all.
+// Fits all hypotheses except the first, which is already fitted, to the training curves. The best
+// of each kind, and those that are not hopeless compared with the best of all, are then fitted to
+// all data.
 void fit_effects(const ModuleFitter& fitter, const ModuleDesign& design,
                  const ModuleNominal& nominal, const std::vector<ModuleHypothesis>& hypotheses,
                  const std::vector<ModuleRun>& train, const std::vector<ModuleRun>& everything,
@@ -197,8 +199,8 @@ ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nom
   answer.hypotheses = {hypotheses.front()};
   answer.trials = {fitter.fit(hypotheses.front(), data.train)};
   answer.joint = {fitter.fit(hypotheses.front(), everything, &answer.trials.front().shared)};
-  // Within the error of one diode and of its translation nothing can be said to act: χ² up to one
-  // per point, or to four times what healthy curves leave.
+  // Within the error of one diode and its translation no effect is detectable: χ² up to one per
+  // point and up to four times that of healthy curves.
   constexpr double of_healthy = 4.0;
   const inference::Fit& as_it_was = answer.joint.front().fit;
   const bool leaves_more =

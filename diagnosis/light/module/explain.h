@@ -1,4 +1,4 @@
-// Fits every hypothesis about a module to its curves, and decides between them.
+// Fits every hypothesis about a module to its curves and decides between them.
 #pragma once
 
 #include <utility>
@@ -16,19 +16,20 @@ struct ModuleData {
 
 struct ModuleAnswer {
   std::vector<ModuleHypothesis> hypotheses;
-  // To the curves for training, and to all; ModuleTrial::log_evidence is that of all.
+  // Fits to the training data and to all data; ModuleTrial::log_evidence refers to all.
   std::vector<ModuleTrial> trials, joint;
   inference::Decision decision;
 };
 
-// Log evidence behind the best from which a hypothesis is hopeless.
+// Deficit in log evidence to the best above which a hypothesis is hopeless.
 inline constexpr double hopeless_log_evidence = 60.0;
 
-// The points for training and the held-out ones: every fourth segment, each a fortieth of the
-// curve.
+// Splits a curve into training and held-out points: every fourth segment, each a fortieth of the
+// curve, is held out.
 std::pair<ModuleRun, ModuleRun> split_curve(const ModuleRun& run);
 
-// `hypotheses`: the first is that nothing is missing. The same result for any number of threads.
+// The first of `hypotheses` is "nothing missing". The result is independent of the number of
+// threads.
 ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nominal,
                             const std::vector<ModuleHypothesis>& hypotheses, const ModuleData& data,
                             int threads, const Thresholds& limits);

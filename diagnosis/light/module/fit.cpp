@@ -81,7 +81,7 @@ ModuleTrial ModuleFitter::fit_from(const ModuleHypothesis& h, const std::vector<
     parameters.of_run.push_back({{"light", "ln", first, light, 1.0, light - 5.0, light + 5.0},
                                  {"temperature", "", 0.0, 0.0, 1.0, -20.0, 20.0}});
   }
-  // At the reference's own condition nothing is translated.
+  // Near the condition of the reference, translation is not identifiable.
   constexpr double no_distance = 0.02;
   const bool translates = std::ranges::any_of(
       runs, [&](const ModuleRun& run) { return distance_of(nominal_, run.sweep) > no_distance; });
@@ -97,7 +97,7 @@ ModuleTrial ModuleFitter::fit_from(const ModuleHypothesis& h, const std::vector<
         slopes->col(k).setZero();
         continue;
       }
-      // Away from a bound.
+      // Differences point away from a bound.
       const double highest =
           shared < 0 ? inference::infinity : parameters.shared[static_cast<size_t>(shared)].highest;
       const double step = x[k] + 1e-5 < highest ? 1e-5 : -1e-5;
@@ -131,7 +131,7 @@ ModuleTrial ModuleFitter::fit(const ModuleHypothesis& h, const std::vector<Modul
   if (h.is_empirical || !h.kind.empty()) {
     evidence += h.is_empirical ? limits_.evidence.log_prior_empirical
                                : limits_.evidence.log_prior_effect - std::log(h.alternatives);
-    // A parameter that cannot be negative has half of a Gaussian as its prior.
+    // A parameter that cannot be negative has a half-Gaussian prior.
     for (const inference::Parameter& p : h.parameters) {
       if (p.mean == 0.0 && p.lowest == 0.0) evidence += std::log(2.0);
     }

@@ -1,5 +1,4 @@
-// Hypotheses about a module (parameters, their effect on it, and their priors), and their fit to
-// curves.
+// Hypotheses about a module (parameters, their effect, their priors) and their fit to curves.
 #pragma once
 
 #include <functional>
@@ -13,20 +12,20 @@
 namespace photorque {
 
 struct ModuleHypothesis {
-  std::string kind;         // empty: nothing, or a law without physics
+  std::string kind;         // empty: no effect, or an empirical law
   std::string label;        // as printed: "cell_cracked (3 cells)"
   std::string explanation;  // a sentence of physics without a full stop
   bool is_empirical = false;
-  int count = 0;            // of cells; 0: not a number of cells
-  int largest_count = 0;    // of those that are tried of the kind
-  double alternatives = 1;  // of which this is one: other numbers of cells
+  int count = 0;            // number of cells; 0: not applicable
+  int largest_count = 0;    // of the tested hypotheses of the kind
+  double alternatives = 1;  // number of alternatives, including this: other numbers of cells
   std::vector<inference::Parameter> parameters;
-  std::vector<std::vector<double>> starts;  // of the parameters; none: as they are
+  std::vector<std::vector<double>> starts;  // of the parameters; none: their values
   std::function<void(std::span<const double> x, ModuleState& state, ModuleCell& cell)> act;
-  // Whether the first parameter, a fraction of the light, may limit the current at short circuit,
-  // from which the light of a curve is found.
+  // Whether the first parameter, a fraction of the light, may limit the short-circuit current, from
+  // which the light of a curve is estimated.
   bool limits_current = false;
-  // The keys of the report from the parameters, in SI.
+  // Keys of the report computed from the parameters, in SI.
   struct Number {
     std::string key;
     std::function<double(std::span<const double> x)> value;
@@ -34,50 +33,51 @@ struct ModuleHypothesis {
   std::vector<Number> numbers;
 };
 
-// The first is that nothing is missing.
+// The first hypothesis is "nothing missing".
 std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
                                                 const ModuleNominal& nominal);
 
-// Cells of which a part is cut off and that conduct in reverse as `shaded` ones with the numbers
-// `own`: with no light on that part, or no connection, the curves differ by n kT/q ln(factor) and
-// by the series resistance of one cell. `any_cracked`: one of the other hypotheses of cracks.
+// Cracked cells with reverse conduction, similar to the `shaded` ones with parameters `own`.
+// Without light on a part of the cell or without its connection, the curves differ by n kT/q
+// ln(factor) and by the series resistance of one cell. `any_cracked`: one of the other hypotheses
+// of cracks.
 ModuleHypothesis cracked_like(const ModuleDesign& design, const ModuleNominal& nominal,
                               const ModuleHypothesis& shaded, std::span<const double> own,
                               const ModuleHypothesis& any_cracked);
 
-// A curve and which of its points are fitted.
+// A curve with the selection of its fitted points.
 struct ModuleRun {
   ModuleSweep sweep;
   double sigma_A = 0.0;
-  double irradiance_W_m2 = std::numeric_limits<double>::quiet_NaN();  // by a sensor
+  double irradiance_W_m2 = std::numeric_limits<double>::quiet_NaN();  // from a sensor
 };
 
 struct ModuleTrial : inference::Explanation {
   inference::Fit fit;
-  Eigen::VectorXd shared;  // those of the nominal module, then the hypothesis' own
+  Eigen::VectorXd shared;  // of the nominal module, then of the hypothesis
 };
 
 class ModuleFitter {
  public:
-  // All references must outlive this.
+  // All references must outlive this object.
   ModuleFitter(const ModuleDesign& design, const ModuleNominal& nominal, const Thresholds& limits)
       : design_(design), nominal_(nominal), limits_(limits) {}
 
-  // From all starts of the hypothesis, or from one.
+  // Fits from all starts of the hypothesis, or from one.
   ModuleTrial fit(const ModuleHypothesis& h, const std::vector<ModuleRun>& runs,
                   const Eigen::VectorXd* from = nullptr) const;
-  // Currents by a fit with the light and temperature that it found for its run number `run`, at the
-  // voltages of `at`, a part of the same curve.
+  // Currents of a fit, with its light and temperature of run number `run`, at the voltages of `at`,
+  // a part of that curve.
   std::vector<ArrayCurve::SlopedPoint> curve(const ModuleHypothesis& h, const ModuleTrial& trial,
                                              size_t run, const ModuleRun& at) const;
-  // Measured less predicted over their errors.
+  // (measured − predicted)/error.
   Eigen::VectorXd residuals(const ModuleHypothesis& h, const Eigen::VectorXd& x,
                             const ModuleRun& run) const;
-  // Of a run of a trial: its two nuisances, then the shared parameters.
+  // Parameters of one run of a trial: its two nuisance parameters, then the shared ones.
   static Eigen::VectorXd numbers_of(const ModuleTrial& trial, size_t run);
 
  private:
-  // Logarithm of the light where a fit of the run begins.
+  // Initial log light of the run in a fit.
   double first_light(const ModuleHypothesis& h, const ModuleRun& run,
                      const inference::Parameters& parameters) const;
   ModuleTrial fit_from(const ModuleHypothesis& h, const std::vector<ModuleRun>& runs,

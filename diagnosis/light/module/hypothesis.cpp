@@ -21,7 +21,7 @@ std::vector<int> counts_up_to(int most) {
   return counts;
 }
 
-// Of a cell, voltage over current.
+// Typical resistance of a cell: voltage over current.
 double usual_ohm_of(const ModuleNominal& nominal) {
   return 0.6 / nominal.cell.photocurrent_A;
 }
@@ -30,7 +30,7 @@ std::string cells(int count) {
   return count == 1 ? "one cell" : std::to_string(count) + " cells";
 }
 
-// Appends the drop of bypass diodes that conduct, over the stated one.
+// Appends the forward drop of conducting bypass diodes relative to the stated one.
 void add_bypass_drop(const ModuleDesign& design, ModuleHypothesis& h) {
   if (design.bypass_every == 0) return;
   h.parameters.push_back(wide("bypass_drop", 0.0, 0.2, -1.0, 1.0));
@@ -42,9 +42,9 @@ void add_bypass_drop(const ModuleDesign& design, ModuleHypothesis& h) {
   };
 }
 
-// Appends what cells do in reverse: breakdown is soft, and far from the tabulated exponent of three
-// in cells of other makes (J. W. Bishop, Solar Cells 25, 73 (1988)). Where diodes bypass them, the
-// drop of these is a nuisance: 0.35 V of a Schottky diode to 0.7 V of a junction.
+// Appends reverse conduction of cells. Breakdown is soft, and its exponent may be far from the
+// tabulated three in cells of other makes (J. W. Bishop, Solar Cells 25, 73 (1988)). If diodes
+// bypass the cells, their drop is a nuisance parameter: 0.35 V (Schottky) to 0.7 V (junction).
 void add_reverse(const ModuleDesign& design, ModuleHypothesis& h) {
   const size_t first = h.parameters.size();
   h.parameters.push_back(wide("breakdown_fraction", 0.0, 2.0, -8.0, std::log(7.0)));
@@ -83,7 +83,7 @@ ModuleHypothesis shaded(const ModuleDesign& design, int count, double alternativ
   h.numbers = {{"factor", [](X x) { return x[0]; }}};
   add_reverse(design, h);
   if (!is_bypassed) {
-    // Without a diode the whole module drives them, against hard breakdown as well.
+    // Without a bypass diode the whole module drives them, even into hard breakdown.
     for (const double factor : {0.3, 0.7}) {
       h.starts.push_back({factor, std::log(0.02), std::log(25.0), std::log(3.4), 0.0});
     }
@@ -91,7 +91,7 @@ ModuleHypothesis shaded(const ModuleDesign& design, int count, double alternativ
   return h;
 }
 
-// Of `count` of the substrings each has its own light.
+// Each of `count` substrings has different light.
 ModuleHypothesis substrings_shaded(const ModuleDesign& design, int count, int most) {
   ModuleHypothesis h;
   h.kind = "substring_shaded";
@@ -128,7 +128,7 @@ ModuleHypothesis unsteady_light() {
   return h;
 }
 
-// `reverse`: whether its cells also conduct in reverse, as shaded cells do.
+// `reverse`: whether its cells also conduct in reverse, like shaded cells.
 ModuleHypothesis cracked(const ModuleDesign& design, int count, double alternatives,
                          double usual_ohm, bool reverse = false) {
   ModuleHypothesis h;
@@ -185,7 +185,7 @@ ModuleHypothesis shunted(int count, double alternatives, double usual_ohm) {
   return h;
 }
 
-// A trap: some diode fits every smoothly falling curve.
+// Empirical competitor: some diode fits every smoothly falling curve.
 ModuleHypothesis other_diode() {
   ModuleHypothesis h;
   h.label = "another diode (all five parameters)";
@@ -195,7 +195,7 @@ ModuleHypothesis other_diode() {
   }
   h.starts = {{0.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.5, -1.0}};
   h.act = [](X x, ModuleState&, ModuleCell& cell) {
-    // With the ideality the saturation current that keeps the open-circuit voltage.
+    // Changes the saturation current with the ideality to keep the open-circuit voltage.
     const double open = std::log(cell.photocurrent_A / cell.saturation_A);
     const double ideality = std::exp(0.3 * x[1]);
     cell.saturation_A = cell.photocurrent_A * std::exp(-open / ideality + x[0]);
@@ -253,7 +253,7 @@ std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
       [](double x, ModuleState& state) { state.temperature_K += x; }, [](double x) { return x; }));
   all.push_back(unsteady_light());
   if (design.bypass_every > 0) {
-    // Two faults at once: a shade, and a diode that does not bypass it.
+    // Two simultaneous faults: a shade, and a diode that does not bypass it.
     constexpr double of_diodes = 3.0;
     for (const int k : few) {
       all.push_back(shaded(design, k, of_diodes * static_cast<double>(few.size()), false));

@@ -21,13 +21,13 @@ double median(std::vector<double> values) {
   return *at;
 }
 
-// Sizes that are expected of the powers of Translation. A healthy module of 36 cells (pvlib, 12
-// curves from 580 to 1080 W/m² and 31 to 61 °C), translated from its brightest curve, asks for
-// R_s ∝ (T/T₀)^1.9 and n ∝ (T/T₀)^0.95 at no power of light, or S^0.27 and S^0.14 at none of
-// temperature; 25 curves of one of 60 cells (NIST) from 14 to 960 W/m² ask for less.
+// Expected sizes of the powers of Translation. A healthy module of 36 cells (pvlib, 12 curves from
+// 580 to 1080 W/m² and 31 to 61 °C) is translated from its brightest curve. It gives R_s ∝
+// (T/T₀)^1.9 and n ∝ (T/T₀)^0.95 without powers of light, or S^0.27 and S^0.14 without powers of
+// temperature. 25 curves of a module of 60 cells (NIST) from 14 to 960 W/m² give less.
 constexpr double translation_sigma[] = {0.25, 2.5, 0.1, 1.0, 0.5};
 
-// From logarithms and powers, these in their expected sizes.
+// The cell from logarithms and from powers in units of their expected sizes.
 ModuleCell cell_of(const VectorXd& x, double temperature_K) {
   ModuleCell cell{std::exp(x[0]), std::exp(x[1]), std::exp(x[2]),
                   std::exp(x[3]), std::exp(x[4]), temperature_K};
@@ -39,17 +39,17 @@ ModuleCell cell_of(const VectorXd& x, double temperature_K) {
   return cell;
 }
 
-// From second differences, which a smooth curve hardly has.
+// Noise from second differences, which are nearly zero for a smooth curve.
 double noise_of(const std::vector<double>& current_A) {
   std::vector<double> second;
   for (size_t i = 2; i < current_A.size(); ++i) {
     second.push_back(std::abs(current_A[i] - 2.0 * current_A[i - 1] + current_A[i - 2]));
   }
-  constexpr double of_median = 0.6745;  // of a normal variable's standard deviation
+  constexpr double of_median = 0.6745;  // median over standard deviation of a normal variable
   return median(std::move(second)) / of_median / std::sqrt(6.0);
 }
 
-// Logarithms of one cell from the fit of a whole device.
+// Logarithms of the parameters of one cell from the fit of a whole device.
 VectorXd logs_of(const SingleDiode& d, int cells, double temperature_K) {
   const double thermal_V = boltzmann_J_K * temperature_K / elementary_charge_C;
   VectorXd logs(5);
@@ -65,8 +65,7 @@ struct ReferenceFit {
   std::vector<VectorXd> residuals_A;
 };
 
-constexpr Index own =
-    2;  // of each curve: logarithm of its light, deviation from the stated temperature
+constexpr Index own = 2;  // of each curve: log light, deviation from the stated temperature
 
 inference::Parameters reference_parameters(const ModuleDesign& design,
                                            const std::vector<ModuleSweep>& sweeps) {
@@ -98,7 +97,7 @@ inference::Parameters reference_parameters(const ModuleDesign& design,
   return parameters;
 }
 
-// `noise`: of a point over the current of the first curve; `near`: where the fit starts, or
+// `noise`: of a point relative to the current of the first curve; `near`: start of the fit, or
 // nullptr.
 ReferenceFit fit_references(const ModuleDesign& design, double noise, const ReferenceFit* near) {
   constexpr size_t most_points = 200;
@@ -155,7 +154,7 @@ ReferenceFit fit_references(const ModuleDesign& design, double noise, const Refe
   return result;
 }
 
-// The distance in points over which residuals are alike, at least one.
+// Correlation length of the residuals in points, at least one.
 double correlation_points(const VectorXd& r) {
   double sum = 1.0;
   const double all = r.squaredNorm();
@@ -168,7 +167,7 @@ double correlation_points(const VectorXd& r) {
   return sum;
 }
 
-// Of a covariance, cut to a factor of e where the curves leave something open.
+// Root of a covariance, limited to a factor of e for parameters that the curves do not determine.
 MatrixXd root_of(MatrixXd C) {
   MatrixXd root = MatrixXd::Zero(C.rows(), C.cols());
   for (Index k = 0; k < C.rows(); ++k) {
@@ -224,7 +223,7 @@ ModuleNominal nominal_of_references(const ModuleDesign& design) {
   ModuleNominal nominal;
   constexpr double first_noise = 1e-3;
   const ReferenceFit first = fit_references(design, first_noise, nullptr);
-  // The second fit takes the scatter, counted once per correlation length, as its noise.
+  // The second fit uses the scatter as its noise, counted once per correlation length.
   double length = 0.0;
   for (const VectorXd& r : first.residuals_A) {
     length += correlation_points(r) / static_cast<double>(first.residuals_A.size());
@@ -277,7 +276,7 @@ ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& de
   }
   all.noise_A =
       design.current_noise_A.value_or(std::max(noise_of(all.current_A), 1e-5 * largest_A));
-  // Outliers: points that are farther from the line between their neighbours than a curve can bend.
+  // Outliers: points outside the range of their two neighbours by more than a curve can bend.
   ModuleSweep good = all;
   good.voltage_V.clear();
   good.current_A.clear();
@@ -338,12 +337,13 @@ ModuleNominal nominal_module(const ModuleDesign& design) {
 
 namespace {
 
-// The residual of one diode and its translation.
+// Residual of one diode and its translation.
 double misfit_A(const ModuleNominal& nominal, const ModuleSweep& sweep) {
-  // Per unit of distance, of the short-circuit current: the residual of the powers of Translation
-  // for the two modules from which their sizes come.
+  // Per unit of distance, relative to the short-circuit current: the residual of the powers of
+  // Translation for the two modules from which their sizes come.
   constexpr double translation_misfit = 1.5e-3;
-  // One or two references show their misfit over few lengths of correlation, to a third.
+  // Correction for one or two references: they sample their misfit over few correlation lengths, to
+  // a third.
   constexpr double of_curves = 1.33;
   return std::hypot(of_curves * nominal.misfit, translation_misfit * distance_of(nominal, sweep)) *
          nominal.cell.photocurrent_A * sweep.light;

@@ -26,7 +26,7 @@ void require_plausible(const ModuleSweep& sweep, const ModuleDesign& design,
   const double open_V = design.cells * cell.ideality * thermal_V *
                         std::log1p(cell.photocurrent_A / cell.saturation_A);
   const double light = light_of(sweep, nominal);
-  double seen_V = 0.0;  // the largest voltage at which it still gives current
+  double seen_V = 0.0;  // the largest voltage with a forward current
   for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
     if (sweep.current_A[i] >= 0.0) seen_V = std::max(seen_V, sweep.voltage_V[i]);
   }

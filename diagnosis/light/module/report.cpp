@@ -16,7 +16,7 @@ double squares_of(const ModuleFitter& fitter, const ModuleAnswer& answer, size_t
   double squares = 0.0, points = 0.0;
   for (size_t run = 0; run < data.held.size(); ++run) {
     const ModuleSweep& sweep = data.held[run].sweep;
-    // Parts of curves that were fitted have their light and temperature.
+    // Held-out parts of fitted curves use the light and temperature from the fit of their curve.
     const bool of_train =
         data.held.size() == data.train.size() && data.train[run].sweep.name == sweep.name;
     const auto curve = fitter.curve(answer.hypotheses[trial],
@@ -29,7 +29,7 @@ double squares_of(const ModuleFitter& fitter, const ModuleAnswer& answer, size_t
   return std::sqrt(squares / std::max(1.0, points));
 }
 
-// Standard errors of the hypothesis' own parameters.
+// Standard errors of the parameters of the hypothesis alone.
 std::vector<double> own_errors(const ModuleTrial& trial, size_t own) {
   const Eigen::MatrixXd C = trial.fit.shared_posterior();
   std::vector<double> errors;
@@ -66,7 +66,7 @@ FoundEffect found_in_module(const ModuleAnswer& answer, size_t chosen, const Thr
     effect.parameters.back().sigma.push_back(std::sqrt(variance));
   }
   int fewest = h.count, most = h.count;
-  // A model of damage describes what the damage does to about 1 %, χ² to a ten-thousandth.
+  // Models of damage are accurate to about 1 %, which is a ten-thousandth of χ².
   constexpr double model_error = 1e-4;
   const double likely = answer.trials[chosen].log_evidence;
   // A residual above the noise that all models leave widens the limit.
@@ -74,8 +74,8 @@ FoundEffect found_in_module(const ModuleAnswer& answer, size_t chosen, const Thr
       std::max(1.0, joint.fit.data_chi2 / static_cast<double>(joint.fit.samples));
   const double within = std::max(limits.search.min_log_evidence_gain * beyond_noise,
                                  model_error * (likely - answer.trials.front().log_evidence));
-  // A cell in the shade and one with a part cut off differ by some hundredths of a volt, which the
-  // model of the other cells does not describe.
+  // Shaded and partly cut-off cells differ by some hundredths of a volt, which is below the
+  // accuracy of the model of the other cells.
   constexpr double cut_off_or_dark = 5e-3;
   const double between_them =
       std::max(within, std::min(hopeless_log_evidence,
@@ -106,8 +106,8 @@ FoundEffect found_in_module(const ModuleAnswer& answer, size_t chosen, const Thr
   return effect;
 }
 
-// A curve beside the nominal model and the chosen one, each with the light and temperature that it
-// found for the run.
+// A curve with the nominal and the chosen model, each with its fitted light and temperature of the
+// run.
 RecordingSeries curve_of(const ModuleFitter& fitter, const ModuleAnswer& answer, size_t chosen,
                          const ModuleRun& whole, size_t run) {
   const auto currents = [&](size_t trial) {
@@ -131,9 +131,9 @@ RecordingSeries curve_of(const ModuleFitter& fitter, const ModuleAnswer& answer,
   return series;
 }
 
-// One diode describes modules in even light to 0.1 to 0.5 % of their short-circuit current (curves
-// of docs/real_light.md and of measured modules of others), with a cell in the shade or a step to
-// 0.8 % and more.
+// One diode describes modules in uniform light to 0.1 to 0.5 % of their short-circuit current
+// (curves of docs/real_light.md and published measurements). With a shaded cell or a step the
+// misfit is 0.8 % and more.
 constexpr double even_misfit = 7e-3;
 
 // Whether a curve is both a reference and a recording. Its deviation from one diode would then
@@ -147,7 +147,7 @@ bool is_its_own_reference(const ModuleDesign& design,
   });
 }
 
-// Root of the mean square of two, of so many samples each.
+// Adds to the root mean square, weighted by the numbers of samples.
 void add_rms(const Holdout& more, Holdout& all) {
   const auto mean = [&](double a, double b) {
     const auto m = static_cast<double>(all.samples), n = static_cast<double>(more.samples);
@@ -237,7 +237,7 @@ Diagnosis of_all_curves(std::vector<Diagnosis> each) {
   all.holdout.emplace();
   int64_t samples = 0;
   size_t differing = 0;
-  constexpr size_t most_drawn = 12;  // of the curves that differ
+  constexpr size_t most_drawn = 12;  // of the differing curves
   for (Diagnosis& d : each) {
     const auto n = static_cast<double>(d.samples), m = static_cast<double>(samples);
     all.chi2_per_sample_before =
@@ -304,10 +304,10 @@ void compare_with_sensor(const ModuleDesign& design, const std::vector<ModuleRun
   for (size_t i = 0; i < ratio.size(); ++i) off.push_back(ratio[i] - slope * order[i]);
   const double level = median_of(off);
   for (double& x : off) x = std::abs(x - level);
-  constexpr double of_median = 0.6745;  // of a normal variable's standard deviation
+  constexpr double of_median = 0.6745;  // median over standard deviation of a normal variable
   const double scatter = median_of(off) / of_median;
   const auto at = [&](double i) { return std::exp(level + slope * i - unit); };
-  // The error of the slope of a line through n points, one apart: scatter √(12/n³).
+  // Standard error of the slope of a line through n points with unit spacing: scatter √(12/n³).
   const auto n = static_cast<double>(ratio.size());
   const double sigma = std::abs(slope) / std::max(1e-9, scatter * std::sqrt(12.0 / (n * n * n)));
   char text[400];

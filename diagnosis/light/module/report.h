@@ -1,4 +1,4 @@
-// The answer to the curves of a module in words and numbers.
+// The result for the curves of a module as sentences and numbers.
 #pragma once
 
 #include "diagnosis/diagnosis.h"
@@ -8,17 +8,17 @@ namespace photorque {
 
 std::string module_sentence(const Diagnosis& d);
 
-// Without the sentence and the quality of the data.
+// The diagnosis without the sentence and the quality of the data.
 Diagnosis described(const ModuleDesign& design, const ModuleNominal& nominal,
                     const ModuleAnswer& answer, const ModuleData& data, const Thresholds& limits);
 
-// Curves that were diagnosed one by one, as one answer.
+// Combines diagnoses of single curves.
 Diagnosis of_all_curves(std::vector<Diagnosis> each);
 
-// Adds how the light of the curves goes with what a sensor saw: a line through the logarithm of
-// their ratio over the order of the curves, by Theil and Sen, which a few curves under a cloud do
-// not move. Without the irradiance of the reference the ratio counts from its median.
-// `light`: of each curve over the reference.
+// Adds a comparison of the light of the curves with a sensor: a Theil-Sen line through the
+// logarithm of their ratio over the order of the curves, which is robust to a few curves under a
+// cloud. Without the irradiance of the reference the ratio is relative to its median. `light`: of
+// each curve relative to the reference.
 void compare_with_sensor(const ModuleDesign& design, const std::vector<ModuleRun>& curves,
                          const std::vector<double>& light, Diagnosis& d);
 
