@@ -23,7 +23,7 @@ std::string digits(double value, int significant = 3) {
 }
 
 // Rounds to three digits.
-SettingsNode number(double value) {
+SettingsNode number_node(double value) {
   return {std::strtod(digits(value).c_str(), nullptr)};
 }
 
@@ -66,7 +66,8 @@ struct Machine {
 SettingsNode matrix(const Mat3& m) {
   SettingsNode::Array rows;
   for (int i = 0; i < 3; ++i) {
-    rows.push_back({SettingsNode::Array{number(m(i, 0)), number(m(i, 1)), number(m(i, 2))}});
+    rows.push_back(
+        {SettingsNode::Array{number_node(m(i, 0)), number_node(m(i, 1)), number_node(m(i, 2))}});
   }
   return {std::move(rows)};
 }
@@ -169,7 +170,7 @@ void add_noise(TomlDocument& document, const std::vector<Observation>& runs,
   double square = 0.0;
   for (const double level : levels) square += level * level;
   document.set(document.table("sensors"), key,
-               number(std::sqrt(square / static_cast<double>(levels.size()))),
+               number_node(std::sqrt(square / static_cast<double>(levels.size()))),
                "by which neighbouring readings scatter");
 }
 
@@ -319,8 +320,8 @@ void add_drag(TomlDocument& document, const Machine& m) {
   SettingsNode::Table& table = document.append("disturbance");
   document.set(table, "kind", {"bearing_drag"});
   document.set(table, "coefficient_N_m_s",
-               {SettingsNode::Table{{"value", number(coefficient_1_s)},
-                                    {"sigma", number(10.0 * coefficient_1_s)}}});
+               {SettingsNode::Table{{"value", number_node(coefficient_1_s)},
+                                    {"sigma", number_node(10.0 * coefficient_1_s)}}});
 }
 
 // Adds the sequence of roll, pitch and yaw.

@@ -11,7 +11,7 @@
 namespace photorque::cad {
 namespace {
 
-constexpr size_t header_bytes = 80, count_bytes = 4, facet_bytes = 50;
+constexpr size_t stl_header_bytes = 80, count_bytes = 4, facet_bytes = 50;
 
 // Corners at the same place, to the bit, as one vertex.
 class CornerPool {
@@ -50,14 +50,14 @@ double float_at(std::string_view bytes, size_t at) {
 
 // Many writers begin binary files with "solid" too: the length decides.
 bool has_binary_length(std::string_view bytes) {
-  if (bytes.size() < header_bytes + count_bytes) return false;
-  const uint64_t count = little_endian_32(bytes, header_bytes);
-  return bytes.size() == header_bytes + count_bytes + facet_bytes * count;
+  if (bytes.size() < stl_header_bytes + count_bytes) return false;
+  const uint64_t count = little_endian_32(bytes, stl_header_bytes);
+  return bytes.size() == stl_header_bytes + count_bytes + facet_bytes * count;
 }
 
 std::vector<Part> read_binary(std::string_view bytes, const std::string& file,
                               const std::string& name) {
-  const uint32_t count = little_endian_32(bytes, header_bytes);
+  const uint32_t count = little_endian_32(bytes, stl_header_bytes);
   if (count > most_triangles) {
     throw InputError({file}, "facets", std::to_string(count),
                      "at most " + std::to_string(most_triangles));
@@ -66,7 +66,7 @@ std::vector<Part> read_binary(std::string_view bytes, const std::string& file,
   CornerPool pool(part.mesh);
   part.mesh.triangles.reserve(count);
   for (uint32_t facet = 0; facet < count; ++facet) {
-    const size_t start = header_bytes + count_bytes + facet_bytes * facet;
+    const size_t start = stl_header_bytes + count_bytes + facet_bytes * facet;
     std::array<uint32_t, 3> triangle{};
     for (size_t corner = 0; corner < 3; ++corner) {
       Vec3 at;
@@ -234,10 +234,10 @@ std::vector<Part> read_stl(std::string_view bytes, const std::string& file,
     bytes = bytes.substr(0, bytes.find_first_of(ends_of_text));
     parts = TextReader(bytes, file, name).read();
   } else {
-    const bool has_count = bytes.size() >= header_bytes + count_bytes;
+    const bool has_count = bytes.size() >= stl_header_bytes + count_bytes;
     throw InputError(
         {file}, "", std::to_string(bytes.size()) + " bytes",
-        has_count ? "84 + 50 × " + std::to_string(little_endian_32(bytes, header_bytes)) +
+        has_count ? "84 + 50 × " + std::to_string(little_endian_32(bytes, stl_header_bytes)) +
                         " bytes, the facets that the header counts, or text that begins with solid"
                   : "an STL file: text that begins with solid, or at least 84 bytes");
   }

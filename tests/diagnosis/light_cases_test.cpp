@@ -12,7 +12,7 @@
 namespace photorque {
 namespace {
 
-Diagnosis diagnosed(const std::string& name) {
+Diagnosis answer_to(const std::string& name) {
   const std::filesystem::path folder = outside::reference_data("light/" + name);
   const Experiment experiment = read_experiment(folder / "experiment.toml");
   const LightLab lab(experiment);
@@ -27,7 +27,7 @@ using Kinds = std::vector<std::string>;
 
 // Two minima of the fitted curves are as deep; the held-out curves separate them.
 TEST(LightCase, ABiasOfTheAttitudeIsFoundInTheRightMinimum) {
-  const Diagnosis d = diagnosed("tilted");
+  const Diagnosis d = answer_to("tilted");
   ASSERT_EQ(kinds_of(d), Kinds{"attitude_bias"}) << d.sentence;
   const FittedParameter& bias = parameter(d, "attitude_bias", "bias_deg");
   EXPECT_NEAR(bias.value[0], 0.9510, 5.0 * bias.sigma[0]);
@@ -36,7 +36,7 @@ TEST(LightCase, ABiasOfTheAttitudeIsFoundInTheRightMinimum) {
 
 // In the fitted curves most cells explain as much as the right one.
 TEST(LightCase, TheCellThatOnlyTheHeldOutCurvesShow) {
-  const Diagnosis d = diagnosed("one_cell");
+  const Diagnosis d = answer_to("one_cell");
   ASSERT_EQ(kinds_of(d), Kinds{"cell_degraded"}) << d.sentence;
   EXPECT_EQ(parameter(d, "cell_degraded", "index").value, std::vector<double>{9.0});
   const FittedParameter& factor = parameter(d, "cell_degraded", "factor");
@@ -46,7 +46,7 @@ TEST(LightCase, TheCellThatOnlyTheHeldOutCurvesShow) {
 // To first order an LED that points elsewhere explains more than the cell, which shows little until
 // it limits its string.
 TEST(LightCase, TheCellBesideABadContact) {
-  const Diagnosis d = diagnosed("cell_and_contact");
+  const Diagnosis d = answer_to("cell_and_contact");
   ASSERT_EQ(kinds_of(d), (Kinds{"series_resistance", "cell_degraded"})) << d.sentence;
   EXPECT_EQ(parameter(d, "cell_degraded", "index").value, std::vector<double>{4.0});
 }

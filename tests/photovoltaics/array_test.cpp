@@ -39,10 +39,10 @@ ArrayDesign design(SettingsNode::Table table = ten_by_ten()) {
   return read_array_design(settings(std::move(table)));
 }
 
-constexpr double responsivity_A_W = 0.5;
+constexpr double half_A_W = 0.5;
 
 ArrayResult evaluate(const ArrayDesign& array, const ArrayLight& light) {
-  return evaluate_array(array, light, std::array{responsivity_A_W});
+  return evaluate_array(array, light, std::array{half_A_W});
 }
 
 TEST(PhotovoltaicArray, EvenLightGivesTheSumOfItsCells) {
@@ -86,7 +86,7 @@ TEST(PhotovoltaicArray, ACellThatDiffersHasItsOwnCircuit) {
   const ArrayResult result =
       evaluate(array, array_light(20, 20, 0.2, 0.1, std::vector<double>(400, 800.0)));
   ASSERT_NEAR(result.cell_area_m2[1], 0.01, 1e-15);
-  const double light_A = responsivity_A_W * 800.0 * 0.01;
+  const double light_A = half_A_W * 800.0 * 0.01;
   EXPECT_NEAR(result.cell_photocurrent_A[0], light_A, 1e-12);
   EXPECT_NEAR(result.cell_photocurrent_A[1], 0.5 * light_A, 1e-12);
   const CellParameters others = parameters_at(array.cell, 0.01, array.temperature_K);
@@ -223,7 +223,7 @@ TEST(PhotovoltaicArray, DarkCellWithoutBreakdownCostsItsSubstring) {
   const ArrayDesign array = design(table);
   const ArrayResult result = evaluate(array, array_light(10, 10, 0.2, 0.2, irradiance));
   const CellCurve cell(parameters_at(array.cell, 4e-4, array.temperature_K));
-  const double light_A = responsivity_A_W * 1000.0 * 4e-4;
+  const double light_A = half_A_W * 1000.0 * 4e-4;
   // Largest of I (80 V_cell(I) − 0.5), by a fine grid and its parabola.
   const auto power_W = [&](double i) { return i * (80.0 * cell.voltage_V(light_A, i) - 0.5); };
   const double step_A = 1e-5 * light_A;

@@ -97,14 +97,14 @@ OpticalSurface black() {
   return grey_surface("black", 0.0, 0.0);
 }
 
-struct Lit {
+struct LitPlate {
   Scene scene;
   SurfaceGrid grid;
 };
 
-Lit lit_plate(const OpticalSurface& surface) {
-  Lit lit;
-  testing::add(lit.scene, testing::rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), surface, "plate");
+LitPlate lit_plate(const OpticalSurface& surface) {
+  LitPlate lit;
+  fixtures::add(lit.scene, fixtures::rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), surface, "plate");
   SurfaceGridOptions options;
   options.width = options.height = 4;
   lit.grid = make_surface_grid(lit.scene, {{0}}, options);
@@ -112,11 +112,11 @@ Lit lit_plate(const OpticalSurface& surface) {
 }
 
 // The fraction that enters, over all bins, of parallel light at an angle.
-double traced_fraction(const Lit& lit, const std::optional<CellFront>& front, double angle) {
+double traced_fraction(const LitPlate& lit, const std::optional<CellFront>& front, double angle) {
   const IncidenceReceiver receiver(lit.scene, lit.grid, front, std::array{any_m});
   const Vec3 direction(std::sin(angle), 0, -std::cos(angle));
-  const std::vector<Beam> beams = {testing::beam(std::make_shared<testing::ParallelBeam>(1.0, 0.2),
-                                                 Vec3(-direction), direction)};
+  const std::vector<Beam> beams = {fixtures::beam(
+      std::make_shared<fixtures::ParallelBeam>(1.0, 0.2), Vec3(-direction), direction)};
   const std::vector<const Receiver*> receivers = {&receiver};
   TraceOptions options;
   options.rays = 4096;
@@ -140,7 +140,7 @@ double brewster_modifier(double n) {
 }
 
 TEST(IncidenceReceiver, RaysAtBrewstersAngleLoseTheClosedForm) {
-  const Lit lit = lit_plate(black());
+  const LitPlate lit = lit_plate(black());
   for (const double n : {1.33, 1.5, 2.0}) {
     EXPECT_NEAR(traced_fraction(lit, clear_glass(n), std::atan(n)), brewster_modifier(n), 1e-6);
     EXPECT_NEAR(traced_fraction(lit, clear_glass(n), 0.0), 1.0, 1e-7);
@@ -151,10 +151,10 @@ TEST(IncidenceReceiver, RaysAtBrewstersAngleLoseTheClosedForm) {
 // A surface that is glass itself has lost its reflection already: the receiver takes the angle from
 // it, and refuses a second glass.
 TEST(IncidenceReceiver, GlassOfTheSurfaceItselfIsNotCountedTwice) {
-  const Lit lit = lit_plate(behind_glass(black(), 1.5));
+  const LitPlate lit = lit_plate(behind_glass(black(), 1.5));
   ASSERT_TRUE(has_own_front(lit.scene, lit.grid));
   EXPECT_NEAR(traced_fraction(lit, std::nullopt, std::atan(1.5)), brewster_modifier(1.5), 1e-6);
-  EXPECT_NE(testing::input_error_of([&] {
+  EXPECT_NE(fixtures::input_error_of([&] {
               IncidenceReceiver(lit.scene, lit.grid, clear_glass(1.5), std::array{any_m},
                                 {"array.toml", 5});
             }).find("array.toml:5: array.cover"),
@@ -165,16 +165,16 @@ TEST(IncidenceReceiver, GlassOfTheSurfaceItselfIsNotCountedTwice) {
 // J. W. T. Walsh (1926), in D. B. Judd, J. Res. NBS 29 (1942) 329: glass of index 1.5 reflects
 // 0.0918 of light that comes evenly from all directions outside.
 TEST(IncidenceReceiver, DiffuseLightLosesWhatWalshFound) {
-  const Lit lit = lit_plate(black());
+  const LitPlate lit = lit_plate(black());
   const IncidenceReceiver receiver(lit.scene, lit.grid, clear_glass(1.5), std::array{any_m});
-  std::vector<testing::HitMaker> hits;
+  std::vector<fixtures::HitMaker> hits;
   constexpr int count = 20000;
   for (int i = 0; i < count; ++i) {
-    testing::HitMaker hit;
+    fixtures::HitMaker hit;
     hit.cosine = std::sqrt((i + 0.5) / count);
     hits.push_back(hit);
   }
-  const BinSums sums = testing::sums_of(receiver, {hits});
+  const BinSums sums = fixtures::sums_of(receiver, {hits});
   double all = 0.0, entering = 0.0;
   for (size_t i = 0; i < sums.bins / 2; ++i) {
     all += sums.sums[i];
@@ -218,13 +218,13 @@ TEST(PhotovoltaicArray, PhotocurrentFollowsWhatEntersAndTheWaterfallSaysSo) {
 using Numbers = std::vector<double>;
 
 Settings cover_settings(const std::vector<std::pair<std::string, SettingsNode>>& keys) {
-  return testing::settings_of(keys);
+  return fixtures::settings_of(keys);
 }
 
 TEST(CellFront, WrongCoversNameTheirKey) {
-  using testing::node_of;
+  using fixtures::node_of;
   const auto message = [](const Settings& settings) {
-    return testing::input_error_of([&] { read_cell_front(settings); });
+    return fixtures::input_error_of([&] { read_cell_front(settings); });
   };
   EXPECT_NE(message(cover_settings({{"refractive_index", node_of(0.5)}})).find("refractive_index"),
             std::string::npos);

@@ -11,8 +11,8 @@
 namespace photorque {
 namespace {
 
-using testing::input_error_of;
-using testing::plate;
+using fixtures::input_error_of;
+using fixtures::plate;
 
 // Appends a mesh with separate vertices.
 void join(Mesh& all, const Mesh& more) {
@@ -67,7 +67,7 @@ double area_of(const CellPlaces& places, const SurfaceGrid& grid, size_t cell) {
 }
 
 TEST(CellPlaces, SeparatePiecesOfAMeshAreCellsNumberedRowByRow) {
-  const Scene scene = testing::scene_of(six_squares());
+  const Scene scene = fixtures::scene_of(six_squares());
   // 29 × 19 bins of 10 mm fit the squares; 10 × 7 cut them.
   for (const auto& [width, height] : {std::pair{29, 19}, {10, 7}}) {
     const SurfaceGrid grid = grid_over(scene, width, height);
@@ -86,7 +86,7 @@ TEST(CellPlaces, SeparatePiecesOfAMeshAreCellsNumberedRowByRow) {
 
 // The array as equal rectangles over a sheet with gaps: the same light on every cell.
 TEST(CellPlaces, MeshAndRegularRectanglesGiveTheSameArray) {
-  const Scene squares = testing::scene_of(six_squares());
+  const Scene squares = fixtures::scene_of(six_squares());
   const SurfaceGrid grid = grid_over(squares);
   std::vector<double> irradiance;
   for (int row = 0; row < 19; ++row) {
@@ -124,7 +124,7 @@ TEST(CellPlaces, MeshAndRegularRectanglesGiveTheSameArray) {
     const double u = pitch_m * column, v = pitch_m * row;
     rectangles.push_back({u, u + side_m, v, v + side_m});
   }
-  const Scene whole = testing::scene_of(plate(0, 0.29, 0, 0.19));
+  const Scene whole = fixtures::scene_of(plate(0, 0.29, 0, 0.19));
   meshed.places = places_from_rectangles(rectangles, grid_over(whole));
   const ArrayResult c = evaluate_array(meshed, sheet, std::array{0.5});
   EXPECT_NEAR(c.power_W.value, a.power_W.value, 1e-11 * a.power_W.value);
@@ -135,7 +135,7 @@ TEST(CellPlaces, InstancesAreCellsAlsoWhenTheyTouch) {
   for (const int x : {0, 1, 2}) {
     Affine at = Affine::Identity();
     at.translation() = Vec3(0.1 * x, 0, 0);
-    testing::add_instance(scene, plate(0, 0.1, 0, 0.2), "cell", at);
+    fixtures::add_instance(scene, plate(0, 0.1, 0, 0.2), "cell", at);
   }
   const SurfaceGrid grid = grid_over(scene, 6, 4);
   EXPECT_EQ(places_from_mesh(scene, grid).parts.size(), 3u);
@@ -143,7 +143,7 @@ TEST(CellPlaces, InstancesAreCellsAlsoWhenTheyTouch) {
   Mesh touching;
   join(touching, loose_plate(0, 0.1, 0, 0.1));
   join(touching, loose_plate(0.1, 0.2, 0, 0.1));
-  const Scene joined = testing::scene_of(touching);
+  const Scene joined = fixtures::scene_of(touching);
   EXPECT_EQ(places_from_mesh(joined, grid_over(joined)).parts.size(), 1u);
 }
 
@@ -153,7 +153,7 @@ TEST(CellPlaces, CellsOutOfLineStandInOneRow) {
   join(all, plate(2, 3, 0.5, 1.5));
   join(all, plate(0, 1, 2, 3));
   join(all, plate(2, 3, 2, 3));
-  const Scene scene = testing::scene_of(all);
+  const Scene scene = fixtures::scene_of(all);
   const CellPlaces places = places_from_mesh(scene, grid_over(scene));
   EXPECT_EQ(places.columns, 4);
   EXPECT_EQ(places.rows, 1);
@@ -164,15 +164,15 @@ SettingsNode rectangle(const std::vector<double>& low, const std::vector<double>
   SettingsNode node;
   node.where = {"test.toml", 9};
   node.value =
-      SettingsNode::Table{{"low_mm", testing::node_of(low)}, {"high_mm", testing::node_of(high)}};
+      SettingsNode::Table{{"low_mm", fixtures::node_of(low)}, {"high_mm", fixtures::node_of(high)}};
   return node;
 }
 
 TEST(CellPlaces, WrongPlacesNameTheirKey) {
-  const Scene scene = testing::scene_of(plate(0, 0.29, 0, 0.19));
+  const Scene scene = fixtures::scene_of(plate(0, 0.29, 0, 0.19));
   const SurfaceGrid grid = grid_over(scene);
   const auto message = [&](const std::vector<std::pair<std::string, SettingsNode>>& keys) {
-    return input_error_of([&] { read_cell_places(testing::settings_of(keys), scene, grid); });
+    return input_error_of([&] { read_cell_places(fixtures::settings_of(keys), scene, grid); });
   };
   const auto rectangles = [](std::vector<SettingsNode> all) {
     SettingsNode node;
@@ -190,13 +190,13 @@ TEST(CellPlaces, WrongPlacesNameTheirKey) {
             std::string::npos);
   EXPECT_NE(message({{"rectangle", rectangles({rectangle({0, 0, 1}, {300, 100})})}}).find("[u, v]"),
             std::string::npos);
-  EXPECT_NE(message({{"cells", testing::node_of("meshh")}}).find("did you mean"),
+  EXPECT_NE(message({{"cells", fixtures::node_of("meshh")}}).find("did you mean"),
             std::string::npos);
-  EXPECT_NE(message({{"cells", testing::node_of("mesh")}, {"gap_m", testing::node_of(0.1)}})
+  EXPECT_NE(message({{"cells", fixtures::node_of("mesh")}, {"gap_m", fixtures::node_of(0.1)}})
                 .find("gap_m"),
             std::string::npos);
-  EXPECT_FALSE(read_cell_places(testing::settings_of(
-                                    {{"cells", testing::node_of(std::vector<double>{3.0, 2.0})}}),
+  EXPECT_FALSE(read_cell_places(fixtures::settings_of(
+                                    {{"cells", fixtures::node_of(std::vector<double>{3.0, 2.0})}}),
                                 scene, grid)
                    .has_value());
 }

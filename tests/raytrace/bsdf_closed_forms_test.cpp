@@ -197,7 +197,7 @@ TEST(SlopeError, RaysStrayByTwiceTheSlope) {
   double across = 0, along = 0;
   constexpr int rays = 1 << 16;
   for (uint64_t i = 0; i < rays; ++i) {
-    const Vec3 out = lobe->direction(cosine, testing::random_draw(i));
+    const Vec3 out = lobe->direction(cosine, fixtures::random_draw(i));
     across += std::pow(out.y(), 2) / rays;
     along += std::pow(std::atan2(-out.x(), out.z()) - 40 * degree_rad, 2) / rays;
   }
@@ -211,9 +211,9 @@ Vec3 force_of(Scene scene, const Vec3& light) {
   const double size = 2.02 * scene.radius_m();
   const TraceableScene traceable(std::move(scene));
   const auto emitter =
-      std::make_shared<testing::ParallelBeam>(speed_of_light_m_s * size * size, size);
-  const Beam beam = testing::beam(emitter, -5 * size * light, light);
-  const testing::TotalWrench wrench;
+      std::make_shared<fixtures::ParallelBeam>(speed_of_light_m_s * size * size, size);
+  const Beam beam = fixtures::beam(emitter, -5 * size * light, light);
+  const fixtures::TotalWrench wrench;
   const Receiver* const receivers[] = {&wrench};
   TraceOptions options;
   options.rays = 1 << 17;
@@ -229,7 +229,7 @@ Vec3 force_of(Scene scene, const Vec3& light) {
 
 Scene sphere_of(const OpticalSurface& surface) {
   Scene scene;
-  testing::add(scene, testing::sphere(1.0, 160), surface, "sphere");
+  fixtures::add(scene, fixtures::sphere(1.0, 160), surface, "sphere");
   return scene;
 }
 // Its shadow.
@@ -245,7 +245,7 @@ TEST(FacetSphere, LambertianThroughAnyPath) {
 
 // Light that goes back where it came from pushes twice, on any shape: πR² (1 + ρ).
 TEST(FacetSphere, RetroreflectorPushesTwice) {
-  EXPECT_NEAR(force_of(sphere_of(testing::retroreflector(0.7, 0)), {0, 0, -1}).z(), -1.7 * disc,
+  EXPECT_NEAR(force_of(sphere_of(fixtures::retroreflector(0.7, 0)), {0, 0, -1}).z(), -1.7 * disc,
               1e-4 * disc);
 }
 
@@ -273,8 +273,8 @@ OpticalSurface hot(OpticalSurface surface, double reemitted, double front_emissi
 
 Scene plate_of(const OpticalSurface& surface) {
   Scene scene;
-  testing::add(scene, testing::rectangle(Vec3::Zero(), Vec3(2, 0, 0), Vec3(0, 1, 0)), surface,
-               "plate");
+  fixtures::add(scene, fixtures::rectangle(Vec3::Zero(), Vec3(2, 0, 0), Vec3(0, 1, 0)), surface,
+                "plate");
   return scene;
 }
 

@@ -12,7 +12,7 @@
 #include "raytrace/surfaces/measured_brdf.h"
 #include "raytrace/surfaces/mirrors.h"
 
-namespace photorque::testing {
+namespace photorque::fixtures {
 
 struct SurfaceKind {
   std::string name;
@@ -150,4 +150,4 @@ inline Draw random_draw(uint64_t index) {
           hash_words(index, 3)};
 }
 
-}  // namespace photorque::testing
+}  // namespace photorque::fixtures

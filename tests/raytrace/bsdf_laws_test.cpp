@@ -9,12 +9,12 @@
 namespace photorque {
 namespace {
 
-using testing::first_moment;
-using testing::random_draw;
-using testing::scattering_1_sr;
-using testing::send_ray;
-using testing::surface_kinds;
-using testing::SurfaceKind;
+using fixtures::first_moment;
+using fixtures::random_draw;
+using fixtures::scattering_1_sr;
+using fixtures::send_ray;
+using fixtures::surface_kinds;
+using fixtures::SurfaceKind;
 
 constexpr double cosines[] = {0.05, 0.2, 0.5, 0.8, 1.0};
 
@@ -194,14 +194,14 @@ TEST(SurfaceLaws, PowerAndMomentumBalanceAtEveryBounce) {
   for (const SurfaceKind& kind : surface_kinds(0.7)) {
     for (const double cosine : {1.0, 0.3}) {
       Scene scene;
-      testing::add(scene, testing::rectangle(Vec3::Zero(), Vec3(4, 0, 0), Vec3(0, 4, 0)),
-                   kind.surface, "plate");
+      fixtures::add(scene, fixtures::rectangle(Vec3::Zero(), Vec3(4, 0, 0), Vec3(0, 4, 0)),
+                    kind.surface, "plate");
       const TraceableScene traceable(std::move(scene));
       const double sine = std::sqrt(1 - cosine * cosine);
       const Vec3 light(-sine, 0, -cosine);
       const Beam beam =
-          testing::beam(std::make_shared<testing::ParallelBeam>(2.0, 0.5), -2 * light, light);
-      const testing::TotalWrench wrench;
+          fixtures::beam(std::make_shared<fixtures::ParallelBeam>(2.0, 0.5), -2 * light, light);
+      const fixtures::TotalWrench wrench;
       const Receiver* const receivers[] = {&wrench};
       TraceOptions options;
       options.rays = 1 << 16;

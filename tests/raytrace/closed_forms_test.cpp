@@ -12,8 +12,8 @@
 namespace photorque {
 namespace {
 
-using testing::add;
-using testing::ParallelBeam;
+using fixtures::add;
+using fixtures::ParallelBeam;
 
 struct Outcome {
   std::array<Estimate, 3> force, torque;  // per unit pressure: m², m³
@@ -26,13 +26,13 @@ Outcome illuminate(Scene scene, const Vec3& direction, uint64_t rays = 1 << 20, 
   const TraceableScene traceable(std::move(scene));
   const double side = 2 * radius;
   const auto emitter = std::make_shared<ParallelBeam>(speed_of_light_m_s * side * side, side);
-  const Beam beam = testing::beam(emitter, -10 * radius * direction.normalized(), direction);
+  const Beam beam = fixtures::beam(emitter, -10 * radius * direction.normalized(), direction);
   TraceOptions options;
   options.rays = rays;
   options.seed = seed;
   options.cutoff = 1e-14;
   options.max_depth = 2000;
-  const testing::TotalWrench wrench;
+  const fixtures::TotalWrench wrench;
   const Receiver* const receivers[] = {&wrench};
   const TraceResult result = trace(traceable, {}, std::span(&beam, 1), receivers, options);
   Outcome outcome{{}, {}, result.power_balance};
@@ -66,8 +66,8 @@ void expect_vector(const std::array<Estimate, 3>& estimate, const Vec3& truth, d
 Scene tilted_plate(double tilt, const OpticalSurface& surface) {
   Scene scene;
   add(scene,
-      testing::rectangle(Vec3::Zero(), Vec3(2 * std::cos(tilt), 0, -2 * std::sin(tilt)),
-                         Vec3(0, 1, 0)),
+      fixtures::rectangle(Vec3::Zero(), Vec3(2 * std::cos(tilt), 0, -2 * std::sin(tilt)),
+                          Vec3(0, 1, 0)),
       surface, "plate");
   return scene;
 }
@@ -103,7 +103,7 @@ TEST(Sphere, ForceIsDiscTimesOnePlusFourNinthsDiffuse) {
   for (const auto& [specular, diffuse] :
        {std::pair{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {0.4, 0.4}}) {
     Scene scene;
-    add(scene, testing::sphere(1.0, rings), grey_surface("s", specular, diffuse), "sphere");
+    add(scene, fixtures::sphere(1.0, rings), grey_surface("s", specular, diffuse), "sphere");
     const Outcome got = illuminate(std::move(scene), Vec3(0, 0, -1), 1 << 20);
     const double exact = -shadow * (1 + 4.0 / 9.0 * diffuse);
     expect_vector(got.force, Vec3(0, 0, exact), pi);
@@ -119,9 +119,9 @@ TEST(Dihedral, ReturnsAllMomentum) {
   const double a = 1.0, b = 0.7, h = a / std::numbers::sqrt2;
   Scene scene;
   const auto mirror = grey_surface("mirror", 1, 0);
-  add(scene, testing::rectangle(Vec3(h / 2, 0, h / 2), Vec3(h, 0, h), Vec3(0, b, 0)), mirror,
+  add(scene, fixtures::rectangle(Vec3(h / 2, 0, h / 2), Vec3(h, 0, h), Vec3(0, b, 0)), mirror,
       "right");
-  add(scene, testing::rectangle(Vec3(-h / 2, 0, h / 2), Vec3(h, 0, -h), Vec3(0, b, 0)), mirror,
+  add(scene, fixtures::rectangle(Vec3(-h / 2, 0, h / 2), Vec3(h, 0, -h), Vec3(0, b, 0)), mirror,
       "left");
   const Outcome got = illuminate(std::move(scene), Vec3(0, 0, -1));
   const double exact = -2 * std::numbers::sqrt2 * a * b;
@@ -135,16 +135,16 @@ TEST(CornerCube, ReturnsLightAlongItself) {
   Scene scene;
   const auto mirror = grey_surface("mirror", 1, 0);
   const Vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-  add(scene, testing::rectangle((x + y) / 2, x, y), mirror, "floor");
-  add(scene, testing::rectangle((y + z) / 2, y, z), mirror, "wall_x");
-  add(scene, testing::rectangle((z + x) / 2, z, x), mirror, "wall_y");
+  add(scene, fixtures::rectangle((x + y) / 2, x, y), mirror, "floor");
+  add(scene, fixtures::rectangle((y + z) / 2, y, z), mirror, "wall_x");
+  add(scene, fixtures::rectangle((z + x) / 2, z, x), mirror, "wall_y");
   const TraceableScene traceable(std::move(scene));
   const Vec3 d = Eigen::AngleAxisd(5 * degree_rad, Vec3(1, -1, 0).normalized()) *
                  Vec3(-1, -1, -1).normalized();
   // A disc of 0.1 m about the ray that meets the corner's neighbourhood: all of it retro-reflects.
   const double power = 1.0;
   const auto emitter = std::make_shared<ParallelBeam>(power, 0.1, ParallelBeam::Shape::disc);
-  const Beam beam = testing::beam(emitter, Vec3(0.3, 0.3, 0.3) - 3 * d, d);
+  const Beam beam = fixtures::beam(emitter, Vec3(0.3, 0.3, 0.3) - 3 * d, d);
   TraceOptions options;
   options.rays = 1 << 18;
   const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {}, options);
@@ -160,8 +160,8 @@ TEST(SelfShadowing, LitFractionAndCentroidOfTheFloor) {
     Scene scene;
     const auto black = grey_surface("black", 0, 0);
     const uint32_t floor = add(
-        scene, testing::rectangle(Vec3(-0.5, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)), black, "floor");
-    add(scene, testing::rectangle(Vec3(0, 0, 0.5), Vec3(0, 1, 0), Vec3(0, 0, 1)), black, "wall");
+        scene, fixtures::rectangle(Vec3(-0.5, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)), black, "floor");
+    add(scene, fixtures::rectangle(Vec3(0, 0, 0.5), Vec3(0, 1, 0), Vec3(0, 0, 1)), black, "wall");
     const Vec3 d(-std::sin(t), 0, -std::cos(t));
     const Outcome got = illuminate(std::move(scene), d, 1 << 22);
     const double scale = 1.0, lit = 1 - std::tan(t);
@@ -185,7 +185,7 @@ TEST(SelfShadowing, LitFractionAndCentroidOfTheFloor) {
 // ratios).
 TEST(LambertianCavity, EffectiveReflectance) {
   const int rings = 96, open_rings = 24;  // the mouth: polar angle below 45 deg
-  Mesh wall = testing::sphere(1.0, rings);
+  Mesh wall = fixtures::sphere(1.0, rings);
   const double mouth_z = std::cos(pi * open_rings / rings);
   std::erase_if(wall.triangles, [&](const auto& t) {
     double z = 0;
@@ -197,7 +197,7 @@ TEST(LambertianCavity, EffectiveReflectance) {
     add(scene, wall, grey_surface("wall", 0, reflectance), "wall");
     const TraceableScene traceable(std::move(scene));
     const auto emitter = std::make_shared<ParallelBeam>(1.0, 0.3, ParallelBeam::Shape::disc);
-    const Beam beam = testing::beam(emitter, Vec3(0, 0, 5), Vec3(0, 0, -1));
+    const Beam beam = fixtures::beam(emitter, Vec3(0, 0, 5), Vec3(0, 0, -1));
     TraceOptions options;
     options.rays = 1 << 17;
     options.max_depth = 1000;
@@ -241,11 +241,11 @@ TEST(PointSource, SquareCatchesItsSolidAngle) {
   for (const double height : {1.0, 2.0, 4.0}) {
     const double half_angle = 1.1 * std::atan(side / std::numbers::sqrt2 / height);
     Scene scene;
-    add(scene, testing::rectangle(Vec3::Zero(), Vec3(side, 0, 0), Vec3(0, side, 0)),
+    add(scene, fixtures::rectangle(Vec3::Zero(), Vec3(side, 0, 0), Vec3(0, side, 0)),
         grey_surface("black", 0, 0), "square");
     const TraceableScene traceable(std::move(scene));
     const Beam beam =
-        testing::beam(std::make_shared<EvenCone>(half_angle), Vec3(0, 0, height), Vec3(0, 0, -1));
+        fixtures::beam(std::make_shared<EvenCone>(half_angle), Vec3(0, 0, height), Vec3(0, 0, -1));
     TraceOptions options;
     options.rays = 1 << 22;
     const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {}, options);
@@ -264,7 +264,7 @@ TEST(PointSource, SquareCatchesItsSolidAngle) {
 TEST(Cube, PyraseValidationCases) {
   const auto cube = [](double specular, double diffuse) {
     Scene scene;
-    add(scene, testing::box(Vec3(-1, -1, -1), Vec3(1, 1, 1)), grey_surface("s", specular, diffuse),
+    add(scene, fixtures::box(Vec3(-1, -1, -1), Vec3(1, 1, 1)), grey_surface("s", specular, diffuse),
         "cube");
     return scene;
   };
@@ -280,8 +280,8 @@ TEST(Cube, OpposingLightBalances) {
   for (int k = 0; k < 3; ++k) {
     for (const double sign : {-1.0, 1.0}) {
       Scene scene;
-      add(scene, testing::box(Vec3(-1, -0.5, -0.2), Vec3(1, 0.5, 0.2)), grey_surface("s", 0.2, 0.3),
-          "box");
+      add(scene, fixtures::box(Vec3(-1, -0.5, -0.2), Vec3(1, 0.5, 0.2)),
+          grey_surface("s", 0.2, 0.3), "box");
       const Outcome got = illuminate(std::move(scene), sign * Vec3::Unit(k), 1 << 20);
       for (int j = 0; j < 3; ++j) sum[j] += got.force[static_cast<size_t>(j)].value;
     }

@@ -70,10 +70,11 @@ Scene tilted_rectangle(const OpticalSurface& surface) {
   const Vec3 centre(0.5 * (shadow_x_low + shadow_x_high), 0.5 * (shadow_y_low + shadow_y_high),
                     plate_height_m + plate_slope * 0.5 * (shadow_x_low + shadow_x_high));
   Scene scene;
-  testing::add(scene,
-               testing::rectangle(centre, (shadow_x_high - shadow_x_low) * Vec3(1, 0, plate_slope),
-                                  Vec3(0, shadow_y_high - shadow_y_low, 0)),
-               surface, "rectangle");
+  fixtures::add(
+      scene,
+      fixtures::rectangle(centre, (shadow_x_high - shadow_x_low) * Vec3(1, 0, plate_slope),
+                          Vec3(0, shadow_y_high - shadow_y_low, 0)),
+      surface, "rectangle");
   return scene;
 }
 
@@ -141,9 +142,9 @@ Coverage coverage_with(int replicates) {
   constexpr double specular = 0.3, diffuse = 0.2;
   const TraceableScene scene(tilted_rectangle(grey_surface("s", specular, diffuse)));
   const Beam beam =
-      testing::beam(std::make_shared<GaussianParallelBeam>(), Vec3(0, 0, 3), -Vec3::UnitZ());
+      fixtures::beam(std::make_shared<GaussianParallelBeam>(), Vec3(0, 0, 3), -Vec3::UnitZ());
   const std::vector<double> exact = exact_figures(specular, diffuse);
-  const testing::TotalWrench wrench;
+  const fixtures::TotalWrench wrench;
   const ShadowBins bins;
   const Receiver* const receivers[] = {&wrench, &bins};
   Coverage coverage{std::vector<double>(exact.size()), std::vector<double>(exact.size())};

@@ -8,11 +8,11 @@
 namespace photorque {
 namespace {
 
-using testing::first_moment;
-using testing::forward_scatter;
-using testing::measured;
-using testing::scattering_1_sr;
-using testing::tabulated;
+using fixtures::first_moment;
+using fixtures::forward_scatter;
+using fixtures::measured;
+using fixtures::scattering_1_sr;
+using fixtures::tabulated;
 
 const double cosines_of_incidence[] = {0.1, 0.5, 0.866, 1.0};
 
@@ -41,7 +41,7 @@ TEST(MeasuredBrdf, ForwardScatterCarriesItsMomentumForward) {
 
 // Another scattering law of the program, read off every 3 deg: the table must do as the law does.
 TEST(MeasuredBrdf, ATableOfARoughMirrorActsAsTheRoughMirror) {
-  const OpticalSurface mirror = testing::with_lobe(0.95, 0.0, rough_mirror(0.5));
+  const OpticalSurface mirror = fixtures::with_lobe(0.95, 0.0, rough_mirror(0.5));
   const OpticalSurface table = measured(tabulated(3.0, [&](double in, double out, double azimuth) {
     // Grazing light has its limit just above the horizon.
     const double lean = std::min(out, 89.9 * degree_rad);

@@ -7,8 +7,8 @@
 namespace photorque {
 namespace {
 
-using testing::add;
-using testing::PillboxDisc;
+using fixtures::add;
+using fixtures::PillboxDisc;
 
 // Power on the 100 × 100 bins of the 0.5 m square about the origin at z = 0 (instance 0).
 class SquareMap final : public Receiver {
@@ -63,11 +63,12 @@ TEST_P(DiscOverSquare, MapAgreesWithTheReferenceWithinItsErrors) {
   ASSERT_EQ(reference.size(), 10000u);
   Scene scene;
   const auto black = grey_surface("black", 0, 0);
-  add(scene, testing::rectangle(Vec3::Zero(), Vec3(0.5, 0, 0), Vec3(0, 0.5, 0)), black, "receiver");
-  add(scene, testing::box(Vec3(0, -0.02, 0.5), Vec3(0.1, 0.08, 0.55)), black, "box");
+  add(scene, fixtures::rectangle(Vec3::Zero(), Vec3(0.5, 0, 0), Vec3(0, 0.5, 0)), black,
+      "receiver");
+  add(scene, fixtures::box(Vec3(0, -0.02, 0.5), Vec3(0.1, 0.08, 0.55)), black, "box");
   const TraceableScene traceable(std::move(scene));
   const auto emitter = std::make_shared<PillboxDisc>(1.0, 0.2, 1.5 * degree_rad, GetParam().second);
-  const Beam beam = testing::beam(emitter, Vec3(0, 0, 1.5), Vec3(0, 0, -1));
+  const Beam beam = fixtures::beam(emitter, Vec3(0, 0, 1.5), Vec3(0, 0, -1));
   const SquareMap map;
   const Receiver* const receivers[] = {&map};
   TraceOptions options;
@@ -226,7 +227,7 @@ TEST(FacetedSpacecraft, ForceAndTorqueOfSixteenArticulations) {
       if (facet.normal.dot(light) >= -1e-12) continue;  // lit on the front only
       const Vec3 u = facet.normal.unitOrthogonal() * std::sqrt(facet.area_m2);
       Scene scene;
-      add(scene, testing::rectangle(facet.centre_m, u, facet.normal.cross(u)),
+      add(scene, fixtures::rectangle(facet.centre_m, u, facet.normal.cross(u)),
           grey_surface("facet", 0.9, 0.1), "facet");
       const TraceableScene traceable(std::move(scene));
       // Light that falls on a parallelogram 1.25 times the facet, edges parallel to the facet's.
@@ -235,7 +236,7 @@ TEST(FacetedSpacecraft, ForceAndTorqueOfSixteenArticulations) {
       const auto emitter = std::make_shared<Parallelogram>(
           pressure, 1.25 * (beam_from_lab * u), 1.25 * (beam_from_lab * facet.normal.cross(u)));
       const Beam beam{"light", emitter, lab_from_beam, Spectrum{}};
-      const testing::TotalWrench wrench;
+      const fixtures::TotalWrench wrench;
       const Receiver* const receivers[] = {&wrench};
       TraceOptions options;
       options.rays = 1 << 20;

@@ -10,7 +10,7 @@
 namespace photorque {
 namespace {
 
-using testing::random_draw;
+using fixtures::random_draw;
 
 // The slope of the normal that sends light from the normal along `out`.
 Vec2 slope_of(const Vec3& out) {
@@ -62,7 +62,7 @@ TEST(SlopeErrorShapes, HaveTheirSizesAlongTheSurfacesAxes) {
   const double first = 0.006, second = 0.002;
   for (const auto& [shape, part] :
        {std::pair(SlopeShape::gaussian, 1.0), {SlopeShape::pillbox, 0.5}}) {
-    const OpticalSurface surface = testing::uneven_slopes(1.0, first, second, shape);
+    const OpticalSurface surface = fixtures::uneven_slopes(1.0, first, second, shape);
     const Vec2 axis(0.6, 0.8), across(-0.8, 0.6);
     for (const double azimuth_deg : {0.0, 53.13, 100.0, 250.0}) {
       const double azimuth = azimuth_deg * degree_rad, tilt = 0.3;

@@ -7,7 +7,7 @@
 #include "core/constants.h"
 #include "raytrace/tracing/tracer.h"
 
-namespace photorque::testing {
+namespace photorque::fixtures {
 
 // Parallel light: fills a square of side `side_m` about the emitter's z axis, or a disc, uniformly.
 class ParallelBeam final : public Emitter {
@@ -159,4 +159,4 @@ inline Beam beam(std::shared_ptr<const Emitter> emitter, const Vec3& origin_m,
   return {"beam", std::move(emitter), frame_looking_along(direction, origin_m), Spectrum{}};
 }
 
-}  // namespace photorque::testing
+}  // namespace photorque::fixtures

@@ -15,26 +15,26 @@
 namespace photorque {
 namespace {
 
-using testing::add;
+using fixtures::add;
 
 // A bit of everything: mirrors, matt and translucent sheets, a box in between.
 Scene busy_scene() {
   Scene scene;
-  add(scene, testing::rectangle(Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)),
+  add(scene, fixtures::rectangle(Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)),
       grey_surface("matt", 0.1, 0.6), "floor");
-  add(scene, testing::rectangle(Vec3(0.5, 0, 0.5), Vec3(0, 1, 0), Vec3(0, 0, 1)),
+  add(scene, fixtures::rectangle(Vec3(0.5, 0, 0.5), Vec3(0, 1, 0), Vec3(0, 0, 1)),
       grey_surface("mirror", 0.9, 0.05), "wall");
-  add(scene, testing::rectangle(Vec3(0, 0, 0.8), Vec3(0.6, 0, 0.1), Vec3(0, 0.6, 0)),
+  add(scene, fixtures::rectangle(Vec3(0, 0, 0.8), Vec3(0.6, 0, 0.1), Vec3(0, 0.6, 0)),
       grey_surface("film", 0.2, 0.1, 0.5), "film");
-  add(scene, testing::box(Vec3(-0.2, -0.1, 0.2), Vec3(0.1, 0.2, 0.4)),
+  add(scene, fixtures::box(Vec3(-0.2, -0.1, 0.2), Vec3(0.1, 0.2, 0.4)),
       grey_surface("paint", 0.0, 0.3), "box");
   return scene;
 }
 
 Beam wide_cone(double height_m) {
-  const auto emitter = std::make_shared<testing::PillboxDisc>(
-      2.5, 0.1, 20 * degree_rad, testing::PillboxDisc::Measure::projected);
-  return testing::beam(emitter, Vec3(0.1, -0.2, height_m), Vec3(-0.05, 0.1, -1));
+  const auto emitter = std::make_shared<fixtures::PillboxDisc>(
+      2.5, 0.1, 20 * degree_rad, fixtures::PillboxDisc::Measure::projected);
+  return fixtures::beam(emitter, Vec3(0.1, -0.2, height_m), Vec3(-0.05, 0.1, -1));
 }
 
 TEST(PowerBalance, ClosesForEveryReplicate) {
@@ -66,7 +66,7 @@ TEST(PowerBalance, ClosesForEveryReplicate) {
 TEST(PowerBalance, SurfacesAndRaysAgreeOnForceAndTorque) {
   const TraceableScene scene(busy_scene());
   const Beam beam = wide_cone(2.0);
-  const testing::TotalWrench wrench;
+  const fixtures::TotalWrench wrench;
   const Receiver* const receivers[] = {&wrench};
   TraceOptions options;
   options.rays = 1 << 20;
@@ -112,7 +112,7 @@ TEST(Threads, SameBitsAtOneTwoAndSeven) {
   const std::vector<Beam> beams = {wide_cone(2.0), wide_cone(1.5)};
   std::vector<std::vector<double>> results;
   for (const int threads : {1, 2, 7, 7}) {
-    const testing::TotalWrench wrench;
+    const fixtures::TotalWrench wrench;
     const ThreadCounter counter(static_cast<size_t>(threads));
     const Receiver* const receivers[] = {&wrench, &counter};
     TraceOptions options;
@@ -133,7 +133,7 @@ TEST(Interaction, ABsdfThatAddsNothingChangesNoBit) {
   const auto traced = [](Scene scene) {
     const TraceableScene traceable(std::move(scene));
     const Beam beam = wide_cone(2.0);
-    const testing::TotalWrench wrench;
+    const fixtures::TotalWrench wrench;
     const Receiver* const receivers[] = {&wrench};
     TraceOptions options;
     options.rays = 1 << 16;
@@ -175,11 +175,11 @@ TEST(LowDiscrepancy, BeatsPseudoRandomErrorTenfold) {
   // A plate that catches a fraction p of the beam: pseudo-random counting would err by
   // sqrt(p (1 − p)/n).
   Scene plate;
-  add(plate, testing::rectangle(Vec3(0.123, 0, 0), Vec3(0.5, 0.1, 0), Vec3(-0.07, 0.6, 0)),
+  add(plate, fixtures::rectangle(Vec3(0.123, 0, 0), Vec3(0.5, 0.1, 0), Vec3(-0.07, 0.6, 0)),
       grey_surface("black", 0, 0), "plate");
   const TraceableScene scene(std::move(plate));
-  const Beam beam = testing::beam(std::make_shared<testing::ParallelBeam>(1.0, 1.0), Vec3(0, 0, 3),
-                                  Vec3(0, 0, -1));
+  const Beam beam = fixtures::beam(std::make_shared<fixtures::ParallelBeam>(1.0, 1.0),
+                                   Vec3(0, 0, 3), Vec3(0, 0, -1));
   TraceOptions options;
   options.rays = 1 << 20;
   const TraceResult result = trace(scene, {}, std::span(&beam, 1), {}, options);
@@ -194,10 +194,10 @@ TEST(Bands, EachBandSeesItsOwnSurfaceAndTheSumIsConserved) {
   OpticalSurface filter;  // reflects the short band, absorbs the long one
   filter.specular = {0.75, 0.0};
   filter.absorbed = {0.25, 1.0};
-  add(scene, testing::rectangle(Vec3::Zero(), Vec3(2, 0, 0), Vec3(0, 2, 0)), filter, "filter");
+  add(scene, fixtures::rectangle(Vec3::Zero(), Vec3(2, 0, 0), Vec3(0, 2, 0)), filter, "filter");
   const TraceableScene traceable(std::move(scene));
-  Beam beam = testing::beam(std::make_shared<testing::ParallelBeam>(3.0, 1.0), Vec3(0, 0, 3),
-                            Vec3(0, 0, -1));
+  Beam beam = fixtures::beam(std::make_shared<fixtures::ParallelBeam>(3.0, 1.0), Vec3(0, 0, 3),
+                             Vec3(0, 0, -1));
   beam.spectrum = {Spectrum::Shape::gaussian, 600e-9, 20e-9, 0.0};  // half of it in each band
   TraceOptions options;
   options.rays = 1 << 14;
@@ -210,15 +210,15 @@ TEST(Bands, EachBandSeesItsOwnSurfaceAndTheSumIsConserved) {
 
 TEST(Transmission, GoesStraightOnThroughBothSides) {
   Scene scene;
-  add(scene, testing::rectangle(Vec3(0, 0, 1), Vec3(2, 0, 0), Vec3(0, 2, 0)),
+  add(scene, fixtures::rectangle(Vec3(0, 0, 1), Vec3(2, 0, 0), Vec3(0, 2, 0)),
       grey_surface("half", 0, 0, 0.5), "upper");
-  add(scene, testing::rectangle(Vec3(0, 0, 0.5), Vec3(2, 0, 0), Vec3(0, -2, 0)),
+  add(scene, fixtures::rectangle(Vec3(0, 0, 0.5), Vec3(2, 0, 0), Vec3(0, -2, 0)),
       grey_surface("half", 0, 0, 0.5), "flipped");
-  const uint32_t floor = add(scene, testing::rectangle(Vec3::Zero(), Vec3(2, 0, 0), Vec3(0, 2, 0)),
+  const uint32_t floor = add(scene, fixtures::rectangle(Vec3::Zero(), Vec3(2, 0, 0), Vec3(0, 2, 0)),
                              grey_surface("black", 0, 0), "floor");
   const TraceableScene traceable(std::move(scene));
-  const Beam beam = testing::beam(std::make_shared<testing::ParallelBeam>(1.0, 1.0), Vec3(0, 0, 3),
-                                  Vec3(0, 0, -1));
+  const Beam beam = fixtures::beam(std::make_shared<fixtures::ParallelBeam>(1.0, 1.0),
+                                   Vec3(0, 0, 3), Vec3(0, 0, -1));
   TraceOptions options;
   options.rays = 1 << 14;
   const PowerBalance power_balance =
@@ -229,12 +229,12 @@ TEST(Transmission, GoesStraightOnThroughBothSides) {
 // A source at 1e9 m must hit what it is aimed at: it is brought near in double precision.
 TEST(FarSource, KeepsItsAim) {
   Scene scene;
-  add(scene, testing::rectangle(Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 1, 0)),
+  add(scene, fixtures::rectangle(Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 1, 0)),
       grey_surface("black", 0, 0), "plate");
   const TraceableScene traceable(std::move(scene));
   const Vec3 d = Vec3(1, 2, -3).normalized();
-  const Beam beam = testing::beam(std::make_shared<testing::ParallelBeam>(1.0, 0.1), -1e9 * d, d);
-  const testing::TotalWrench wrench;
+  const Beam beam = fixtures::beam(std::make_shared<fixtures::ParallelBeam>(1.0, 0.1), -1e9 * d, d);
+  const fixtures::TotalWrench wrench;
   const Receiver* const receivers[] = {&wrench};
   TraceOptions options;
   options.rays = 1 << 16;
@@ -248,14 +248,14 @@ TEST(FarSource, KeepsItsAim) {
 
 TEST(MirroredInstance, KeepsItsFrontOutside) {
   Scene scene;
-  const uint32_t id = add(scene, testing::box(Vec3(-0.5, -0.5, -0.5), Vec3(0.5, 0.5, 0.5)),
+  const uint32_t id = add(scene, fixtures::box(Vec3(-0.5, -0.5, -0.5), Vec3(0.5, 0.5, 0.5)),
                           grey_surface("black", 0, 0), "box");
   scene.instances[id].body_from_mesh = Affine(Eigen::Scaling(-1.0, 2.0, 1.0));
   scene.surfaces.push_back(grey_surface("mirror", 1, 0));
   scene.instances[id].back_surface = 1;  // would show
   const TraceableScene traceable(std::move(scene));
-  const Beam beam = testing::beam(std::make_shared<testing::ParallelBeam>(1.0, 0.4), Vec3(0, 0, 3),
-                                  Vec3(0, 0, -1));
+  const Beam beam = fixtures::beam(std::make_shared<fixtures::ParallelBeam>(1.0, 0.4),
+                                   Vec3(0, 0, 3), Vec3(0, 0, -1));
   TraceOptions options;
   options.rays = 1 << 14;
   EXPECT_NEAR(trace(traceable, {}, std::span(&beam, 1), {}, options).power_balance.absorbed_W.value,

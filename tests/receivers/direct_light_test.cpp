@@ -13,9 +13,9 @@
 namespace photorque {
 namespace {
 
-using testing::gaussian_led;
-using testing::lambertian_disc;
-using testing::pillbox_disc;
+using fixtures::gaussian_led;
+using fixtures::lambertian_disc;
+using fixtures::pillbox_disc;
 
 // View factors from a surface element to a disc of radius r, by contour integration.
 // Source: J. R. Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-12 (element

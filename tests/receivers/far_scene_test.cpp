@@ -8,9 +8,9 @@
 namespace photorque {
 namespace {
 
-using testing::add;
-using testing::pressure_Pa;
-using testing::rectangle;
+using fixtures::add;
+using fixtures::pressure_Pa;
+using fixtures::rectangle;
 
 constexpr double far_m = 1e4, side_m = 1e-3;
 
@@ -27,13 +27,13 @@ Scene far_plate() {
 TEST(FarScene, RaysLandWhereTheyShould) {
   const Scene scene = far_plate();
   const TraceableScene traceable(scene);
-  const Beam lamp = testing::source("led",
-                                    {{"power_W", testing::number(1.0)},
-                                     {"aperture_diameter_m", testing::number(0.4 * side_m)},
-                                     {"profile", testing::text("pillbox")},
-                                     {"half_angle_deg", testing::number(0.5)},
-                                     {"pillbox_measure", testing::text("angle")}},
-                                    Vec3(far_m, far_m, 0.1 * side_m));
+  const Beam lamp = fixtures::source("led",
+                                     {{"power_W", fixtures::number(1.0)},
+                                      {"aperture_diameter_m", fixtures::number(0.4 * side_m)},
+                                      {"profile", fixtures::text("pillbox")},
+                                      {"half_angle_deg", fixtures::number(0.5)},
+                                      {"pillbox_measure", fixtures::text("angle")}},
+                                     Vec3(far_m, far_m, 0.1 * side_m));
   Vec3 low = Vec3::Constant(INFINITY), high = -low, sum = Vec3::Zero();
   size_t count = 0;
   TraceOptions options;
@@ -63,7 +63,7 @@ TEST(FarScene, RaysLandWhereTheyShould) {
 TEST(FarScene, SunlightPressesAsTheTextbookSays) {
   const Scene scene = far_plate();
   const TraceableScene traceable(scene);
-  const Beam sun = testing::sun(0.0);
+  const Beam sun = fixtures::sun(0.0);
   const auto body = SunlitBody::make(traceable, std::span(&sun, 1), Vec3::Zero());
   const WrenchSum found = body->wrench({}, INFINITY).total();
   const double force_N = pressure_Pa * side_m * side_m;

@@ -7,15 +7,15 @@
 namespace photorque {
 namespace {
 
-using testing::add_instance;
-using testing::box;
-using testing::HitMaker;
-using testing::map_named;
-using testing::plate;
-using testing::polygon;
-using testing::quantity_named;
-using testing::scene_of;
-using testing::sums_of;
+using fixtures::add_instance;
+using fixtures::box;
+using fixtures::HitMaker;
+using fixtures::map_named;
+using fixtures::plate;
+using fixtures::polygon;
+using fixtures::quantity_named;
+using fixtures::scene_of;
+using fixtures::sums_of;
 
 FluxMapReceiver receiver_on(const Scene& scene, int width, int height,
                             SurfaceGridOptions options = SurfaceGridOptions()) {

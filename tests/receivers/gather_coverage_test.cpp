@@ -9,7 +9,7 @@ namespace {
 
 Gathered gathered(const TraceableScene& scene, const FluxMapReceiver& map, uint64_t seed,
                   int points) {
-  const Beam lamp = testing::pillbox_disc("angle");
+  const Beam lamp = fixtures::pillbox_disc("angle");
   GatherOptions options;
   options.seed = seed;
   options.points = points;
@@ -20,12 +20,12 @@ Gathered gathered(const TraceableScene& scene, const FluxMapReceiver& map, uint6
 // many shadow rays, whose own error is a fiftieth of what is judged; that it is the truth is shown
 // against reference maps and against rays (gather_test.cpp).
 TEST(Gather, ErrorsOfHalfShadedBinsHoldTheTruthNinetyFivePercentOfTheTime) {
-  const TraceableScene scene(testing::shaded_square());
+  const TraceableScene scene(fixtures::shaded_square());
   Scene bare;
-  testing::add(bare, testing::rectangle(Vec3::Zero(), Vec3(0.5, 0, 0), Vec3(0, 0.5, 0)),
-               grey_surface("black", 0.1, 0.2), "receiver");
+  fixtures::add(bare, fixtures::rectangle(Vec3::Zero(), Vec3(0.5, 0, 0), Vec3(0, 0.5, 0)),
+                grey_surface("black", 0.1, 0.2), "receiver");
   const TraceableScene open_scene(std::move(bare));
-  const FluxMapReceiver map = testing::map_of(scene.scene(), 20);
+  const FluxMapReceiver map = fixtures::map_of(scene.scene(), 20);
   const BinSums truth = gathered(scene, map, 1, 16384).direct;
   const BinSums open = gathered(open_scene, map, 1, 16).direct;
   // From a table, 15 degrees of freedom.

@@ -8,7 +8,7 @@
 #include "sources/lamps/kind.h"
 #include "tests/raytrace/test_scenes.h"
 
-namespace photorque::testing {
+namespace photorque::fixtures {
 
 inline SettingsNode number(double x) {
   return {x, {}};
@@ -76,4 +76,4 @@ inline FluxMapReceiver map_of(const Scene& scene, int bins) {
   return {"receiver", scene, make_surface_grid(scene, scene.instances_of("receiver"), options)};
 }
 
-}  // namespace photorque::testing
+}  // namespace photorque::fixtures

@@ -9,8 +9,8 @@
 namespace photorque {
 namespace {
 
-using testing::Draw;
-using testing::Lottery;
+using fixtures::Draw;
+using fixtures::Lottery;
 
 struct Total {
   double power_W = 0.0, bound_W = 0.0;
@@ -37,7 +37,7 @@ TEST(GatherSweep, AWidePlateGetsAllLightOfAThousandLamps) {
   Lottery lottery(15);
   for (int i = 0; i < 1000; ++i) {
     const Draw d = lottery.draw();
-    const auto scene = testing::wide_plate(d, lottery.uniform(1.0, 1.5));
+    const auto scene = fixtures::wide_plate(d, lottery.uniform(1.0, 1.5));
     if (!scene) continue;
     const TraceableScene traceable(*scene);
     const FluxMapReceiver map = map_over(*scene, lottery.integer(1, 50), lottery.integer(1, 50));
@@ -76,7 +76,7 @@ TEST(GatherSweep, BinsCutByAnEdgeAgreeWithNestedIntegration) {
     const double side_m = radius_m * lottery.log_uniform(0.02, 1.0);
     Draw moved = d;
     moved.centre_m += lottery.uniform(0.0, 1.3) * radius_m * d.along;
-    const Scene scene = testing::plate_of(moved, side_m, side_m);
+    const Scene scene = fixtures::plate_of(moved, side_m, side_m);
     const TraceableScene traceable(scene);
     const FluxMapReceiver map = map_over(scene, 1, 1);
     const Gathered gathered = gather_direct(traceable, {}, std::span(&d.beam, 1), map,

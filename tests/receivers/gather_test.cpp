@@ -11,16 +11,16 @@
 namespace photorque {
 namespace {
 
-using testing::add;
-using testing::box;
-using testing::gaussian_led;
-using testing::map_of;
-using testing::number;
-using testing::pillbox_disc;
-using testing::rectangle;
-using testing::shaded_square;
-using testing::source;
-using testing::text;
+using fixtures::add;
+using fixtures::box;
+using fixtures::gaussian_led;
+using fixtures::map_of;
+using fixtures::number;
+using fixtures::pillbox_disc;
+using fixtures::rectangle;
+using fixtures::shaded_square;
+using fixtures::source;
+using fixtures::text;
 
 Estimate direct(const Gathered& gathered, const FluxMapReceiver& map, size_t bin) {
   std::vector<double> values;
@@ -189,7 +189,7 @@ TEST(Gather, GoesOnUntilTheErrorIsReached) {
 
 TEST(Gather, WhatNeedsRaysIsRefused) {
   Scene scene;
-  add(scene, testing::sphere(0.1, 8), grey_surface("s", 0, 0), "receiver");
+  add(scene, fixtures::sphere(0.1, 8), grey_surface("s", 0, 0), "receiver");
   SurfaceGridOptions options;
   options.facing_body = Vec3::UnitZ();
   const FluxMapReceiver map("receiver", scene, make_surface_grid(scene, {{0}}, options));

@@ -9,9 +9,9 @@
 namespace photorque {
 namespace {
 
-using testing::add;
-using testing::number;
-using testing::rectangle;
+using fixtures::add;
+using fixtures::number;
+using fixtures::rectangle;
 
 TorqueMapReceiver torque_map_of(const Scene& scene, int bins, const Vec3& about_m) {
   SurfaceGridOptions options;
@@ -52,7 +52,7 @@ TEST(GatherTorque, SunOnEitherSideOfAGreyPlateIsTheTextbooksForce) {
     const TraceableScene traceable(scene);
     const Vec3 about_m(0.05, 0.4, -0.3);
     const TorqueMapReceiver map = torque_map_of(scene, 12, about_m);
-    const Beam sun = testing::source(
+    const Beam sun = fixtures::source(
         "sun", {{"irradiance_W_m2", number(1361)}, {"angular_radius_deg", number(0.0)}});
     const RigidTransform attitude = lab_from_body_at(tilt_deg * degree_rad, 0.6);
     const TorqueMap found =
@@ -70,11 +70,11 @@ TEST(GatherTorque, SunOnEitherSideOfAGreyPlateIsTheTextbooksForce) {
 // A black plate that all light falls on takes up the momentum of the beam, which is that of its
 // axis times the mean cosine, wherever its bins cut the beam's edge.
 TEST(GatherTorque, ABlackPlateTakesUpTheMomentumOfTheWholeBeam) {
-  testing::Lottery lottery(18);
+  fixtures::Lottery lottery(18);
   int done = 0, precise = 0;
   for (int i = 0; i < 40; ++i) {
-    const testing::Draw d = lottery.draw();
-    const auto scene = testing::wide_plate(d, 1.0);
+    const fixtures::Draw d = lottery.draw();
+    const auto scene = fixtures::wide_plate(d, 1.0);
     if (!scene) continue;
     const TraceableScene traceable(*scene);
     const Vec3 about_m = d.centre_m + d.height_m * Vec3(0.5, -0.2, 0.1);
@@ -98,10 +98,10 @@ TEST(GatherTorque, ABlackPlateTakesUpTheMomentumOfTheWholeBeam) {
 
 // Rays are another route, also where something shades and the surface mirrors and scatters.
 TEST(GatherTorque, AgreesWithRaysBinByBin) {
-  const TraceableScene scene(testing::shaded_square());
+  const TraceableScene scene(fixtures::shaded_square());
   const TorqueMapReceiver map = torque_map_of(scene.scene(), 20, {0.1, 0.0, -0.2});
-  const std::vector<Beam> beams = {testing::pillbox_disc("angle"),
-                                   testing::gaussian_led(0.05, 9.0, {0.3, 0, 1.4}, {-0.2, 0, -1})};
+  const std::vector<Beam> beams = {fixtures::pillbox_disc("angle"),
+                                   fixtures::gaussian_led(0.05, 9.0, {0.3, 0, 1.4}, {-0.2, 0, -1})};
   const RigidTransform attitude = lab_from_body_at(10 * degree_rad, 0.4);
   const Gathered gathered = gather_torque(scene, attitude, beams, map, {});
   const Receiver* const receivers[] = {&map};
@@ -123,9 +123,9 @@ TEST(GatherTorque, AgreesWithRaysBinByBin) {
 }
 
 TEST(GatherTorque, SameBitsAtAnyNumberOfThreads) {
-  const TraceableScene scene(testing::shaded_square());
+  const TraceableScene scene(fixtures::shaded_square());
   const TorqueMapReceiver map = torque_map_of(scene.scene(), 10, Vec3::Zero());
-  const Beam beam = testing::pillbox_disc("angle");
+  const Beam beam = fixtures::pillbox_disc("angle");
   std::vector<std::vector<double>> runs;
   for (const int threads : {1, 3}) {
     GatherOptions options;

@@ -12,10 +12,10 @@
 namespace photorque {
 namespace {
 
-using testing::add;
-using testing::rectangle;
-using testing::sun;
-using testing::textbook_N;
+using fixtures::add;
+using fixtures::rectangle;
+using fixtures::sun;
+using fixtures::textbook_N;
 
 WrenchReceiver body_of(const Scene& scene, const Vec3& about_m = Vec3::Zero()) {
   std::vector<uint32_t> all(scene.instances.size());
@@ -39,7 +39,7 @@ WrenchEstimate direct_of(const WrenchReceiver& receiver, const Gathered& gathere
 TEST(GatherWrench, SunOnABoxIsTheTextbooksForce) {
   Scene scene;
   const Vec3 half_m(0.3, 0.2, 0.5), centre_m(0.1, -0.2, 0.3), about_m(0.05, 0.4, -0.3);
-  Mesh box = testing::box(centre_m - half_m, centre_m + half_m);
+  Mesh box = fixtures::box(centre_m - half_m, centre_m + half_m);
   box.encloses = true;
   add(scene, std::move(box), grey_surface("s", 0.3, 0.25), "box");
   const TraceableScene traceable(scene);
@@ -98,11 +98,11 @@ TEST(GatherWrench, AShadowTakesItsRectangleOutOfThePlateBelow) {
 // A black plate that all light falls on takes up the momentum of the beam, which is that of its
 // axis times the mean cosine.
 TEST(GatherWrench, ABlackPlateTakesUpTheMomentumOfTheWholeBeam) {
-  testing::Lottery lottery(19);
+  fixtures::Lottery lottery(19);
   int done = 0, precise = 0;
   for (int i = 0; i < 8; ++i) {
-    const testing::Draw d = lottery.draw();
-    const auto scene = testing::wide_plate(d, 1.0);
+    const fixtures::Draw d = lottery.draw();
+    const auto scene = fixtures::wide_plate(d, 1.0);
     if (!scene) continue;
     const TraceableScene traceable(*scene);
     const Vec3 about_m = d.centre_m + d.height_m * Vec3(0.5, -0.2, 0.1);
@@ -130,7 +130,7 @@ TEST(GatherWrench, ABlackPlateTakesUpTheMomentumOfTheWholeBeam) {
 
 // Rays are another route, where bodies shade each other and surfaces follow laws of all sorts.
 TEST(GatherWrench, AgreesWithRays) {
-  Scene scene = testing::shaded_square();
+  Scene scene = fixtures::shaded_square();
   OpticalSurface rough = grey_surface("rough", 0.7, 0.1);
   auto bsdf = std::make_shared<Bsdf>();
   bsdf->specular = rough_mirror(0.3);
@@ -143,8 +143,8 @@ TEST(GatherWrench, AgreesWithRays) {
   const TraceableScene traceable(scene);
   const WrenchReceiver body = body_of(scene, {0.1, 0.0, -0.2});
   const std::vector<std::vector<Beam>> lights = {
-      {testing::gaussian_led(0.4, 3.0, {0, 0, 1.5}, {0, 0, -1}),
-       testing::gaussian_led(0.05, 9.0, {0.3, 0, 1.4}, {-0.2, 0, -1})},
+      {fixtures::gaussian_led(0.4, 3.0, {0, 0, 1.5}, {0, 0, -1}),
+       fixtures::gaussian_led(0.05, 9.0, {0.3, 0, 1.4}, {-0.2, 0, -1})},
       {sun(3.0)}};
   for (const std::vector<Beam>& beams : lights) {
     const auto gather = WrenchGather::make(traceable, beams);
@@ -169,9 +169,9 @@ TEST(GatherWrench, AgreesWithRays) {
 }
 
 TEST(GatherWrench, SameBitsAtAnyNumberOfThreads) {
-  const TraceableScene scene(testing::shaded_square());
+  const TraceableScene scene(fixtures::shaded_square());
   const WrenchReceiver body = body_of(scene.scene());
-  const Beam beam = testing::gaussian_led(0.4, 3.0, {0, 0, 1.5}, {0, 0, -1});
+  const Beam beam = fixtures::gaussian_led(0.4, 3.0, {0, 0, 1.5}, {0, 0, -1});
   const auto gather = WrenchGather::make(scene, std::span(&beam, 1));
   std::vector<std::vector<double>> runs;
   for (const int threads : {1, 3}) {

@@ -21,8 +21,8 @@
 namespace photorque {
 namespace {
 
-using testing::number;
-using testing::text;
+using fixtures::number;
+using fixtures::text;
 
 // Means of the five programs with three standard deviations between them: absorbed power [kW] and
 // the brightest of 100 × 100 bins [kW/m²]; and peak_of() of their mean map.
@@ -150,13 +150,13 @@ Scene build(const Layout& layout, uint32_t n) {
   Bsdf bsdf;
   bsdf.specular = layout.slope_error;
   mirror.bsdf = std::make_shared<const Bsdf>(std::move(bsdf));
-  testing::add(scene, std::move(mirrors), mirror, "mirrors");
+  fixtures::add(scene, std::move(mirrors), mirror, "mirrors");
   scene.surfaces.push_back(grey_surface("black", 0, 0));
   scene.instances.back().back_surface = static_cast<uint32_t>(scene.surfaces.size() - 1);
   const Vec3 u_m(layout.upright ? -8.0 : 8.0, 0, 0);
   const Vec3 v_m = layout.upright ? Vec3(0, 0, 6.0) : Vec3(0, -8.0, 0);
-  testing::add(scene, testing::rectangle(layout.aim_m, u_m, v_m),
-               grey_surface("receiver", 0.0, 1.0 - layout.absorptance), "receiver");
+  fixtures::add(scene, fixtures::rectangle(layout.aim_m, u_m, v_m),
+                grey_surface("receiver", 0.0, 1.0 - layout.absorptance), "receiver");
   scene.surfaces.push_back(grey_surface("nothing", 0, 0, 1.0));
   scene.instances.back().back_surface = static_cast<uint32_t>(scene.surfaces.size() - 1);
   return scene;
@@ -188,7 +188,7 @@ Flux trace_case(const Layout& layout, uint32_t facets, uint64_t rays) {
   const double radius_m = scene.radius_m();
   SettingsNode::Table keys = layout.sun;
   keys["irradiance_W_m2"] = number(1000);
-  const Beam sun = testing::source("sun", std::move(keys), Vec3::Zero(), -layout.to_sun, radius_m);
+  const Beam sun = fixtures::source("sun", std::move(keys), Vec3::Zero(), -layout.to_sun, radius_m);
   const FluxMapReceiver map("receiver", scene,
                             make_surface_grid(scene, scene.instances_of("receiver"), {}));
   const TraceableScene traceable(scene);

@@ -8,7 +8,7 @@
 namespace photorque {
 namespace {
 
-using testing::ParallelBeam;
+using fixtures::ParallelBeam;
 
 struct LitBox {
   Scene scene;
@@ -38,7 +38,7 @@ struct LitBox {
 };
 
 Mesh unit_box() {
-  return testing::box(Vec3::Zero(), Vec3::Ones());
+  return fixtures::box(Vec3::Zero(), Vec3::Ones());
 }
 
 // One of the two triangles of the lid.

@@ -10,7 +10,7 @@
 #include "raytrace/direct/disc_light.h"
 #include "tests/receivers/gather_lamps.h"
 
-namespace photorque::testing {
+namespace photorque::fixtures {
 
 // A lamp of one watt with a plate under it, drawn at random.
 struct Draw {
@@ -124,4 +124,4 @@ inline std::optional<Scene> wide_plate(const Draw& d, double aspect) {
   return plate_of(d, side_m, side_m * aspect);
 }
 
-}  // namespace photorque::testing
+}  // namespace photorque::fixtures

@@ -12,10 +12,10 @@
 namespace photorque {
 namespace {
 
-using testing::add;
-using testing::pressure_Pa;
-using testing::rectangle;
-using testing::sun;
+using fixtures::add;
+using fixtures::pressure_Pa;
+using fixtures::rectangle;
+using fixtures::sun;
 
 void append(Mesh& to, const Mesh& from) {
   const auto first = static_cast<uint32_t>(to.vertices_m.size());
@@ -80,7 +80,7 @@ double shadow_of_box_m2(const Vec3& size_m, double tilt_rad) {
          std::abs(travel.z()) * size_m.x() * size_m.y();
 }
 
-const Mesh cube_of_1_m = testing::box(Vec3::Zero(), Vec3::Ones());
+const Mesh cube_of_1_m = fixtures::box(Vec3::Zero(), Vec3::Ones());
 
 TEST(OpenBodies, SheetsInOneMeshWithABoxAreLitFromBothSides) {
   Mesh mesh = cube_of_1_m;
@@ -113,7 +113,7 @@ TEST(OpenBodies, WhatFallsThroughAHoleIsCaughtInside) {
 
 TEST(OpenBodies, OneBodyOfAMeshMayBeInsideOut) {
   Mesh mesh = cube_of_1_m;
-  append(mesh, turned_inside_out(testing::box(Vec3(4, 0, 0), Vec3(4.5, 0.5, 0.5))));
+  append(mesh, turned_inside_out(fixtures::box(Vec3(4, 0, 0), Vec3(4.5, 0.5, 0.5))));
   EXPECT_EQ(inwards(mesh), std::nullopt);
   EXPECT_NEAR(shadow_m2(mesh, 0.2),
               shadow_of_box_m2(Vec3::Ones(), 0.2) + shadow_of_box_m2(Vec3::Constant(0.5), 0.2),
@@ -124,7 +124,7 @@ TEST(OpenBodies, ClosedOnesHaveAnInside) {
   EXPECT_EQ(inwards(cube_of_1_m), false);
   EXPECT_EQ(inwards(turned_inside_out(cube_of_1_m)), true);
   Mesh two = cube_of_1_m;
-  append(two, testing::box(Vec3(4, 0, 0), Vec3(4.5, 0.5, 0.5)));
+  append(two, fixtures::box(Vec3(4, 0, 0), Vec3(4.5, 0.5, 0.5)));
   EXPECT_EQ(inwards(two), false);
   Mesh mixed = cube_of_1_m;  // one triangle of twelve the other way round
   std::swap(mixed.triangles[3][0], mixed.triangles[3][1]);

@@ -9,17 +9,17 @@
 namespace photorque {
 namespace {
 
-using testing::add_instance;
+using fixtures::add_instance;
+using fixtures::HitMaker;
+using fixtures::hits_of;
+using fixtures::input_error_of;
+using fixtures::node_of;
+using fixtures::plate;
+using fixtures::settings_of;
+using fixtures::sums_of;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using testing::HitMaker;
-using testing::hits_of;
-using testing::input_error_of;
-using testing::node_of;
 using ::testing::Not;
-using testing::plate;
-using testing::settings_of;
-using testing::sums_of;
 
 Scene two_plates() {
   Scene scene;

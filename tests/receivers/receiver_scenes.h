@@ -13,7 +13,7 @@
 #include "raytrace/receiver.h"
 #include "raytrace/scene.h"
 
-namespace photorque::testing {
+namespace photorque::fixtures {
 
 // The rectangle [x0, x1] × [y0, y1] at height z, front up, texture coordinates from 0 to 1.
 inline Mesh plate(double x0, double x1, double y0, double y1, double z = 0.0) {
@@ -205,4 +205,4 @@ inline Estimate quantity_named(const Product& product, const std::string& name) 
   throw std::runtime_error("no quantity " + name);
 }
 
-}  // namespace photorque::testing
+}  // namespace photorque::fixtures

@@ -4,7 +4,7 @@
 #include "core/constants.h"
 #include "tests/receivers/gather_lamps.h"
 
-namespace photorque::testing {
+namespace photorque::fixtures {
 
 inline constexpr double irradiance_W_m2 = 1361.0;
 inline constexpr double pressure_Pa = irradiance_W_m2 / speed_of_light_m_s;
@@ -24,4 +24,4 @@ inline Vec3 textbook_N(double area_m2, double specular, double diffuse, const Ve
          ((1.0 - specular) * travel - 2.0 * (specular * cosine + diffuse / 3.0) * normal);
 }
 
-}  // namespace photorque::testing
+}  // namespace photorque::fixtures

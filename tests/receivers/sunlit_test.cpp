@@ -17,12 +17,12 @@
 namespace photorque {
 namespace {
 
-using testing::add;
-using testing::irradiance_W_m2;
-using testing::pressure_Pa;
-using testing::rectangle;
-using testing::sun;
-using testing::textbook_N;
+using fixtures::add;
+using fixtures::irradiance_W_m2;
+using fixtures::pressure_Pa;
+using fixtures::rectangle;
+using fixtures::sun;
+using fixtures::textbook_N;
 
 SunlitWrench sunlit(const TraceableScene& scene, const RigidTransform& attitude) {
   const Beam beam = sun(0.0);
@@ -131,7 +131,7 @@ TEST(Sunlit, ADiscTakesUpItsShareOfScatteredLight) {
   const double side_m = 0.002, height_m = 0.3, radius_m = 0.25;
   add(scene, rectangle(Vec3::Zero(), Vec3(side_m, 0, 0), Vec3(0, side_m, 0)),
       grey_surface("w", 0.0, 1.0), "white");
-  Mesh disc = testing::polygon(256);
+  Mesh disc = fixtures::polygon(256);
   for (Vec3& vertex : disc.vertices_m) {
     vertex = Vec3(radius_m * vertex.x(), radius_m * vertex.y(), height_m);
   }
@@ -179,7 +179,7 @@ Scene drawn_scene(std::mt19937& random) {
   for (int i = 0; i < 3; ++i) {
     const Vec3 half_m{uniform(0.1, 0.4), uniform(0.1, 0.4), uniform(0.02, 0.4)};
     const Vec3 centre_m{uniform(-0.6, 0.6), uniform(-0.6, 0.6), uniform(-0.6, 0.6)};
-    Mesh box = testing::box(half_m.x(), half_m.y(), half_m.z());
+    Mesh box = fixtures::box(half_m.x(), half_m.y(), half_m.z());
     const Quat turned = Quat{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
     const Mat3 rotation = turned.normalized().toRotationMatrix();
     for (Vec3& vertex : box.vertices_m) vertex = centre_m + rotation * vertex;
@@ -291,7 +291,7 @@ TEST(Sunlit, AgreesWithTheLookupOfACube) {
   const std::vector<Vec3> all = vectors_in(text.str());
   ASSERT_EQ(all.size(), 600u);  // directions to the Sun, forces, torques
   Scene scene;
-  Mesh cube = testing::box(Vec3(-1, -1, -1), Vec3(1, 1, 1));
+  Mesh cube = fixtures::box(Vec3(-1, -1, -1), Vec3(1, 1, 1));
   cube.encloses = true;
   add(scene, std::move(cube), grey_surface("s", 0.2, 0.3), "cube");
   const TraceableScene traceable(scene);
@@ -312,7 +312,7 @@ TEST(Sunlit, IsForPlainSurfacesInTheLightOfOneSun) {
   add(scene, rectangle(Vec3::Zero(), Vec3(2, 0, 0), Vec3(0, 2, 0)), grey_surface("b", 0.5, 0.0),
       "plate");
   const std::vector<Beam> one = {sun(0.2665)}, two = {sun(0.2665), sun(0.2665)};
-  const std::vector<Beam> lamp = {testing::gaussian_led(0.05, 9.0, {0, 0, 1.4}, {0, 0, -1})};
+  const std::vector<Beam> lamp = {fixtures::gaussian_led(0.05, 9.0, {0, 0, 1.4}, {0, 0, -1})};
   const TraceableScene plain(scene);
   EXPECT_TRUE(SunlitBody::make(plain, one, Vec3::Zero()));
   EXPECT_FALSE(SunlitBody::make(plain, two, Vec3::Zero()));

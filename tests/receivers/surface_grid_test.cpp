@@ -9,14 +9,14 @@
 namespace photorque {
 namespace {
 
-using testing::box;
+using fixtures::box;
+using fixtures::input_error_of;
+using fixtures::plate;
+using fixtures::polygon;
+using fixtures::ring;
+using fixtures::scene_of;
+using fixtures::unit_sphere;
 using ::testing::HasSubstr;
-using testing::input_error_of;
-using testing::plate;
-using testing::polygon;
-using testing::ring;
-using testing::scene_of;
-using testing::unit_sphere;
 
 constexpr uint32_t first[] = {0};
 

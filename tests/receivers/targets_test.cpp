@@ -10,8 +10,8 @@
 namespace photorque {
 namespace {
 
-using testing::number;
-using testing::text;
+using fixtures::number;
+using fixtures::text;
 
 // A Sun that the tracer does not know as parallel light.
 class WholeDisc final : public Emitter {
@@ -64,13 +64,13 @@ Found trace_sun(const Scene& scene, const Beam& sun, const RigidTransform& lab_f
 // A mirror, a tilted plate and a small ball far from each other.
 Scene spread_out() {
   Scene scene;
-  testing::add(scene, testing::rectangle(Vec3(3, 1, -2), Vec3(0.3, 0, 0), Vec3(0, 0.2, 0.1)),
-               grey_surface("mirror", 0.9, 0.0), "mirror");
-  testing::add(scene, testing::rectangle(Vec3(-2, 2, 3), Vec3(0.4, 0, 0.3), Vec3(0, 0.5, 0)),
-               grey_surface("grey", 0.2, 0.3), "receiver");
-  Mesh ball = testing::sphere(0.2, 24);
+  fixtures::add(scene, fixtures::rectangle(Vec3(3, 1, -2), Vec3(0.3, 0, 0), Vec3(0, 0.2, 0.1)),
+                grey_surface("mirror", 0.9, 0.0), "mirror");
+  fixtures::add(scene, fixtures::rectangle(Vec3(-2, 2, 3), Vec3(0.4, 0, 0.3), Vec3(0, 0.5, 0)),
+                grey_surface("grey", 0.2, 0.3), "receiver");
+  Mesh ball = fixtures::sphere(0.2, 24);
   for (Vec3& at_m : ball.vertices_m) at_m += Vec3(-1, -4, 0);
-  testing::add(scene, std::move(ball), grey_surface("matt", 0.0, 0.8), "ball");
+  fixtures::add(scene, std::move(ball), grey_surface("matt", 0.0, 0.8), "ball");
   return scene;
 }
 
@@ -91,7 +91,7 @@ TEST(Targets, GiveTheTotalsOfTheWholeDisc) {
       {"gaussian", {{"sun_shape", text("gaussian")}, {"sun_shape_sigma_mrad", number(20.0)}}},
       {"buie", {{"sun_shape", text("buie")}, {"circumsolar_ratio", number(0.3)}}}};
   for (const auto& [name, keys] : suns) {
-    const Beam sun = testing::source("sun", keys, Vec3::Zero(), Vec3(0.3, -0.2, -1), radius_m);
+    const Beam sun = fixtures::source("sun", keys, Vec3::Zero(), Vec3(0.3, -0.2, -1), radius_m);
     Beam whole = sun;
     whole.emitter = std::make_shared<WholeDisc>(sun.emitter);
     const Found sent = trace_sun(scene, sun, turned, 1 << 18);
@@ -116,11 +116,11 @@ TEST(Targets, GiveTheTotalsOfTheWholeDisc) {
 TEST(Targets, ErrorsHoldTheClosedForm) {
   Scene scene;
   const auto black = grey_surface("black", 0, 0);
-  testing::add(scene, testing::rectangle(Vec3(10, 0, 0), Vec3(1, 0, 0), Vec3(0, 0.5, 0)), black,
-               "receiver");
-  testing::add(scene, testing::rectangle(Vec3(-30, 20, 5), Vec3(1, 0, 0), Vec3(0, 1, 0)), black,
-               "other");
-  const Beam sun = testing::source(
+  fixtures::add(scene, fixtures::rectangle(Vec3(10, 0, 0), Vec3(1, 0, 0), Vec3(0, 0.5, 0)), black,
+                "receiver");
+  fixtures::add(scene, fixtures::rectangle(Vec3(-30, 20, 5), Vec3(1, 0, 0), Vec3(0, 1, 0)), black,
+                "other");
+  const Beam sun = fixtures::source(
       "sun", {{"angular_radius_deg", number(0.5)}, {"irradiance_W_m2", number(1000)}}, Vec3::Zero(),
       Vec3(0, 0, -1), scene.radius_m());
   const TraceableScene traceable(scene);
@@ -143,8 +143,8 @@ TEST(Targets, ErrorsHoldTheClosedForm) {
 // A body that fills the disc, and light that is not known to be parallel.
 TEST(Targets, AreNoneWhereNothingIsSaved) {
   Scene scene;
-  testing::add(scene, testing::sphere(1.0, 48), grey_surface("black", 0, 0), "ball");
-  const Beam sun = testing::source("sun", {}, Vec3::Zero(), Vec3(0, 0, -1), scene.radius_m());
+  fixtures::add(scene, fixtures::sphere(1.0, 48), grey_surface("black", 0, 0), "ball");
+  const Beam sun = fixtures::source("sun", {}, Vec3::Zero(), Vec3(0, 0, -1), scene.radius_m());
   const TraceableScene traceable(scene);
   const auto targets = Targets::of(*sun.emitter, sun.lab_from_emitter, traceable.data(), 1 << 20);
   EXPECT_FALSE(targets);

@@ -8,12 +8,12 @@
 namespace photorque {
 namespace {
 
-using testing::HitMaker;
-using testing::map_named;
-using testing::plate;
-using testing::quantity_named;
-using testing::scene_of;
-using testing::sums_of;
+using fixtures::HitMaker;
+using fixtures::map_named;
+using fixtures::plate;
+using fixtures::quantity_named;
+using fixtures::scene_of;
+using fixtures::sums_of;
 
 constexpr uint32_t plate_instance[] = {0};
 
@@ -54,8 +54,8 @@ TEST(TorqueMap, AsPublishedTakesTheCosineOnceMoreAndAbsorbsAll) {
       using Force = TorqueMapReceiver::Force;
       const TorqueMapReceiver own("own", scene, grid, Vec3::Zero(), Force::momentum);
       const TorqueMapReceiver printed("printed", scene, grid, Vec3::Zero(), Force::as_published);
-      const Beam sun = testing::source("sun", {{"irradiance_W_m2", testing::number(1000)},
-                                               {"angular_radius_deg", testing::number(0.0)}});
+      const Beam sun = fixtures::source("sun", {{"irradiance_W_m2", fixtures::number(1000)},
+                                                {"angular_radius_deg", fixtures::number(0.0)}});
       const TraceableScene traceable(scene);
       const Receiver* const receivers[] = {&own, &printed};
       const RigidTransform attitude = lab_from_body_at(tilt_deg * degree_rad, 0.3);

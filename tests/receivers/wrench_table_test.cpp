@@ -5,7 +5,7 @@
 namespace photorque {
 namespace {
 
-using testing::map_named;
+using fixtures::map_named;
 
 WrenchTable numbered(std::vector<double> tilts_deg, std::vector<double> headings_deg) {
   for (double& angle : tilts_deg) angle *= degree_rad;

@@ -9,12 +9,12 @@
 namespace photorque {
 namespace {
 
-using testing::add_instance;
+using fixtures::add_instance;
+using fixtures::HitMaker;
+using fixtures::plate;
+using fixtures::quantity_named;
+using fixtures::sums_of;
 using ::testing::ElementsAre;
-using testing::HitMaker;
-using testing::plate;
-using testing::quantity_named;
-using testing::sums_of;
 
 HitMaker push(uint32_t instance, const Vec3& position_m, const Vec3& force_N) {
   HitMaker hit;

@@ -8,7 +8,7 @@ namespace photorque {
 namespace {
 
 // A square in the plane z = 0, looking up, from (0, 0) to (1, 1).
-Mesh unit_square() {
+Mesh square_mesh() {
   Mesh mesh;
   mesh.vertices_m = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -72,10 +72,10 @@ TEST(Doubts, NameLampsInsideClosedParts) {
 }
 
 TEST(Doubts, NamePartsThatSinglePrecisionDoesNotResolve) {
-  Mesh tiny = unit_square();
+  Mesh tiny = square_mesh();
   for (Vec3& vertex : tiny.vertices_m) vertex = 1e-6 * vertex + Vec3(0, 0, 5);
-  EXPECT_TRUE(doubts_about(scene_of({unit_square()}), {}, {}).empty());
-  Mesh far = unit_square();
+  EXPECT_TRUE(doubts_about(scene_of({square_mesh()}), {}, {}).empty());
+  Mesh far = square_mesh();
   for (Vec3& vertex : far.vertices_m) vertex += Vec3(1e3, 0, 0);
   const auto lines = doubts_about(scene_of({tiny, far}), {}, {});
   ASSERT_EQ(lines.size(), 1u);

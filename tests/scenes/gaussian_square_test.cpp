@@ -28,8 +28,8 @@ TEST(GaussianBeam, EncircledPowerOnASquareMatchesClosedForm) {
   ASSERT_EQ(beams.size(), 1u);
   for (const double side : {0.1, 0.2, 0.3}) {
     Scene scene;
-    testing::add(scene, testing::rectangle(Vec3::Zero(), Vec3(side, 0, 0), Vec3(0, side, 0)),
-                 grey_surface("black", 0, 0), "square");
+    fixtures::add(scene, fixtures::rectangle(Vec3::Zero(), Vec3(side, 0, 0), Vec3(0, side, 0)),
+                  grey_surface("black", 0, 0), "square");
     const TraceableScene traceable(std::move(scene));
     TraceOptions options;
     options.rays = 1 << 21;

@@ -55,7 +55,7 @@ json lamp_file() {
   return file;
 }
 
-fs::path written(const json& file, const std::string& experiment = "") {
+fs::path folder_with(const json& file, const std::string& experiment = "") {
   const fs::path folder = fs::path(::testing::TempDir()) / "gltf_lights";
   fs::create_directories(folder);
   std::ofstream(folder / "lamps.gltf") << file.dump();
@@ -67,7 +67,7 @@ fs::path written(const json& file, const std::string& experiment = "") {
 }
 
 TEST(GltfLights, StandAndShineAsTheFileSays) {
-  const auto lights = read_gltf_lights(written(lamp_file()) / "lamps.gltf", 1e-3);
+  const auto lights = read_gltf_lights(folder_with(lamp_file()) / "lamps.gltf", 1e-3);
   ASSERT_EQ(lights.size(), 3u);
   EXPECT_EQ(lights[0].name, "lamp");
   EXPECT_EQ(lights[0].kind, GltfLight::Kind::spot);
@@ -85,9 +85,9 @@ TEST(GltfLights, StandAndShineAsTheFileSays) {
 // A cone of 20 deg from 1 m lights a disc of 0.364 m: all of its power is on the plate. An even
 // cone has the flux of an even radiant intensity.
 TEST(GltfLights, ASpotIsALedWithAnEvenCone) {
-  const fs::path folder = written(lamp_file(),
-                                  "[[source]]\nlight = \"lamp\"\npower_W = 3\n"
-                                  "wavelength_nm = 730\naperture_diameter_mm = 1\n");
+  const fs::path folder = folder_with(lamp_file(),
+                                      "[[source]]\nlight = \"lamp\"\npower_W = 3\n"
+                                      "wavelength_nm = 730\naperture_diameter_mm = 1\n");
   const Experiment experiment = read_experiment(folder / "lamps.toml");
   ASSERT_EQ(experiment.beams.size(), 1u);
   const Beam& beam = experiment.beams[0];
@@ -102,13 +102,13 @@ TEST(GltfLights, ASpotIsALedWithAnEvenCone) {
 }
 
 TEST(GltfLights, ADirectionalLightIsASunAndKeysOfTheUserWin) {
-  const fs::path folder = written(lamp_file(),
-                                  "[[source]]\nlight = \"noon\"\nirradiance_W_m2 = 500\n"
-                                  "angular_radius_deg = 0\n"
-                                  "[[source]]\nlight = \"lamp\"\npower_W = 1\n"
-                                  "wavelength_nm = 730\ndirection = [0, 1, -1]\n"
-                                  "profile = \"gaussian\"\nfwhm_deg = 3\n"
-                                  "aperture_diameter_mm = 45\n");
+  const fs::path folder = folder_with(lamp_file(),
+                                      "[[source]]\nlight = \"noon\"\nirradiance_W_m2 = 500\n"
+                                      "angular_radius_deg = 0\n"
+                                      "[[source]]\nlight = \"lamp\"\npower_W = 1\n"
+                                      "wavelength_nm = 730\ndirection = [0, 1, -1]\n"
+                                      "profile = \"gaussian\"\nfwhm_deg = 3\n"
+                                      "aperture_diameter_mm = 45\n");
   const Experiment experiment = read_experiment(folder / "lamps.toml");
   ASSERT_EQ(experiment.beams.size(), 2u);
   const auto looks = [&](size_t beam) {
@@ -120,9 +120,10 @@ TEST(GltfLights, ADirectionalLightIsASunAndKeysOfTheUserWin) {
 
 // A cone is the beam of an LED; a lamp of another kind at a spot's place has its own beam.
 TEST(GltfLights, AnyKindOfSourceCanStandWhereASpotStands) {
-  const fs::path folder = written(lamp_file(),
-                                  "[[source]]\nlight = \"lamp\"\nkind = \"laser\"\npower_W = 2\n"
-                                  "wavelength_nm = 532\nwaist_radius_mm = 5\n");
+  const fs::path folder =
+      folder_with(lamp_file(),
+                  "[[source]]\nlight = \"lamp\"\nkind = \"laser\"\npower_W = 2\n"
+                  "wavelength_nm = 532\nwaist_radius_mm = 5\n");
   const Experiment experiment = read_experiment(folder / "lamps.toml");
   ASSERT_EQ(experiment.beams.size(), 1u);
   EXPECT_EQ(experiment.beams[0].emitter->power_W(), 2.0);
@@ -133,7 +134,7 @@ TEST(GltfLights, AnyKindOfSourceCanStandWhereASpotStands) {
 TEST(GltfLights, ASpotMayBeAsWideAsAHemisphere) {
   json wide = lamp_file();
   wide["extensions"]["KHR_lights_punctual"]["lights"][0]["spot"]["outerConeAngle"] = 1.5707963705;
-  const auto lights = read_gltf_lights(written(wide) / "lamps.gltf", 1.0);
+  const auto lights = read_gltf_lights(folder_with(wide) / "lamps.gltf", 1.0);
   EXPECT_EQ(lights[0].outer_cone_rad, 0.5 * pi);
 }
 
@@ -181,9 +182,9 @@ Vec3 mean_direction(const Beam& beam) {
 TEST(GltfLights, AProfileIsAMeasuredLampTurnedAsItsNode) {
   const std::string data = std::string("data:application/x-ies-lm-63;base64,") + leaning_base64;
   for (const char* uri : {"leaning.ies", data.c_str()}) {
-    const fs::path folder = written(profile_file({{"uri", uri}}),
-                                    "[[source]]\nlight = \"measured\"\npower_W = 2\n"
-                                    "wavelength_nm = 730\n");
+    const fs::path folder = folder_with(profile_file({{"uri", uri}}),
+                                        "[[source]]\nlight = \"measured\"\npower_W = 2\n"
+                                        "wavelength_nm = 730\n");
     std::ofstream(folder / "leaning.ies") << leaning_ies;
     const Experiment experiment = read_experiment(folder / "lamps.toml");
     ASSERT_EQ(experiment.beams.size(), 1u);
@@ -205,14 +206,14 @@ TEST(GltfLights, AProfileOfABufferViewIsRead) {
        {"uri", std::string("data:application/octet-stream;base64,") + leaning_base64}});
   file["bufferViews"].push_back({{"buffer", file["buffers"].size() - 1}, {"byteLength", length}});
   file["extensions"]["EXT_lights_ies"]["lights"][0]["bufferView"] = file["bufferViews"].size() - 1;
-  const auto lights = read_gltf_lights(written(file) / "lamps.gltf", 1.0);
+  const auto lights = read_gltf_lights(folder_with(file) / "lamps.gltf", 1.0);
   ASSERT_EQ(lights.back().kind, GltfLight::Kind::profile);
   EXPECT_EQ(lights.back().profile_bytes, leaning_ies);
 }
 
 std::string refusal(const json& file, const std::string& source) {
   try {
-    read_experiment(written(file, "[[source]]\n" + source) / "lamps.toml");
+    read_experiment(folder_with(file, "[[source]]\n" + source) / "lamps.toml");
   } catch (const InputError& error) {
     return error.what();
   }

@@ -80,9 +80,9 @@ TEST(IesLamp, PowerOnASquareMatchesClosedForm) {
   ASSERT_EQ(beams.size(), 1u);
   for (const double half : {0.1, 0.5, 2.0}) {
     Scene scene;
-    testing::add(scene,
-                 testing::rectangle(Vec3::Zero(), Vec3(2 * half, 0, 0), Vec3(0, 2 * half, 0)),
-                 grey_surface("black", 0, 0), "square");
+    fixtures::add(scene,
+                  fixtures::rectangle(Vec3::Zero(), Vec3(2 * half, 0, 0), Vec3(0, 2 * half, 0)),
+                  grey_surface("black", 0, 0), "square");
     const TraceableScene traceable(std::move(scene));
     TraceOptions options;
     options.rays = 1 << 21;

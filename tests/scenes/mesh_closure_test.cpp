@@ -14,11 +14,11 @@ Scene scene_of(Mesh mesh) {
 }
 
 TEST(MeshClosure, FindsClosedBodiesAndSheets) {
-  const MeshClosure box = closure_of(scene_of(testing::box(Vec3(0, 0, 0), Vec3(1, 2, 3))));
+  const MeshClosure box = closure_of(scene_of(fixtures::box(Vec3(0, 0, 0), Vec3(1, 2, 3))));
   EXPECT_EQ(box.closed, 1u);
   EXPECT_EQ(box.open_edges, 0u);
   const MeshClosure sheet =
-      closure_of(scene_of(testing::rectangle(Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 1, 0))));
+      closure_of(scene_of(fixtures::rectangle(Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 1, 0))));
   EXPECT_EQ(sheet.closed, 0u);
   EXPECT_EQ(sheet.open_edges, 4u);
   EXPECT_EQ(box.encloses, std::vector<uint8_t>{1});
@@ -39,7 +39,7 @@ TEST(MeshClosure, FindsTJunctions) {
 }
 
 TEST(MeshClosure, WeldsCornersThatExportersSplit) {
-  Mesh mesh = testing::box(Vec3(0, 0, 0), Vec3(1, 1, 1));
+  Mesh mesh = fixtures::box(Vec3(0, 0, 0), Vec3(1, 1, 1));
   Mesh split;
   for (const auto& triangle : mesh.triangles) {
     const auto first = static_cast<uint32_t>(split.vertices_m.size());

@@ -1,6 +1,7 @@
-# Files of one room (a folder that holds sources) are compiled together, in batches of at most
-# `max_kB` (smaller in the rooms named after the target): most of a file's compile time goes into headers, which a batch reads once. Names in
-# anonymous namespaces must therefore differ within a room. OFF suits daily work on a few files.
+# Files of a target are compiled together, in batches: most of a file's compile time goes into headers, which a
+# batch reads once. A room (a folder that holds sources) of 70 kB or more has its batches for itself, the smaller
+# ones of a target share theirs, and so do the rooms named after the target, in smaller batches. Names in anonymous
+# namespaces must therefore differ within a batch. OFF suits daily work on a few files.
 option(PHOTORQUE_UNITY "Compile the files of a room together" OFF)
 function(photorque_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${PHOTORQUE_UNITY} UNITY_BUILD_MODE GROUP)
@@ -8,6 +9,7 @@ function(photorque_unity target)
     return()
   endif()
   get_target_property(files ${target} SOURCES)
+  set(together "")
   foreach(file IN LISTS files)
     get_source_file_property(alone ${file} SKIP_UNITY_BUILD_INCLUSION)
     cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE path)
@@ -16,38 +18,64 @@ function(photorque_unity target)
     endif()
     cmake_path(RELATIVE_PATH path BASE_DIRECTORY ${CMAKE_SOURCE_DIR} OUTPUT_VARIABLE room)
     cmake_path(GET room PARENT_PATH room)
-    set(max_kB 140)
+    file(SIZE ${path} bytes_${file})
+    math(EXPR room_${room} "0${room_${room}} + ${bytes_${file}}")
+    set(room_of_${file} ${room})
+    list(APPEND together ${file})
+  endforeach()
+  foreach(file IN LISTS together)
+    set(room ${room_of_${file}})
     if(room IN_LIST ARGN)
-      set(max_kB 30)
+      set(group quick)
+    elseif(room_${room} LESS 70000)
+      set(group small_rooms)
+    else()
+      string(MAKE_C_IDENTIFIER "${room}" group)
     endif()
-    string(MAKE_C_IDENTIFIER "${room}" room)
-    file(SIZE ${path} bytes)
-    math(EXPR sum_${room} "0${sum_${room}} + ${bytes}")
-    math(EXPR batch "${sum_${room}} / (1024 * ${max_kB})")
-    set_source_files_properties(${file} PROPERTIES UNITY_GROUP "${room}_${batch}")
+    set(group_of_${file} ${group})
+    math(EXPR all_${group} "0${all_${group}} + ${bytes_${file}}")
+  endforeach()
+  foreach(file IN LISTS together)  # batches of equal size
+    set(group ${group_of_${file}})
+    set(max_bytes 160000)
+    if(group STREQUAL "quick")
+      set(max_bytes 50000)
+    endif()
+    math(EXPR batch "0${sum_${group}} * (${all_${group}} / ${max_bytes} + 1) / (${all_${group}} + 1)")
+    math(EXPR sum_${group} "0${sum_${group}} + ${bytes_${file}}")
+    set_source_files_properties(${file} PROPERTIES UNITY_GROUP "${group}_${batch}")
   endforeach()
   # A local name may be that of another file's constant.
   target_compile_options(${target} PRIVATE -Wno-shadow)
 endfunction()
 
-# The standard library and Eigen, compiled once for all libraries; programs are no shared code (-fPIE).
+# The standard library and Eigen, compiled once for all libraries and programs.
 function(photorque_precompiled target)
-  get_target_property(type ${target} TYPE)
-  if(target STREQUAL photorque_core OR type STREQUAL EXECUTABLE)
+  if(target STREQUAL photorque_core)
     target_precompile_headers(${target} PRIVATE ${CMAKE_SOURCE_DIR}/core/precompiled.h)
   else()
     target_precompile_headers(${target} REUSE_FROM photorque_core)
+    get_target_property(type ${target} TYPE)
+    if(type STREQUAL EXECUTABLE)
+      target_compile_options(${target} PRIVATE -fPIC)  # a compiled header is for one kind of code
+    endif()
   endif()
 endfunction()
 
+# No kernel is in this target: without the costly passes it compiles in less time. Sums are rounded as elsewhere
+# (multiply-add comes with the expensive optimisations).
+function(photorque_cold target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1> $<$<CXX_COMPILER_ID:GNU>:-fexpensive-optimizations>)
+endfunction()
+
 # photorque_folder(NAME [FILES file ...] [WITHOUT path ...] [USES folder ...] [LINKS library ...] [ALONE file ...]
-#                  [QUICK room ...])
+#                  [QUICK room ...] [COLD])
 #   One static library photorque_NAME for a top-level folder: FILES, or every source below the folder
 #   but those whose path begins with one of WITHOUT. USES names the folders it may include (public), LINKS the outside libraries that only
 #   this folder may see (private), ALONE the files that cannot be compiled together with others,
-#   QUICK the rooms with smaller batches, whose files change often.
+#   QUICK the rooms with smaller batches, whose files change often, COLD that no kernel is here.
 function(photorque_folder name)
-  cmake_parse_arguments(arg "" "" "FILES;WITHOUT;USES;LINKS;ALONE;QUICK" ${ARGN})
+  cmake_parse_arguments(arg "COLD" "" "FILES;WITHOUT;USES;LINKS;ALONE;QUICK" ${ARGN})
   if(NOT arg_FILES)
     file(GLOB_RECURSE arg_FILES CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
     foreach(path IN LISTS arg_WITHOUT)
@@ -65,6 +93,9 @@ function(photorque_folder name)
   endforeach()
   target_link_libraries(${target} PRIVATE ${arg_LINKS})
   photorque_precompiled(${target})
+  if(arg_COLD)
+    photorque_cold(${target})
+  endif()
   photorque_unity(${target} ${arg_QUICK})
 endfunction()
 
@@ -89,6 +120,8 @@ function(photorque_kinds folder type header)
   string(REGEX REPLACE "([a-z])([A-Z])" "\\1_\\2" snake "${type}")
   string(TOLOWER "${snake}" snake)
   set(generated ${CMAKE_BINARY_DIR}/generated/${folder}/${snake}_registry.cpp)
+  # A program may link a registry that replaces that of the library.
+  set_source_files_properties(${generated} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   file(CONFIGURE OUTPUT ${generated} CONTENT
 "// Generated from ${folder}/CMakeLists.txt: one line per kind.
 #include \"${header}\"

@@ -106,7 +106,8 @@ std::optional<double> LinkFate::next() {
 
 std::vector<Key> link_keys() {
   using namespace link_key;
-  return {delay, jitter, jitter_law, loss, burst_begin, burst_end, burst_loss, reorder, trace};
+  return {delay,     jitter,     jitter_law, loss,           burst_begin,
+          burst_end, burst_loss, reorder,    link_key::trace};
 }
 
 }  // namespace photorque
