@@ -1,5 +1,5 @@
-// The design question of a tracking camera: how well it knows the attitude, over tilt, over board
-// and lens, with a marker dark, with errors of calibration, and whether images bear that out.
+// Design study of a tracking camera: attitude error over tilt, board and lens, with one marker
+// dark, and with calibration errors. Simulated images test the predicted errors.
 #pragma once
 
 #include <cstdint>

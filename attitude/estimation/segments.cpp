@@ -76,9 +76,9 @@ std::vector<double> usual_nearby(const std::vector<double>& sizes) {
   return usual;
 }
 
-// Rows at which the angle about the one axis, or the path of a sliding body, has a kink that its
-// own readings do not know: an unrecorded firing, a wall. Noise and torques make those nearby
-// alike; what has decayed later says nothing of the beginning.
+// Rows at which the angle about the one axis, or the path of a sliding body, has a kink without a
+// recorded event: an unrecorded firing, a wall. The threshold follows from the readings nearby,
+// because a motion that has decayed later is not representative of the beginning.
 std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   std::vector<char> kinks(rows.blocks(), 0);
   const bool slides = platform.slides();

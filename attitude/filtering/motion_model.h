@@ -57,8 +57,8 @@ struct Measurement {
 
 class MotionModel {
  public:
-  // Without the torques unless `settings` says that the disturbances move the platform. A gyro
-  // without a bias in the model gets one. The schedule is the recording's.
+  // The torques are used only if `settings` selects the model with disturbances. A gyro without a
+  // bias in the model gets one. The schedule is that of the recording.
   MotionModel(const AttitudeModel& model, const Sensors& sensors, const FilterSettings& settings,
               const Schedule& schedule);
 

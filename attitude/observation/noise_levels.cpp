@@ -74,8 +74,8 @@ double median(std::vector<double>& of) {
   return *middle;
 }
 
-// Whether `order` + 1 readings from the one at `first` are the same to the last digit: a counter
-// that stands still says nothing of its noise. Where it mostly does, its step says it.
+// Whether the `order` + 1 readings from `first` on are equal to the last digit. A counter that
+// stands still contains no information on its noise. If it mostly does, its step gives the noise.
 bool stands_still(const std::vector<ReadingAt>& x, size_t first, size_t order) {
   constexpr double rounding = 1e-12;
   for (size_t k = first + 1; k <= first + order; ++k) {

@@ -81,8 +81,8 @@ class NoiseSearch {
     }
   }
 
-  // Correlated noise of the gyro, with one time and fraction about all axes: beside the camera's as
-  // it stands, or in its place where that says more.
+  // Searches for correlated noise of the gyro, with one time and fraction for all axes: in addition
+  // to that of the camera, or instead of it if this increases the likelihood.
   void find_gyro_colour() {
     double now = 0.0;
     for (const CameraNoise& axis : axes_) now += axis.value;

@@ -22,9 +22,9 @@ namespace photorque {
 // the last bit; runs with a commander cannot.
 class RecordedRun {
  public:
-  // `beside`: what battery and array do, where a power system runs beside the motion; its caller
-  // adds to it, and the recording waits for it. Battery current, array power and charge are then
-  // its, and it says when the battery is empty. All must outlive the run.
+  // `beside`: the history of a power system that is simulated together with the motion. The caller
+  // appends to it, and the recording waits for it. It then provides battery current, array power,
+  // charge and the time at which the battery is empty. All must outlive the run.
   RecordedRun(const PropagationRun& run, std::function<void(double)> progress,
               const PowerHistory* beside = nullptr);
   RecordedRun(const RecordedRun&) = delete;

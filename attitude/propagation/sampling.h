@@ -1,4 +1,4 @@
-// States at the times that a user asks for, as the propagator passes them.
+// States at requested times, collected while the propagator passes them.
 #pragma once
 
 #include <array>

@@ -147,8 +147,8 @@ struct Stuck {
   bool never_moves() const { return readings > 0 && stuck == readings; }
 };
 
-// Rows in which the readings say nothing of the motion. At the end of a sensor's range only what
-// noise brings below it is read between: such a reading is no fair one.
+// Rows whose readings are stuck, and their neighbours. Between saturated readings only those occur
+// that the noise shifts into the range of the sensor, so that they are biased.
 std::vector<size_t> stuck_rows(const std::vector<double>& x, const Stuck& found) {
   std::vector<size_t> rows;
   for (size_t i = 0; i < x.size(); ++i) {

@@ -346,7 +346,7 @@ class Reader {
   }
 
   void read_row(const std::vector<std::string_view>& cells) {
-    // Decimal commas, say, which would shift what follows them.
+    // For example decimal commas, which would shift the columns after them.
     size_t used = 0;
     for (const auto& place : header_.place) used = std::max(used, place ? *place + 1 : 0);
     if (header_.separator == ',' && cells.size() > used && used == 2 && cells.size() == 4) {

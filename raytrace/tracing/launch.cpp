@@ -30,7 +30,7 @@ RayPlacement::RayPlacement(const RigidTransform& body_from_emitter,
   }
 }
 
-// Input and output do not overlap, which the compiler must know to vectorise.
+// Input and output do not overlap; __restrict lets the compiler vectorise.
 void RayPlacement::place(const RayBlock& __restrict rays, RayColumns& __restrict placed,
                          Landing& __restrict landing) const {
   constexpr float min_z = 1e-6f;  // of the directions of rays that may reach the plane

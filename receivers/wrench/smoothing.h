@@ -1,9 +1,10 @@
-// A wrench over the directions of light that is known with noise, made smooth.
+// Smoothing of a table of force and torque over the directions of light that contains noise.
 //
-// Every direction is known twice, from independent rays. The parts of each degree of the spherical
-// harmonics that both know alike are the wrench's own, the rest is noise: each degree is kept in
-// the ratio of the first to all (N. Wiener, Extrapolation, Interpolation, and Smoothing of
-// Stationary Time Series, 1949), and the remaining noise and the removed part are the error.
+// Every direction has two estimates from independent rays. For each degree of the spherical
+// harmonics, the part that both have in common is the signal, and the rest is noise. Each degree is
+// multiplied by the ratio of signal to total power (N. Wiener, Extrapolation, Interpolation, and
+// Smoothing of Stationary Time Series, 1949). The error contains the remaining noise and the
+// removed part.
 #pragma once
 
 #include <optional>

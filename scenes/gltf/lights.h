@@ -30,8 +30,8 @@ struct GltfLight {
   double turn_rad = 0.0;
 };
 
-// In the order of the nodes. Throws InputError as read_gltf() does, and for lights that are not as
-// the extension says.
+// The lights in the order of the nodes. Throws InputError as read_gltf() does, and for lights that
+// violate the extension.
 std::vector<GltfLight> read_gltf_lights(const std::filesystem::path& path, double metres_per_unit,
                                         bool may_leave_folder = false);
 

@@ -122,7 +122,7 @@ Battery battery_of(const ExperimentFile& file, const DaySettings& day, const Pla
   return battery;
 }
 
-// The largest photocurrent of any cell that the run may ask for, with something in hand.
+// An upper bound of the photocurrents of all cells in the run, with a margin.
 double max_photocurrent_A(const LightModel& light, const RotationTable* table,
                           const PropagationRun& run) {
   double most = 0.0;

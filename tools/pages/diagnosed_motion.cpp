@@ -148,8 +148,8 @@ void add_attitude_figures(const RecordingSeries& recording, const Quat& q, doubl
   }
 }
 
-// The mean of some rotation vectors about an instant, and its standard error: of what the camera
-// says, or as they scatter where that is more.
+// The mean of the rotation vectors near an instant, and its standard error: that from the noise of
+// the camera or from their scatter, whichever is larger.
 struct MeanTurn {
   Vec3 mean_rad = Vec3::Zero(), error_rad = Vec3::Zero();
 };

@@ -55,8 +55,8 @@ PaintedSurface painted_receiver(const OpticalRun& run, const std::string& receiv
 // states it. A platform about one axis has one moment: a disc about that axis.
 SceneStage platform_stage(const Platform& platform);
 
-// Recordings as people know them: the end of one that was held out is part of it again, names are
-// those of files and each is there once. At most `most`.
+// Recordings as the user provided them: held-out ends are joined to their recordings, names are
+// those of files, and each occurs once. At most `most`.
 std::vector<RecordingSeries> shown_recordings(const Diagnosis& diagnosis, size_t most);
 
 // The body as it was measured with both models beside it, its differences as arrows, over time;

@@ -196,8 +196,8 @@ void Session::wait_until_due(size_t tick) {
   }
 }
 
-// Measurements that have come through the link. In lockstep the last of them, or an empty one where
-// none has, asks for the answer.
+// Sends the measurements that have passed the simulated link. In lockstep, the last of them, or an
+// empty one if there is none, requests the answer.
 void Session::send_arrived(double now_s, bool is_late) {
   const uint32_t late = is_late ? uint32_t{PHOTORQUE_LATE} : 0;
   std::optional<photorque_measurement_packet> packet = to_client_.pop(now_s);

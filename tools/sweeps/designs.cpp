@@ -6,7 +6,7 @@
 namespace photorque {
 namespace {
 
-// With the absolute values that the plan asks for.
+// Adds the absolute values of figures that the plan uses, such as |torque|.
 std::vector<Figure> with_absolutes(const SweepPlan& plan, std::vector<Figure> figures) {
   const auto add = [&figures](const SweepFigure& wanted) {
     const Figure* plain = find_figure(figures, wanted.name);

@@ -1,4 +1,4 @@
-// The runs that a sweep asks for: from its database, or made now and kept there.
+// The runs of a sweep: read from its database, or computed and stored there.
 #pragma once
 
 #include <filesystem>

@@ -21,7 +21,7 @@
 namespace photorque {
 namespace {
 
-// Says at most so often that something is due.
+// Limits the rate of an action: due() is true at most once per interval, or with `always`.
 class Pace {
  public:
   explicit Pace(std::chrono::milliseconds least) : least_(least) {}

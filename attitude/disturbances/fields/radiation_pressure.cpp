@@ -5,7 +5,7 @@
 // fraction that is sent back (J. R. Wertz, Spacecraft Attitude Determination and Control, 1978,
 // sec. 17.2.2). That takes the projected area for the same from all sides that the Sun comes to.
 //
-// area_moment_m3[3]: a, body axes; where the Sun is [environment.sun] says. table: a CSV file
+// area_moment_m3[3]: a, body axes; the Sun is that of [environment.sun]. table: a CSV file
 // (torque_surface.h), its path relative to the experiment's. A table over tilt and heading holds
 // for light that is the same all round the vertical (a beamer overhead); a table over azimuth and
 // elevation for far light from one direction, sun_direction_lab[3], towards the light. scale:

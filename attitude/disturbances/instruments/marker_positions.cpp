@@ -86,8 +86,8 @@ struct MarkerPositions final : LawOf<MarkerPositions> {
     }
   }
 
-  // Of a spot's centre along one axis, from the marker's brightness and where it falls onto its
-  // pixel. Without errors that the camera knows of all weigh the same.
+  // Standard deviation of a spot's centre along one axis, from the marker's brightness and its
+  // position within the pixel. Without known errors, all markers have the same weight.
   template <class T>
   T information(const T& brightness, const T& pixel) const {
     if (in_middle_.constant == 0.0) return T(1.0);

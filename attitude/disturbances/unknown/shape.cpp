@@ -14,7 +14,7 @@ constexpr std::array axes_names = {"body", "lab",          "vertical", "lean",
 constexpr std::array axes_components = {3, 3, 1, 1, 1, 3, 1, 6};
 constexpr std::array variable_names = {"yaw", "tilt", "rate", "time", "charge", "command"};
 constexpr std::array variable_units = {"deg", "deg", "rad_s", "s", "Ah", "N_m"};
-// At which a power of the variable is 1 unless the user says otherwise.
+// Default values of each variable at which its power is 1.
 constexpr std::array usual_reference = {1.0, 0.1, 0.1, 100.0, 3600.0, 1e-4};
 
 template <class Enum>

@@ -95,7 +95,7 @@ class FacetQuadrature {
       means[i] = lamp_.misses(quarters[i].ball()) ? WrenchSum::Zero().eval() : mean_of(quarters[i]);
       finer += 0.25 * means[i];
     }
-    // Said of the finer rule, whose own error is smaller.
+    // The difference of the two rules is used as the error of the finer one, which is smaller.
     const double force_N = piece.area_m2 * (finer - mean).head<3>().matrix().norm();
     const double torque_N_m = piece.area_m2 * (finer - mean).tail<3>().matrix().norm();
     const bool good = force_N <= force_tolerance_N_ && torque_N_m <= torque_tolerance_N_m_;

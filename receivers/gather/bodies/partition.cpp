@@ -111,7 +111,7 @@ bool beside(const Trace& trace, uint32_t which) {
   return both(0, high) || both(1, high) || both(2, high);
 }
 
-// Cuts cells into quarters as far as their traces ask for.
+// Cuts cells into quarters until they are small enough for the traces that cross them.
 class Descent {
  public:
   Descent(std::span<const Trace> traces, const Levels& levels, uint32_t deepest,
