@@ -253,7 +253,7 @@ double likeliest_rate_walk(const AttitudeModel& model, const Sensors& sensors,
     most = likelihood;
     best = walk;
   };
-  // Where the readings do not decide, the quieter motion.
+  // A larger random walk is used only if it increases the log likelihood by more than this.
   constexpr double tells = 0.5;
   constexpr int lowest = -28, highest = 4;
   for (int half = lowest; half <= highest; ++half) look(std::pow(10.0, 0.5 * half), tells);

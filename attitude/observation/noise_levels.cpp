@@ -153,8 +153,8 @@ struct Differences {
   int order = 2;
 };
 
-// Of the residuals of the readings about a smooth motion; of the readings themselves, twice as
-// often, where that motion came from the camera and brings its noise.
+// Differences of the residuals from a smooth motion. If this motion is from the camera and has its
+// noise, differences of the readings are used instead, with twice the order.
 Differences differences_of(const Observation& seen, const KinematicRun& run, int k) {
   const double interval_s = reading_interval_s(seen, 3 + k);
   std::vector<size_t> read;

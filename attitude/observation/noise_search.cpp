@@ -33,7 +33,7 @@ class NoiseSearch {
     gyro_.gyro_rad_s = stated_.gyro_rad_s;
     for (int k = 0; k < 3; ++k) find_gyro_level(k);
     if (has_gyro_) {
-      // At first any torque goes.
+      // In the first step, any torque is allowed.
       constexpr double any_roughness = 1e-2;
       for (size_t k = 0; k < 3; ++k) {
         axes_[k].axis = gyro_;

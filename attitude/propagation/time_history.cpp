@@ -45,8 +45,8 @@ constexpr const char* fixed_names[fixed] = {"t_s",
                                             "battery_current_A",
                                             "array_power_W"};
 
-// At most about 1600 points, as many as a picture has columns: of every interval its lowest and its
-// highest, in order of time.
+// Reduces a curve to about 1600 points, the number of columns of a picture: the minimum and the
+// maximum of every interval, in order of time.
 void thin(const std::vector<double>& x, const std::vector<double>& y, Plot::Curve& curve) {
   constexpr size_t most = 1600;
   if (x.size() <= most) {
@@ -269,7 +269,7 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
     plot.curves = std::move(curves);
     product.plots.push_back(std::move(plot));
   };
-  // Of a long trajectory curves are bands that hide each other: every axis has its own panel.
+  // In long runs, oscillating curves are bands that hide each other: every axis has its own panel.
   const auto add_vector_plot = [&](const std::string& name, const std::string& title,
                                    const std::string& unit, size_t x) {
     add_plot(name, title, "x [" + unit + "]", {curve("", t, values(x))});

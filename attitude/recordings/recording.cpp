@@ -237,7 +237,7 @@ class RecordingReader {
     recording_.report.has_old_yaw = true;
   }
 
-  // Of a channel of this file.
+  // The name that replaces a former name of a channel in this file.
   std::string successor_of(const std::string& channel) const {
     return recording_.report.has_old_yaw && channel == old_yaw ? std::string(new_yaw) : channel;
   }
@@ -280,7 +280,7 @@ class RecordingReader {
     }
   }
 
-  // Where commas do not separate cells they may stand in numbers.
+  // If commas do not separate cells, they may be decimal commas.
   std::optional<double> number_of(std::string_view cell) {
     std::optional<double> number = to_number(cell);
     if (number || separator_ == ',') return number;

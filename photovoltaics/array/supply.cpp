@@ -6,7 +6,7 @@
 namespace photorque {
 namespace {
 
-// Of a lag towards 1 (on) or 0.
+// State of a first-order lag towards 1 (on) or 0 (off) after `elapsed_s`.
 double lagged(double from, bool on, double elapsed_s, double time_constant_s) {
   const double target = on ? 1.0 : 0.0;
   return target + (from - target) * std::exp(-elapsed_s / time_constant_s);

@@ -245,7 +245,7 @@ bool is_of_curve(std::string_view line, const Header& header) {
   return true;
 }
 
-// Of a curve with the current counted into the device: the signs of its currents are changed.
+// Reverses the currents of a curve whose current is counted into the device.
 bool reverse_negative(IvSweep& sweep) {
   double nearest_V = 1e300, short_circuit_A = 0.0, highest_V = -1e300, last_A = 0.0;
   for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
@@ -400,7 +400,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// By rising voltage, and by falling current where it stands still.
+// Order of the readings: by rising voltage, and at equal voltage by falling current.
 std::vector<size_t> order_of(const IvSweep& sweep) {
   std::vector<size_t> order(sweep.voltage_V.size());
   std::iota(order.begin(), order.end(), size_t{0});

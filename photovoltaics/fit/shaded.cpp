@@ -117,7 +117,7 @@ VectorXd measured_slopes_S(const IvSweep& sweep) {
 }
 
 VectorXd fitted_slopes_S(const IvSweep& sweep, const VectorXd& x) {
-  // Where all substrings are bypassed there is none.
+  // Slope of the curve where all substrings are bypassed.
   constexpr double steepest_S = 1e9;
   const auto points = string_points(x, sweep.voltage_V);
   VectorXd slopes(static_cast<Index>(points.size()));

@@ -15,7 +15,7 @@
 namespace photorque {
 namespace {
 
-// Where a diode switches that does not.
+// The switching point of a diode that never switches.
 constexpr double never = std::numeric_limits<double>::infinity();
 // Above any voltage.
 constexpr double always = std::numeric_limits<double>::max();

@@ -166,7 +166,8 @@ class ArrayCurve::Search {
     scan_.maxima.push_back(curve_.point(x, y));
   }
 
-  // By d ln P/d ln x: some thousandths of the light turn it round.
+  // Keeps a corner if |d ln P/d ln x| is small: a change of the light by some thousandths may then
+  // make it a maximum.
   void add_corner(const Node& at) {
     constexpr double nearly_level = 0.1;
     if (std::abs(at.power_slope()) * at.x > nearly_level * at.power_W()) return;

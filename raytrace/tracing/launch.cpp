@@ -82,7 +82,7 @@ struct LandingGrid {
   uint32_t bits;  // per side
   float x_low, y_low, x_scale, y_scale;
 
-  // From some rays of the batch.
+  // Makes the grid from some rays of the batch.
   LandingGrid(const LaunchPlan& plan, uint32_t batch, const Landing& some)
       : bits(cell_bits(batch)) {
     const auto [x_least, x_most] = std::minmax_element(some.x.begin(), some.x.end());

@@ -279,9 +279,9 @@ std::optional<double> attitude_error_rad(const PropagationRun& run, const Rotati
   return bound_rad;
 }
 
-// Where a table is further off than it was asked to be and noise explains, or nothing. Deviations
-// have the noise of a trace and of the table: 1.4 times that of one trace in the mean, five times
-// at the worst of some dozens.
+// Messages for quantities whose deviation exceeds both the tolerance of the table and the noise.
+// Deviations have the noise of a trace and of the table: 1.4 times that of one trace on average,
+// five times for the largest of some dozens.
 std::vector<std::string> missed_tolerance(const RotationTable& table, double tolerance) {
   constexpr double mean_noises = 2.0, most_noises = 5.0;
   const RotationTableError& error = table.error();

@@ -287,7 +287,8 @@ bool Session::take_in(int64_t until_ns) {
   return true;
 }
 
-// Nothing of one session acts in the next: neither its last command nor those on their way.
+// Clears the last command of a session and those in the simulated link, so that none of them acts
+// in the next session.
 void Session::end_command() {
   acting_ = {};
   from_client_.clear();

@@ -20,7 +20,7 @@
 namespace photorque {
 namespace {
 
-// Of maps on surfaces in layers: the light of all shares its bins.
+// Notices for maps on surfaces in several layers, whose light is summed in the same bins.
 void add_notices_of_layers(Experiment& experiment) {
   constexpr double noticeable = 1e-3;
   for (const NamedReceiver& receiver : experiment.receivers) {

@@ -83,7 +83,7 @@ void print_torques(const WrenchTable& wrenches, const AttitudeGrid& grid, const 
   for (const Vec3& torque : wrenches.torque_body_N_m) {
     largest_N_m = std::max(largest_N_m, torque.cwiseAbs().maxCoeff());
   }
-  // Where everything cancels, rounding stays.
+  // If all torques cancel, only rounding errors remain; they are printed as zero.
   const auto rounded_N_m = [&](double x) { return std::abs(x) < 1e-13 * largest_N_m ? 0.0 : x; };
   for (size_t h = 0; h < grid.heading_rad.size(); ++h) {
     for (size_t t = 0; t < grid.tilt_rad.size(); ++t) {

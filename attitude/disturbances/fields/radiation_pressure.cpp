@@ -66,7 +66,7 @@ constexpr Vec3Key sun_direction_lab(
     {.optional = true});
 }  // namespace key
 
-// With the time's derivatives, where it has any.
+// Converts lanes of values to the type of the time, with its derivatives if it has any.
 Lanes moved(const Lanes&, const Lanes& value, const Lanes&) {
   return value;
 }
@@ -76,7 +76,7 @@ DualLanes moved(const DualLanes& time_s, const Lanes& value, const Lanes& slope)
   return result;
 }
 
-// From the spacecraft to the Sun [au], lab axes.
+// The vector from the spacecraft to the Sun [au], lab axes.
 template <class T>
 Vec3Of<T> towards_sun(const SunPath& sun, const T& time_s) {
   const auto [value, slope] = sun.at(values(time_s));

@@ -234,7 +234,7 @@ const TrackingCamera& camera_of(const Settings& settings, const DisturbanceConte
   return *context.camera;
 }
 
-// Of markers that are elsewhere altogether the law is not the pose's.
+// Reads the errors of the markers, which must be small: the law is valid only near the true pose.
 PlacedParameters read_error_m(const Settings& settings, size_t size, int first) {
   constexpr double most_m = 0.1;
   PlacedParameters group = array_parameter(settings, error_key, size, first);

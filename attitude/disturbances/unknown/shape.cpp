@@ -289,7 +289,7 @@ SmoothTable::SmoothTable(std::vector<double> knots) : knots_(std::move(knots)) {
   for (size_t i = 0; i < knots_.size(); ++i) slopes_.push_back(slope_at(i));
 }
 
-// Of the parabola through three values (Lagrange), at one of their knots.
+// Slope of the parabola through three values (Lagrange) at one of their knots.
 SmoothTable::Slope SmoothTable::slope_at(size_t knot) const {
   Slope slope;
   slope.first = std::clamp<size_t>(knot, 1, knots_.size() - 2) - 1;

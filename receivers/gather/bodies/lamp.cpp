@@ -158,11 +158,11 @@ Exposure BodyLamp::exposure_of(const FacetSide& side) const {
   const Vec3 normal = side.normal();
   const double cosine = -normal.dot(body_from_emitter().direction(Vec3::UnitZ()));
   const double reach_sine = std::sin(std::min(light().reach_rad(), 0.5 * pi));
-  // By the directions of the rays.
+  // Test with the directions of the rays.
   if (cosine <= -reach_sine) return Exposure::none;
   const bool all_directions = cosine > reach_sine && light().reach_rad() < 0.5 * pi;
   if (light().parallel()) return all_directions ? Exposure::whole : Exposure::partly;
-  // By the place of the aperture.
+  // Test with the position of the aperture.
   const Vec3 way = body_from_emitter().translation_m - side.facet->ball.centre_m;
   const double spread_m = light().radius_m() * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
   const double height_m = normal.dot(way);

@@ -25,7 +25,7 @@ EdgeKey key_of(uint32_t instance, const Vec3& a, const Vec3& b) {
           second.z()};
 }
 
-// Where other facets cut through one.
+// The lines at which other facets cut through a facet.
 std::vector<Line> cuts_through(const Facet& facet, const Facets& facets, double rounding_m) {
   std::vector<Line> lines;
   const auto add = [&](const Line& line) {
