@@ -186,7 +186,7 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
   return result;
 }
 
-// Its angles as they are meant.
+// The recording with its angles converted from this convention.
 Recording read_as(const AngleConvention& angles, Recording recording) {
   recording.angle_sequence = angles.sequence;
   for (Channel& channel : recording.channels) {

@@ -102,7 +102,7 @@ std::vector<Quat> attitudes_of(const AttitudeModel& model, const Observation& se
   return leaning(tilt.value_or(0.0), about_z);
 }
 
-// How fast an angle turns at the beginning.
+// The rate of an angle at the beginning.
 double first_slope(const Observation& seen, Scalar scalar) {
   constexpr int most = 10;
   return first_line(seen, scalar, most).slope_1_s;

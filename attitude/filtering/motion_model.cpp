@@ -21,7 +21,7 @@ bool is_of_gyro(const Disturbance& disturbance) {
   return kind != nullptr && kind->instrument == "gyro";
 }
 
-// Only instruments, and effects that the gyro senses in addition to the platform's rate.
+// Whether a disturbance concerns only instruments, or what the gyro senses besides the rate.
 bool is_of_instruments(const Disturbance& disturbance) {
   const DisturbanceKind* kind = find_kind(disturbance.kind);
   return disturbance.stage == Stage::measurement || disturbance.kind == "earth_rotation" ||

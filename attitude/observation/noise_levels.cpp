@@ -210,7 +210,7 @@ void add_powers(const Differences& d, std::vector<double>& powers) {
   constexpr size_t most = 800;
   const size_t frequencies = std::min(most, n / 4);
   for (size_t f = 0; f < frequencies; ++f) {
-    // Below the highest frequency, where there is no phase.
+    // Below the Nyquist frequency, at which a sinusoid has no phase.
     const double angle =
         pi * (0.5 + 0.48 * (static_cast<double>(f) + 0.5) / static_cast<double>(frequencies));
     const std::complex<double> turn = std::polar(1.0, angle);

@@ -114,7 +114,7 @@ std::vector<double> unwrapped_deg(std::vector<double> angle_deg) {
   return angle_deg;
 }
 
-// How far the body went from where it began.
+// Largest distance of the body from its initial position.
 struct Excursion {
   double largest_tilt_rad = 0.0, largest_tilt_at_s = 0.0;
   double yaw_rad = 0.0;  // from the least to the largest, whole turns counted
@@ -137,7 +137,7 @@ Excursion excursion_of(const std::vector<PlatformState>& states) {
   return found;
 }
 
-// Bars that stand on each other: means over each 120th of the run, in percent of the sum of all,
+// Stacked bars: means over each 120th of the run, in percent of the sum of all,
 // the strongest at the bottom.
 std::vector<Plot::Curve> stacked_fractions(const std::vector<double>& t,
                                            const std::vector<std::string>& labels,

@@ -366,7 +366,7 @@ Schedule Recording::schedule() const {
   const std::vector<WheelSpeeds> knots = wheel_speeds(*this);
   size_t next = 0;
   ZeroOrderHold held;
-  // Before its first knot a wheel is on the first line.
+  // Before its first knot, the speed of a wheel is on the line of its first interval.
   if (!knots.empty()) held.wheel = knots.front();
   // An empty cell keeps the previous value.
   const auto update = [](const Channel* channel, size_t row, double& value) {

@@ -67,7 +67,7 @@ struct PowerSupply::Curves {
     for (size_t i = 0; i < curve.size(); ++i) sum += weight[i] * curve[i].open_circuit_V();
     return sum;
   }
-  // Beyond the open circuit the converter's diode lets nothing back.
+  // Above the open-circuit voltage, the diode of the converter blocks.
   double current_A(double voltage_V) const {
     double sum = 0.0;
     for (size_t i = 0; i < curve.size(); ++i) {

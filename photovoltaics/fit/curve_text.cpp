@@ -440,7 +440,7 @@ size_t take_spikes(IvSweep& sweep) {
       ++count;
     }
   }
-  // Many are no accident.
+  // If there are many, they are not outliers.
   if (count * 20 > order.size()) return 0;
   if (count > 0) remove(sweep, out);
   return count;
@@ -492,7 +492,7 @@ CurveCleaning clean_curve(IvSweep& sweep) {
       low = std::min(low, amperes(k));
       high = std::max(high, amperes(k));
     }
-    // How steeply the curve falls before, over a tenth of the short-circuit current at least.
+    // The largest slope before these readings, over at least a tenth of the short-circuit current.
     double steepest_S = 0.0;
     for (size_t k = first; k-- > 0;) {
       const double fall_A = amperes(k) - high;

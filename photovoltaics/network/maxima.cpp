@@ -60,8 +60,8 @@ class ArrayCurve::Search {
   }
 
  private:
-  // How close to the strings' currents their cells are evaluated, as a fraction: for bounds, and
-  // for points, whose currents are exact whatever it is.
+  // Relative tolerance of the strings' currents at which their cells are evaluated: for bounds, and
+  // for points, whose currents are exact with any tolerance.
   static constexpr double near = 1e-6, any = std::numeric_limits<double>::infinity();
 
   struct Bounds {

@@ -180,9 +180,9 @@ BeamSample sample_beam(const Emitter& emitter, const std::optional<Targets>& tar
   return sample;
 }
 
-// Which leading bits the rays of a batch share: those that bring them closest together where they
-// land. Halving the aperture and the directions in turn, whichever spreads the landing points more;
-// of each, the azimuth first.
+// Number of leading bits, in each dimension, that the rays of a batch have in common, so that they
+// land close together. Aperture and directions are halved in turn, whichever spreads the landing
+// points more; in each, the azimuth first.
 std::array<int, sobol_dimensions> shared_bits(int bits, double aperture_m, double spread_m) {
   int of_aperture = 0, of_direction = 0;
   while (of_aperture + of_direction < bits) {

@@ -82,7 +82,7 @@ class EarClipper {
     return 0;
   }
 
-  // Only its neighbours may have become ears, or none any more.
+  // Only the neighbours of the removed corner may change between ear and no ear.
   void cut(size_t i) {
     triangles_.push_back({left_[before(i)], left_[i], left_[after(i)]});
     left_.erase(left_.begin() + static_cast<ptrdiff_t>(i));

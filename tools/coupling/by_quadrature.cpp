@@ -72,7 +72,7 @@ class SunlitDirections final : public LightDirections {
   }
 
  private:
-  // How far rays are off in directions that the table does not have, and how far they may be.
+  // Prints the difference between table and rays in other directions, and its expected size.
   void say(double stated_N_m, const WrenchTable& table, const Console& console, int threads,
            std::vector<std::string>& warnings) const {
     constexpr size_t fresh = 16;

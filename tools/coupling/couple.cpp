@@ -74,7 +74,7 @@ void CheckpointFile::write(const std::string& identity, double table_tilt_rad,
   const std::string tilt = shortest(table_tilt_rad);
   const std::string head = std::string(checkpoint_format) + "\n" + tilt + "\n" +
                            hash_of_run(identity, tilt) + "\n" + content_hash(state) + "\n";
-  // Not at once again if this fails.
+  // Restarts the interval first, so that a failed write is not repeated immediately.
   wait();
   write_file_whole(path_, [&](const std::filesystem::path& temporary) {
     std::ofstream out(temporary, std::ios::binary);
@@ -306,11 +306,11 @@ class KeptState {
     if (file_ != nullptr) kept_ = file_->read(identity_);
   }
 
-  // How far the table of light reached in the run that was broken off.
+  // The range of the table of light in the interrupted run.
   std::optional<double> table_tilt_rad() const {
     return kept_ ? std::optional(kept_->table_tilt_rad) : std::nullopt;
   }
-  // The state that was kept, once: the first run goes on from it.
+  // The stored state, once: the first run continues from it.
   std::optional<std::string> take() {
     if (!kept_) return {};
     console_.line("goes on from " + file_->path().string());

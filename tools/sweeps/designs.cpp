@@ -38,7 +38,7 @@ std::vector<Figure> mean_of(const SweepPlan& plan, std::span<const RunOutcome> r
   return mean;
 }
 
-// How far a figure is inside of its limits; negative: outside.
+// Distance of a figure from its limits; negative outside.
 double margin(const Constraint& constraint, double value) {
   return std::min(value - constraint.at_least, constraint.at_most - value);
 }

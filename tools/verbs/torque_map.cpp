@@ -221,7 +221,7 @@ void run(const Options& options, const Program&) {
         torque_map_page(*run.run, run.wrenches, run.result, std::move(stage), page_head(options)));
   }
   write_results(options, console, run.result);
-  // Its work is done and stands in the results.
+  // The results are complete, so that the checkpoint is not needed.
   std::error_code stays;
   if (checkpoint) std::filesystem::remove(checkpoint->path(), stays);
 }

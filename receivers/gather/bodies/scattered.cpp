@@ -40,7 +40,7 @@ Starts starts_of(const Facet& facet, const Cell& cell, const Vec3& normal,
   return starts;
 }
 
-// Which of at most a block of places have something closely above them.
+// Whether another surface is close above each of at most a block of points.
 std::vector<bool> covered_of(const TraceableScene& scene, std::span<const Vec3> at_m,
                              const Vec3& normal, double close_m) {
   std::array<ShadowRay, sobol_block> rays;
