@@ -16,7 +16,8 @@ struct CameraStudy {
   double max_tilt_rad = 0.5235987756;
   Vec3 rate_body_rad_s = Vec3::Zero();  // of the platform while images are taken
   double calibration_px = 0.1;
-  // Beyond that of the camera's own error: uncalibrated, radial alone and tangential alone.
+  // Uncalibrated distortion in addition to that of the camera; its radial and tangential parts are
+  // studied separately.
   Distortion distortion_error = {-0.1, 0.0, 1e-3, 1e-3};
   int images = 1000;  // simulated at each attitude of take_images()
   uint64_t seed = 1;

@@ -12,8 +12,8 @@ namespace photorque {
 using InertiaNumbers = Eigen::Matrix<double, 6, 1>;
 
 struct FreeInertia {
-  // In units of the mean moment, so that a third of the trace is one: torque-free motion depends on
-  // the ratios only.
+  // Inertia in units of the mean moment, so that a third of the trace is one: torque-free motion
+  // depends on the ratios only.
   InertiaNumbers value = InertiaNumbers::Zero();
   // Covariance of `value`; singular, because the trace is fixed.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();

@@ -10,7 +10,7 @@ double in_arcsec(double rad);
 double rms_sigma_rad(const std::vector<AttitudeEstimate>& estimates);
 // The first row that counts in error statistics: earlier rows depend mainly on the first attitude.
 size_t settled_row(size_t rows);
-// Every so many rows make a few thousand.
+// Interval of rows with which a plot has a few thousand points.
 size_t thinning(size_t rows);
 
 Table ways_table(const std::vector<Ingredients>& ways, const TruthTrack& truth);
