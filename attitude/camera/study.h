@@ -16,7 +16,7 @@ struct CameraStudy {
   double max_tilt_rad = 0.5235987756;
   Vec3 rate_body_rad_s = Vec3::Zero();  // of the platform while images are taken
   double calibration_px = 0.1;
-  // Uncalibrated distortion in addition to that of the camera; its radial and tangential parts are
+  // Error of the distortion in addition to that of the camera; its radial and tangential parts are
   // studied separately.
   Distortion distortion_error = {-0.1, 0.0, 1e-3, 1e-3};
   int images = 1000;  // simulated at each attitude of take_images()

@@ -28,8 +28,8 @@ struct SmoothWrench {
   std::vector<double> at_node;  // six numbers for each node of the table
 };
 
-// Of the nodes of a table of azimuths evenly all round (the first may be there again after a whole
-// turn) and of elevations from pole to pole.
+// Smooths the values at the nodes of a table with equally spaced azimuths over the whole circle
+// (the first may be repeated at the end) and elevations from pole to pole.
 SmoothWrench smooth_over_sphere(const WrenchTable& table, std::span<const TwofoldWrench> wrenches);
 
 }  // namespace photorque
