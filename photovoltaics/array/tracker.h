@@ -9,10 +9,10 @@
 
 namespace photorque {
 
-// Photocurrents of every cell over time, linear between the instants and constant outside them.
+// Photocurrents of every cell over time, straight between the instants and constant outside them.
 struct LightHistory {
-  std::vector<double> time_s;                        // strictly rising, at least one
-  std::vector<std::vector<double>> photocurrents_A;  // per instant, in the order of the cells
+  std::vector<double> time_s;                        // rises strictly, at least one
+  std::vector<std::vector<double>> photocurrents_A;  // per instant, as the wiring's cells
 
   std::vector<double> at(double time_s) const;
 };
@@ -21,21 +21,22 @@ struct LightHistory {
 // voltage.
 struct Tracker {
   enum class Kind {
-    // Steps the voltage in one direction while the power rises, else reverses the direction.
+    // Keep stepping while the power rises, else turn round.
     perturb_and_observe,
-    // Steps towards dI/dV = −I/V and stops there (K. H. Hussein et al., IEE Proc. 142, 59 (1995)).
+    // Step towards dI/dV = −I/V (K. H. Hussein et al., IEE Proc. 142, 59 (1995)); stands still
+    // there.
     incremental_conductance,
-    // As perturb_and_observe. At the start, and when the power has changed by `rescan_fraction`
-    // since the last sweep, it sweeps the whole range and continues at the best point.
+    // Perturb and observe; at the start, and whenever the power has changed by `rescan_fraction`
+    // since the last sweep, sweep the whole range and continue at the best point.
     global_scan,
-    // Sweeps the whole range every `sweep_every_s` and keeps the best voltage in between.
+    // Sweep the whole range every `sweep_every_s` and stay at the best voltage between.
     periodic_sweep,
   };
   Kind kind = Kind::perturb_and_observe;
   double period_s = 0.1;        // between two decisions, > 0
-  double step_fraction = 0.01;  // voltage step, as a fraction of the voltage range
-  double start_fraction = 0.8;  // initial voltage of kinds that do not scan, likewise
-  int sweep_points = 40;        // number of points of a sweep, one period each
+  double step_fraction = 0.01;  // of the range of voltages
+  double start_fraction = 0.8;  // of the range, the start of all but the scanning kinds
+  int sweep_points = 40;        // of one sweep, one period each
   double sweep_every_s = 60.0;
   double rescan_fraction = 0.05;
 };
@@ -44,15 +45,15 @@ std::vector<Tracker::Kind> all_tracker_kinds();
 
 struct TrackerRun {
   Tracker tracker;
-  double efficiency = 1.0;  // energy divided by that at the global maximum
+  double efficiency = 1.0;  // energy over that at the global maximum
   double energy_J = 0.0, best_energy_J = 0.0;
-  double false_maximum_s = 0.0;  // time near a local maximum other than the global one
+  double false_maximum_s = 0.0;  // on the slope of another maximum than the global one
   double duration_s = 0.0;
   std::vector<double> time_s, voltage_V, power_W, best_W, best_V;
 };
 
 // Runs each tracker over the history, from its first to its last instant, on the exact curves.
-// Trackers with equal periods share the computation of the true maxima.
+// Several trackers share the work of finding the true maxima if their periods are equal.
 std::vector<TrackerRun> run_trackers(const std::vector<Tracker>& trackers,
                                      const ArrayWiring& wiring, const CellTables& tables,
                                      const LightHistory& light);
