@@ -40,7 +40,8 @@ double squared_variation(const SurfaceGrid& grid, std::span<const double> power_
 
 Estimate square_root(const Estimate& square) {
   const double root = std::sqrt(std::max(0.0, square.value));
-  // Below its own error the root is no longer linear in the square; it is of the size of √error.
+  // If the square is below its error, the root is not linear in it; its error is of the order of
+  // √error.
   const double slope = std::max(root, std::sqrt(square.standard_error));
   return {root, slope > 0.0 ? square.standard_error / (2.0 * slope) : 0.0};
 }

@@ -101,7 +101,7 @@ void HitBinner::collect(const Hits& hits, BinnedHits& out) const {
   }
 }
 
-// Those of a run on one instance whose triangles are turned the right way.
+// Adds the hits of a run on one instance whose triangles face the right way.
 void HitBinner::collect_turned(const Hits& hits, BinnedHits::Run all, BinnedHits& out) const {
   const uint8_t* turned = turned_towards_.data() + first_face_[hits.instance[all.begin]];
   for (uint32_t begin = all.begin, end = 0; begin < all.end; begin = end + 1) {

@@ -70,7 +70,7 @@ Product InsideLightReceiver::product(const BinSums& sums) const {
 std::string describe_inside_light(const Scene& scene,
                                   const std::vector<InsideLightReceiver::Part>& lit,
                                   double emitted_W) {
-  // Of ten million rays, the few that meet an edge exactly may pass it.
+  // A few of ten million rays may leak exactly at an edge.
   constexpr double rounding = 1e-6;
   constexpr size_t max_named = 3;
   std::ostringstream line;

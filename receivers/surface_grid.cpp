@@ -115,8 +115,8 @@ void measure_areas(SurfaceGrid& grid, const Scene& scene, std::span<const Surfac
         (grid.u_high - grid.u_low) * (grid.v_high - grid.v_low) / static_cast<double>(grid.bins());
     for (const double seen : seen_m2) grid.overlapping_m2 += std::max(0.0, seen - bin_m2);
   }
-  // Where an edge of the surface lies on a line of the grid, rounding spills a sliver over it; that
-  // is no surface.
+  // If an edge of the surface is on a line of the grid, rounding puts a sliver into the next bin;
+  // such slivers are removed.
   const double largest_m2 = *std::max_element(grid.area_m2.begin(), grid.area_m2.end());
   for (double& area_m2 : grid.area_m2) {
     if (area_m2 < 1e-11 * largest_m2) area_m2 = 0.0;
@@ -258,7 +258,8 @@ Halves cut(const Piece& piece, int axis, double at) {
   return halves;
 }
 
-// Of the whole triangle, whose barycentric coordinates enclose an area of one half.
+// Area of a piece as a fraction of its triangle, whose barycentric coordinates enclose an area of
+// one half.
 double area_fraction(std::span<const Vec2> piece) {
   double twice_area = 0.0;
   for (size_t i = 2; i < piece.size(); ++i) {

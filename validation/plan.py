@@ -1,4 +1,4 @@
-"""The plan of a benchmark: table [prove] of its settings file; docs/proof.md says what the keys mean."""
+"""The plan of a benchmark: table [prove] of its settings file; docs/proof.toml explains the keys."""
 
 import dataclasses
 import math

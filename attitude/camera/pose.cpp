@@ -90,7 +90,7 @@ namespace {
 
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-// How the pose answers to each marker's image: rotation by pixel.
+// Derivatives of the estimated pose with respect to the image of each marker, in radians per pixel.
 struct Answer {
   std::vector<Eigen::Matrix<double, 3, 2>> by_reading;
   Mat3 covariance_rad2;

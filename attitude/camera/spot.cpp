@@ -10,8 +10,8 @@
 namespace photorque {
 namespace {
 
-// How much of a Gaussian falls into a pixel whose middle lies `from_centre` away, and its
-// derivative by the centre.
+// Fraction of a Gaussian within a pixel whose centre is at a distance of `from_centre`, and its
+// derivative with respect to the centre of the Gaussian.
 struct Slice {
   double part, slope;
 };

@@ -114,7 +114,7 @@ Table degradation_table(const CameraStudy& study) {
   radial.marker_error_body_m = tangential.marker_error_body_m = {};
   radial.distortion_error = {d.k1, d.k2, 0.0, 0.0};
   tangential.distortion_error = {0.0, 0.0, d.p1, d.p2};
-  // Of one attitude it is one turn, not a spread.
+  // For one attitude, the bias is one rotation, not a scatter.
   const auto square_of_bias = [](const TrackingCamera& camera,
                                  const Pose& pose) -> std::optional<Mat3> {
     const auto turn_rad = marker_bias_lab_rad(camera, pose);
@@ -270,8 +270,8 @@ struct Wanted {
 constexpr Wanted wanted[] = {{"12 ± 1 arcsec in plane", 12.0, 1.0},
                              {"37 ± 2 arcsec out of plane", 37.0, 2.0}};
 
-// Where a map has the value, as focal length over distance of the markers: the lens at which it is
-// reached, row by row of the map, by straight lines between its bins.
+// The curve on which the map has the value `level`: the focal length for each distance of the
+// markers, interpolated linearly between the bins of each row.
 Plot::Curve level_curve(const Map& map, double level) {
   Plot::Curve curve;
   const auto width = static_cast<size_t>(map.width);

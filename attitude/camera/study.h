@@ -1,5 +1,5 @@
-// The design question of a tracking camera: how well it knows the attitude, over tilt, over board
-// and lens, with a marker dark, with errors of calibration, and whether images bear that out.
+// Design study of a tracking camera: attitude error over tilt, board and lens, with one marker
+// dark, and with calibration errors. Simulated images test the predicted errors.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,8 @@ struct CameraStudy {
   double max_tilt_rad = 0.5235987756;
   Vec3 rate_body_rad_s = Vec3::Zero();  // of the platform while images are taken
   double calibration_px = 0.1;
-  // Beyond that of the camera's own error: uncalibrated, radial alone and tangential alone.
+  // Error of the distortion in addition to that of the camera; its radial and tangential parts are
+  // studied separately.
   Distortion distortion_error = {-0.1, 0.0, 1e-3, 1e-3};
   int images = 1000;  // simulated at each attitude of take_images()
   uint64_t seed = 1;

@@ -169,8 +169,8 @@ std::optional<MarkerView> view_of(const TrackingCamera& camera, size_t index, co
   MarkerView view;
   view.marker = index;
   Vec3 arm_m = arm_lab_m, seen_m;
-  // The row that the marker falls on says when it is exposed: two rounds, because the second moves
-  // it by less than the rate times the line time squared.
+  // The row of the marker's image determines the time of its exposure, and this time the image. Two
+  // rounds suffice: the second changes the time by less than the rate times the line time squared.
   for (int round = 0; round < (camera.line_time_s > 0.0 ? 3 : 1); ++round) {
     const double late_s = camera.line_time_s * view.pixel.y();
     arm_m = turn_by(late_s * pose.rate_lab_rad_s) * arm_lab_m;

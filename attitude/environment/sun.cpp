@@ -56,17 +56,17 @@ struct Direction {
   Lanes cosine, sine;
 };
 
-// Of an angle and a small step more, to the fourth power of the step.
+// The direction after a small further rotation, to the fourth power of the step.
 Direction turned(const Direction& from, const Lanes& step_rad) {
   const Lanes square = step_rad * step_rad, c = 1.0 - 0.5 * square,
               s = step_rad * (1.0 - square / 6.0);
   return {c * from.cosine - s * from.sine, c * from.sine + s * from.cosine};
 }
 
-// Of the eccentric anomaly, by Newton's steps and Halley's near the end. They start from the series
-// to the third order in the eccentricity, or, where that is no approximation any more, from the
-// aphelion: between there and the root Kepler's equation is convex, and Newton's steps do not pass
-// the root.
+// Solves Kepler's equation for the eccentric anomaly with Newton's method, and Halley's near the
+// end. The start is the series to third order in the eccentricity. If this is inaccurate, it is the
+// aphelion: between it and the root, Kepler's equation is convex, and Newton steps do not pass the
+// root.
 Direction eccentric_anomaly(const Lanes& any_mean_rad, double eccentricity) {
   const auto to_nearest_turn = [](double x) {
     return x - 2.0 * pi * std::nearbyint(x / (2.0 * pi));
@@ -228,7 +228,7 @@ Mat3 Pointing::lab_from_equatorial() const {
   const double c = std::cos(declination_rad);
   const Vec3 towards(c * std::cos(right_ascension_rad), c * std::sin(right_ascension_rad),
                      std::sin(declination_rad));
-  // At the pole itself north is the direction from which right ascension counts, reversed.
+  // At the pole, north is opposite to the direction of the right ascension.
   const Vec3 north(-std::sin(declination_rad) * std::cos(right_ascension_rad),
                    -std::sin(declination_rad) * std::sin(right_ascension_rad), c);
   const Vec3 next = std::cos(roll_rad) * north + std::sin(roll_rad) * towards.cross(north);

@@ -14,9 +14,9 @@
 namespace photorque {
 namespace {
 
-// Disagreement below which nothing is wrong: scale errors, misalignments and biases stay far below.
+// Largest disagreement of the right convention; scale errors, misalignments and biases cause less.
 constexpr double agrees = 0.2;
-// A bias that an instrument may have.
+// A gyro bias that is not evidence of a wrong convention.
 constexpr double usual_bias_rad_s = 0.01;
 
 enum class QuaternionReading { as_is, conjugated, scalar_last, scalar_last_conjugated };
@@ -24,7 +24,7 @@ enum class QuaternionReading { as_is, conjugated, scalar_last, scalar_last_conju
 Quat read(const Quat& q, QuaternionReading reading) {
   const bool last = reading == QuaternionReading::scalar_last ||
                     reading == QuaternionReading::scalar_last_conjugated;
-  // The columns were taken as w, x, y, z; with the scalar last they are x, y, z, w.
+  // The columns were read as w, x, y, z; with the scalar last they are x, y, z, w.
   const Quat in_order = last ? Quat(q.z(), q.w(), q.x(), q.y()) : q;
   const bool conjugated = reading == QuaternionReading::conjugated ||
                           reading == QuaternionReading::scalar_last_conjugated;
@@ -51,7 +51,8 @@ double usual_rate_rad_s(const Observation& seen) {
   return *middle;
 }
 
-// Attitudes about a second apart, or a radian where it turns faster, and the mean rate between.
+// Pairs of attitudes that differ by about one second, or one radian if the body rotates faster, and
+// the mean rate of the gyro between them.
 std::vector<Pair> pairs_of(const Observation& seen) {
   const double interval_s = 1.0 / std::max(1.0, usual_rate_rad_s(seen));
   constexpr size_t most = 400;
@@ -75,7 +76,7 @@ std::vector<Pair> pairs_of(const Observation& seen) {
   return all;
 }
 
-// Mean over the axes of the mean square difference over the mean square rate.
+// Mean over the axes of: mean square difference of the rates divided by their mean square.
 double disagreement(const std::vector<Pair>& pairs, QuaternionReading reading,
                     const Mat3& gyro_matrix) {
   Vec3 mean = Vec3::Zero(), square = Vec3::Zero(), energy = Vec3::Zero();
@@ -99,7 +100,7 @@ double disagreement(const std::vector<Pair>& pairs, QuaternionReading reading,
 
 struct GyroReading {
   Mat3 matrix;
-  int changes;  // how many axes are not as named
+  int changes;  // number of changed or reversed axes, plus one for another unit
   std::string text;
 };
 
@@ -154,7 +155,7 @@ std::string text_of(QuaternionReading reading) {
 void read_gyro_as(const Mat3& matrix, Observation& seen) {
   const Mat3 from = matrix.cwiseSign().cwiseAbs();
   for (size_t i = 0; i < seen.blocks(); ++i) {
-    // An axis that was not read stays so, without making the others nothing.
+    // A missing axis remains missing and does not affect the others.
     const Vec3 read = (seen.gyro_rows[i].array() > 0.0).select(seen.gyro_rad_s[i], Vec3::Zero());
     seen.gyro_rows[i] = from * seen.gyro_rows[i];
     seen.gyro_rad_s[i] =
@@ -162,7 +163,7 @@ void read_gyro_as(const Mat3& matrix, Observation& seen) {
   }
 }
 
-// The rates of all three axes and how they change, by straight lines through seven neighbours.
+// The rates of all three axes and their derivatives, from straight lines through seven readings.
 struct Change {
   Vec3 rate_rad_s, slope_rad_s2;
 };
@@ -189,7 +190,7 @@ std::vector<Change> changes_of(const Observation& seen) {
   return all;
 }
 
-// Mean square of I ω' + ω × I ω over that of I ω', in the units that `gyro` makes of the readings.
+// Mean square of I ω' + ω × I ω divided by that of I ω', with the rates converted by `gyro`.
 double disagreement(const std::vector<Change>& changes, const Mat3& inertia_kg_m2,
                     const Mat3& gyro) {
   double off = 0.0, all = 0.0;
@@ -205,7 +206,7 @@ double disagreement(const std::vector<Change>& changes, const Mat3& inertia_kg_m
 
 namespace {
 
-// Axes of wheels whose moment of inertia comes out negative.
+// The axes of wheels with a negative estimated moment of inertia.
 std::array<bool, 3> reversed_wheels(const FreeInertia& found) {
   constexpr double sigmas = 5.0;
   std::array<bool, 3> reversed{};
@@ -215,7 +216,7 @@ std::array<bool, 3> reversed_wheels(const FreeInertia& found) {
   return reversed;
 }
 
-// The names of the columns that were turned.
+// Reverses the speeds of these wheels and returns the names of their columns.
 std::string turn_wheels(const std::array<bool, 3>& reversed, std::span<Observation> segments) {
   std::string names;
   for (int k = 0; k < 3; ++k) {
@@ -231,13 +232,13 @@ std::string turn_wheels(const std::array<bool, 3>& reversed, std::span<Observati
   return names;
 }
 
-// An interpretation of the gyro, and the inertia that the rates then give.
+// An interpretation of the gyro, and the inertia that follows from the rates under it.
 struct FreeReading {
   GyroReading gyro;
   FreeInertia inertia;
 
-  // The cost of assuming this inertia: changes, and steps of a fifth of the mean moment from what
-  // is stated.
+  // The cost of this interpretation: the number of changes, plus the squared deviation from the
+  // stated inertia in units of a fifth of the mean moment.
   double cost(const Mat3& inertia_kg_m2) const {
     constexpr double step = 0.2;
     const Vec3 stated = 3.0 / inertia_kg_m2.trace() * inertia_kg_m2.diagonal();
@@ -247,7 +248,7 @@ struct FreeReading {
   }
 };
 
-// All readings of the gyro under which the rates follow some inertia at all.
+// All interpretations of the gyro under which the rates are consistent with some inertia.
 std::vector<FreeReading> free_readings(std::span<const Observation> segments) {
   constexpr size_t most = 600;
   std::vector<Observation> rows;
@@ -261,10 +262,10 @@ std::vector<FreeReading> free_readings(std::span<const Observation> segments) {
   return all;
 }
 
-// The reading to be taken: that of the header unless another leaves far less.
+// The best interpretation: that of the header, unless another has a far smaller residual.
 const FreeReading* best_reading(const std::vector<FreeReading>& all, const Mat3& inertia_kg_m2) {
-  // Below `good` the header's reading is good; the others have to be so much better, and those that
-  // leave as much are chosen among.
+  // `good`: residual below which the header is accepted. `better`: ratio by which another must be
+  // smaller. `alike`: ratio within which interpretations are equivalent, so that the cost decides.
   constexpr double good = 0.05, better = 1.0 / 3.0, alike = 1.2;
   const FreeReading* as_is = nullptr;
   const FreeReading* best = nullptr;
@@ -285,7 +286,7 @@ const FreeReading* best_reading(const std::vector<FreeReading>& all, const Mat3&
   return taken;
 }
 
-// Without trust in the stated inertia.
+// Repairs the conventions with an inertia estimated from the rates, ignoring the stated one.
 std::string repair_by_any_inertia(std::span<Observation> segments, const Mat3& inertia_kg_m2) {
   const std::vector<FreeReading> all = free_readings(segments);
   const FreeReading* taken = best_reading(all, inertia_kg_m2);
@@ -316,7 +317,7 @@ std::string repair_free_rates(std::span<Observation> segments, const Mat3& inert
   }
   if (changes.size() < fewest) return "";
   const double as_is = disagreement(changes, inertia_kg_m2, Mat3::Identity());
-  // The body's inertia explains half of the change of the rates: torques may explain the rest.
+  // The stated inertia explains half of the change of the rates; torques may explain the rest.
   if (as_is < 0.5) {
     const auto found = free_inertia({segments.begin(), segments.end()}, FreeDrag::none);
     if (!found || found->left > agrees) return "";
@@ -414,7 +415,7 @@ std::string repair_conventions(std::span<Observation> segments) {
         QuaternionReading::scalar_last_conjugated}) {
     for (const GyroReading& gyro : gyro_readings()) {
       const double d = disagreement(pairs, reading, gyro.matrix);
-      // Of readings that agree as well the one with fewest changes.
+      // Among interpretations that agree equally well, the one with the fewest changes is used.
       const double cost =
           d + 0.01 * (gyro.changes + static_cast<int>(reading != QuaternionReading::as_is));
       if (cost >= best_cost) continue;

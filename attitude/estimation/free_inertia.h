@@ -1,4 +1,4 @@
-// The moments of inertia of a body that turns freely, up to their scale, from its rates alone.
+// The inertia tensor of a freely rotating body, up to a common factor, from its rates alone.
 #pragma once
 
 #include <optional>
@@ -12,34 +12,34 @@ namespace photorque {
 using InertiaNumbers = Eigen::Matrix<double, 6, 1>;
 
 struct FreeInertia {
-  // In units of the mean moment: a third of the trace is one, because torque-free motion is the
-  // same for all bodies of equal ratios.
+  // Inertia in units of the mean moment, so that a third of the trace is one: torque-free motion
+  // depends on the ratios only.
   InertiaNumbers value = InertiaNumbers::Zero();
-  // Of the values; singular, because their trace is given.
+  // Covariance of `value`; singular, because the trace is fixed.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  // Moments of the wheels about x, y and z in the same unit, with their errors; zero where none was
-  // measured. A negative one means that the wheel's speed was read with the wrong sign.
+  // Moments of inertia of the wheels about x, y and z in the same unit, with their standard errors;
+  // zero if the speed was not measured. A negative value indicates the wrong sign of the speed.
   Vec3 wheel = Vec3::Zero(), wheel_sigma = Vec3::Zero();
-  // The unexplained part: root mean square of the residual over that of the change of the body's
-  // angular momentum in body axes. 0 for exact readings, about 1 and more where the rates follow no
-  // such law.
+  // The unexplained fraction: root mean square of the residual divided by that of the change of the
+  // body's angular momentum in body axes. 0 for exact readings, about 1 or more if the rates do not
+  // obey the law below.
   double left = 0.0;
 
   double sigma(int k) const { return std::sqrt(covariance(k, k)); }
 };
 
-// Whether a drag by the square of the rate about each axis is fitted beside the inertia.
+// Whether a drag proportional to the square of the rate is fitted too, one coefficient per axis.
 enum class FreeDrag { fitted, none };
 
-// From the pieces of one recording, each with its own angular momentum. With
+// Fits the tensor to the segments of one recording, each with its own angular momentum. The law is
 //
 //   I ω(t) + h(t) + ∫ ω × (I ω + h) dt + Σ_k d_k ∫ |ω| ω_k e_k dt = constant,
 //
-// h = Σ_k J_k Ω_k(t) e_k of the wheels whose speed was measured and d_k a drag by the square of the
-// rate about each axis, nothing has to be differentiated and all unknowns enter linearly (the
-// body's largest column is given the coefficient one). Standard errors follow from the residuals,
-// which count once per correlation time. Nothing where a command acted, where an axis was not read
-// in 20 rows at least, or where a negative moment comes out: then something else turns the body.
+// with h = Σ_k J_k Ω_k(t) e_k, the momentum of the wheels whose speed was measured, and a quadratic
+// drag d_k about each axis. It contains no derivatives, and all unknowns are linear (the largest
+// column of the body has the coefficient one). Standard errors follow from the residuals, of which
+// one per correlation time is independent. Empty if a command acted, if an axis has fewer than 20
+// readings, or if a moment is negative, which indicates an external torque.
 std::optional<FreeInertia> free_inertia(const std::vector<Observation>& pieces,
                                         FreeDrag drag = FreeDrag::fitted);
 

@@ -56,7 +56,7 @@ size_t first_block(const Observation& seen, size_t from, const Read& is_read) {
   return i;
 }
 
-// From the first attitude to the next.
+// The mean rate between the first attitude and the next.
 Vec3 rate_between_attitudes_rad_s(const Observation& seen, size_t first, size_t next) {
   if (next >= seen.blocks()) return Vec3::Zero();
   const Vec3 rate_lab = rotation_vector(seen.attitude[next] * seen.attitude[first].conjugate()) /

@@ -58,7 +58,7 @@ double usual_of(const std::vector<double>& sizes) {
   return static_cast<double>(steps.size()) < fewest ? usual : median_of(steps);
 }
 
-// Of each the largest of the medians over so many about it, before them and after them.
+// For each value, the largest of three medians: of the values around it, before it and after it.
 std::vector<double> usual_nearby(const std::vector<double>& sizes) {
   constexpr size_t group = 32;
   const size_t groups = std::max<size_t>(1, sizes.size() / group);
@@ -76,9 +76,9 @@ std::vector<double> usual_nearby(const std::vector<double>& sizes) {
   return usual;
 }
 
-// Rows at which the angle about the one axis, or the path of a sliding body, has a kink that its
-// own readings do not know: an unrecorded firing, a wall. Noise and torques make those nearby
-// alike; what has decayed later says nothing of the beginning.
+// Rows at which the angle about the one axis, or the path of a sliding body, has a kink without a
+// recorded event: an unrecorded firing, a wall. The threshold follows from the readings nearby,
+// because a motion that has decayed later is not representative of the beginning.
 std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   std::vector<char> kinks(rows.blocks(), 0);
   const bool slides = platform.slides();
@@ -118,7 +118,7 @@ std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   for (const Change& change : changes) sizes.push_back(change.rate);
   const double usual = usual_of(sizes);
   const std::vector<double> nearby = usual_nearby(sizes);
-  // Of a Gaussian, 12 of these medians are 8 standard deviations.
+  // For a Gaussian, 12 times this median is 8 standard deviations.
   constexpr double medians = 12.0;
   for (size_t i = 0; i < changes.size(); ++i) {
     kinks[changes[i].row] = changes[i].rate > medians * std::max(usual, nearby[i]) ? 1 : 0;
@@ -186,7 +186,7 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
   return result;
 }
 
-// Its angles as they are meant.
+// The recording with its angles converted from this convention.
 Recording read_as(const AngleConvention& angles, Recording recording) {
   recording.angle_sequence = angles.sequence;
   for (Channel& channel : recording.channels) {
@@ -319,8 +319,8 @@ std::vector<Break> changes_of(const AxisRates& read, size_t window) {
   return changes;
 }
 
-// Of changes that stand out from all the others (a law that swings has them everywhere) the most
-// significant of its neighbours each.
+// The changes of slope that are far larger than all others. Of neighbouring ones, only the most
+// significant is kept. An oscillating law has such changes everywhere and therefore no breaks.
 std::vector<Break> breaks_of(const AxisRates& read, size_t window) {
   constexpr double least_standard_errors = 10.0, least_share = 0.5, least_medians = 8.0;
   const std::vector<Break> changes = changes_of(read, window);

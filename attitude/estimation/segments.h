@@ -32,8 +32,7 @@ Segments observe_segments(const Recording& recording, const std::string& name,
 // effects over such a span ends.
 void refuse_jump_of_clock(const Recording& recording, const std::string& name);
 
-// Where a machine that turns about one axis ceases to follow one law: the drive that spun it up is
-// released, a hand brakes it.
+// Detection of changes of the law of rotation about one axis: a drive is released, a hand brakes.
 
 // Rows [first, last) in which the rate follows one law.
 struct LawfulSegment {

@@ -65,7 +65,8 @@ Quat attitude_from_two(const Vec3& first_lab, const Vec3& second_lab, const Vec3
   return Quat(Mat3(frame(first_lab, second_lab) * frame(first_body, second_body).transpose()));
 }
 
-// By weight and field; without a field in four headings.
+// Initial attitudes from the measured directions of gravity and magnetic field. With only one of
+// them, four rotations about its direction.
 std::vector<Quat> attitudes_by_fields(const AttitudeModel& model, const Observation& seen) {
   const auto force = first_of_three(seen, Scalar::accelerometer_x);
   const auto field = first_of_three(seen, Scalar::magnetometer_x);
@@ -101,7 +102,7 @@ std::vector<Quat> attitudes_of(const AttitudeModel& model, const Observation& se
   return leaning(tilt.value_or(0.0), about_z);
 }
 
-// How fast an angle turns at the beginning.
+// The rate of an angle at the beginning.
 double first_slope(const Observation& seen, Scalar scalar) {
   constexpr int most = 10;
   return first_line(seen, scalar, most).slope_1_s;

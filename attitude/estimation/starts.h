@@ -1,4 +1,4 @@
-// Where runs begin that show neither their attitude nor their rates: searched among many starts.
+// Initial conditions of runs without readings of attitude and rates: a search over many starts.
 #pragma once
 
 #include <vector>

@@ -69,7 +69,7 @@ RunErrors run_errors(const std::vector<AttitudeEstimate>& estimates, const Truth
     nees += normalised.chi2 / std::max(1, normalised.numbers);
     inside += chi2_band_95(normalised.numbers).holds(normalised.chi2) ? 1.0 : 0.0;
   }
-  // Of nothing there is no mean: NaN.
+  // Without values the mean is NaN.
   const auto count = static_cast<double>(errors.rows);
   errors.rms_attitude_rad = std::sqrt(square_rad2 / count);
   errors.rms_rate_rad_s = std::sqrt(rate_rad2_s2 / static_cast<double>(rates));

@@ -11,7 +11,7 @@
 
 namespace photorque {
 
-// The true values at the rows; nothing where it is not.
+// The true values at one row, as far as they are known.
 struct TruthAtRow {
   Quat lab_from_body = Quat::Identity();
   std::optional<Vec3> rate_body_rad_s;
@@ -27,15 +27,15 @@ NormalisedError normalised_error(const AttitudeEstimate& estimate, const TruthAt
 // Angle between them.
 double attitude_error_rad(const AttitudeEstimate& estimate, const TruthAtRow& truth);
 
-// Where 95 % of a chi-square variable of so many degrees of freedom lie, between its 2.5 % and
-// 97.5 % quantiles, by E. Wilson and M. Hilferty (PNAS 17 (1931) 684): to 1 % from two on.
+// The 95 % interval of a chi-square variable, between its 2.5 % and 97.5 % quantiles, by E. Wilson
+// and M. Hilferty (PNAS 17 (1931) 684): accurate to 1 % from two degrees of freedom on.
 struct Band {
   double low = 0.0, high = 0.0;
   bool holds(double x) const { return low <= x && x <= high; }
 };
 Band chi2_band_95(double freedom);
 
-// One run against its truth; NaN where nothing is known to be true.
+// The errors of one run; NaN if the true values are unknown.
 struct RunErrors {
   double rms_attitude_rad = 0.0, rms_rate_rad_s = 0.0;
   double mean_nees = 0.0;     // per number
@@ -55,9 +55,9 @@ class RunEnsemble {
   // Mean over the runs of the normalised error squared of the filter, and of the smoother.
   std::vector<double> nees_filtered() const { return mean_of(chi2_filtered_); }
   std::vector<double> nees_smoothed() const { return mean_of(chi2_smoothed_); }
-  // Where 95 % of such means lie.
+  // The 95 % interval of these means.
   Band band() const;
-  // The part of the rows from `from` on whose mean lies in the band.
+  // The fraction of the rows, from `from` on, whose mean is in the band.
   double part_in_band(const std::vector<double>& nees, size_t from) const;
   // Root-mean-square attitude errors over the runs [rad].
   std::vector<double> rms_filtered_rad() const;

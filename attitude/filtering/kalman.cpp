@@ -53,10 +53,10 @@ void update(const MotionModel& model, FilterState& state, const Measurement& rea
   model.add(state, gain * read.residual);
 }
 
-// A rate that was hardly known before: how the gyro answers to its scale, and the Earth, is only
-// known with the rate, so that the update is repeated at its result (A. Jazwinski, Stochastic
-// Processes and Filtering Theory, 1970, theorem 8.2). Else errors of scale seem to be seen when the
-// derivative changes between the first reading and the second.
+// If the prior of the rate is wide, the derivatives of the gyro reading with respect to its scale
+// and the rate of the Earth are unknown before the update. The update is therefore iterated at its
+// result (A. Jazwinski, Stochastic Processes and Filtering Theory, 1970, theorem 8.2). Otherwise
+// the change of the derivative between the first two readings would be attributed to the scale.
 void update_by_gyro(const MotionModel& model, FilterState& state, const Vec3& gyro_rad_s,
                     InnovationSum& innovations, double& log_likelihood) {
   const double sigma_rad_s =
@@ -156,7 +156,7 @@ class FilterRun {
     double& likelihood = counts ? out_.log_likelihood : unused_likelihood;
     const auto sum = [&](InnovationSum& own) -> InnovationSum& { return counts ? own : unused; };
     if (reading.lab_from_body && i == first_) {
-      // Says where the platform is, which nothing was known of: no innovation.
+      // The first attitude initialises the state; it has no innovation.
       update(model_, state, model_.of_attitude(state, *reading.lab_from_body, readings_.sees_axis),
              unused, unused_likelihood);
     } else if (reading.lab_from_body && settings.uses_attitude) {
@@ -253,7 +253,7 @@ double likeliest_rate_walk(const AttitudeModel& model, const Sensors& sensors,
     most = likelihood;
     best = walk;
   };
-  // Where the readings do not decide, the quieter motion.
+  // A larger random walk is used only if it increases the log likelihood by more than this.
   constexpr double tells = 0.5;
   constexpr int lowest = -28, highest = 4;
   for (int half = lowest; half <= highest; ++half) look(std::pow(10.0, 0.5 * half), tells);

@@ -18,7 +18,7 @@ struct AttitudeEstimate {
   Quat lab_from_body = Quat::Identity();
   Vec3 rate_body_rad_s = Vec3::Zero();
   Vec3 inertial_rate_rad_s = Vec3::Zero();  // reading of a perfect gyro
-  // Of rotation vector and rate, body axes.
+  // Covariance of rotation vector and rate, body axes.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
   double attitude_sigma_rad() const;  // root of the sum over the three axes
@@ -44,14 +44,15 @@ struct Estimation {
 struct EstimationOptions {
   bool smooths = true;
   size_t max_readings = SIZE_MAX;  // only so many, from the first
-  // Of the attitude before any reading, where none is ever read; else the first one is taken.
+  // Covariance of the initial attitude, if the attitude is never measured; otherwise the first
+  // reading initialises it.
   Mat3 unread_attitude_rad2 = Mat3::Zero();
   std::function<void(double)> progress = {};
 };
 
 // Runs the filter over the readings and the smoother back over them. Rows before the first attitude
-// have its estimate. The smoother keeps a checkpoint for every few hundred readings and computes
-// what lies between again, so that memory grows by estimates alone.
+// have its estimate. The smoother stores a checkpoint every few hundred readings and recomputes the
+// steps between, so that only the estimates need memory.
 Estimation estimate_attitude(const MotionModel& model, const Readings& readings,
                              const EstimationOptions& options = {});
 

@@ -21,7 +21,7 @@ bool is_of_gyro(const Disturbance& disturbance) {
   return kind != nullptr && kind->instrument == "gyro";
 }
 
-// Only instruments, and effects that the gyro senses in addition to the platform's rate.
+// Whether a disturbance concerns only instruments, or what the gyro senses besides the rate.
 bool is_of_instruments(const Disturbance& disturbance) {
   const DisturbanceKind* kind = find_kind(disturbance.kind);
   return disturbance.stage == Stage::measurement || disturbance.kind == "earth_rotation" ||
@@ -227,7 +227,7 @@ void MotionModel::drive(FilterState& state, double length_s, const Vec3& gyro_ra
   const Eigen::Index own = size_ - first_parameter();
   new_rate.rightCols(own) = -inverse * reading.derivative.topRightCorner(3, own);
   by_before.topLeftCorner<3, 3>() = back;
-  // How the attitude after the turn answers to either rate.
+  // Derivative of the attitude after the rotation with respect to either rate.
   const Mat3 by_rates = 0.5 * h * turn_jacobian(-turn_rad);
   by_before.block<3, 3>(attitude, rate) = by_rates;
   by_before.topRightCorner(3, own) = by_rates * new_rate.rightCols(own);

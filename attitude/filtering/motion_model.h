@@ -17,7 +17,7 @@ namespace photorque {
 using MatX = Eigen::MatrixXd;
 using VecX = Eigen::VectorXd;
 
-// How the platform turns from one reading to the next.
+// The model of the motion from one reading to the next.
 enum class Motion {
   gyro_drives,   // as the gyro reads; between its readings the rate walks
   rate_walks,    // the rate does a random walk
@@ -27,7 +27,7 @@ enum class Motion {
 
 struct FilterSettings {
   Motion motion = Motion::disturbances;
-  // Of the rate's random walk, body axes: grows with the root of time.
+  // Random walk of the rate, body axes: its standard deviation grows with the square root of time.
   double rate_walk_rad_s_rts = 1e-4;
   double rate_sigma_rad_s = 1.0;  // of the rate before the first reading
   bool uses_attitude = true;      // beyond the first
@@ -57,8 +57,8 @@ struct Measurement {
 
 class MotionModel {
  public:
-  // Without the torques unless `settings` says that the disturbances move the platform. A gyro
-  // without a bias in the model gets one. The schedule is the recording's.
+  // The torques are used only if `settings` selects the model with disturbances. A gyro without a
+  // bias in the model gets one. The schedule is that of the recording.
   MotionModel(const AttitudeModel& model, const Sensors& sensors, const FilterSettings& settings,
               const Schedule& schedule);
 
@@ -71,13 +71,13 @@ class MotionModel {
   const VecX& prior_sigma() const { return prior_sigma_; }
   const FilterSettings& settings() const { return settings_; }
 
-  // Before any reading but an attitude, with `attitude_lab_rad2` the covariance of that.
+  // The initial state, from an attitude with the covariance `attitude_lab_rad2`.
   FilterState start(double time_s, const Quat& lab_from_body, const Mat3& attitude_lab_rad2) const;
   // The motion has changed by an unknown kick: rate and attitude are uncertain again.
   void begin_anew(FilterState& state) const;
 
-  // To a later time; `gyro_rad_s` is read there and drives if the motion requires it and all three
-  // axes were read.
+  // Propagates the state to a later time. `gyro_rad_s` is the reading there; it replaces the rate
+  // if the motion model uses the gyro and all three axes were read.
   Transition advance(FilterState& state, double time_s, const Vec3& gyro_rad_s) const;
 
   Measurement of_attitude(const FilterState& state, const Quat& lab_from_body,
@@ -94,8 +94,8 @@ class MotionModel {
   double camera_delay_s() const;
 
  private:
-  // By the error state: of the rates (rows as Dynamics' components) or of the readings
-  // (Dynamics::reading_count rows).
+  // Derivatives with respect to the error state: of the rates (rows are the components of Dynamics)
+  // or of the readings (Dynamics::reading_count rows).
   struct Derivatives {
     MatX rates;
     MatX readings;

@@ -35,7 +35,7 @@ Table ways_table(const std::vector<Ingredients>& ways, const TruthTrack& truth) 
   for (const Ingredients& way : ways) {
     const Estimation& e = way.estimation;
     for (const bool smooth : {false, true}) {
-      // Nothing comes back from later readings where there are none.
+      // Without attitude readings, the smoother equals the filter.
       if (smooth && !way.settings.uses_attitude && way.settings.motion == Motion::gyro_drives) {
         continue;
       }

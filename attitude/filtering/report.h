@@ -8,9 +8,9 @@ namespace photorque {
 double in_arcsec(double rad);
 // Root of the mean square of the predicted attitude errors.
 double rms_sigma_rad(const std::vector<AttitudeEstimate>& estimates);
-// Errors count from this row: before, a filter knows little but the first attitude.
+// The first row that counts in error statistics: earlier rows depend mainly on the first attitude.
 size_t settled_row(size_t rows);
-// Every so many rows make a few thousand.
+// Interval of rows with which a plot has a few thousand points.
 size_t thinning(size_t rows);
 
 Table ways_table(const std::vector<Ingredients>& ways, const TruthTrack& truth);

@@ -16,8 +16,8 @@ namespace photorque {
 struct EstimateStudy {
   NominalModel nominal;
   FilterSettings filter;  // of the estimate that is written; its random walk: see below
-  // Rate's random walk of filters without the torques, and beside the modelled ones [rad/s per √s];
-  // nothing: those of maximum likelihood.
+  // Random walk of the rate for filters without torques, and in addition to the modelled torques
+  // [rad/s per √s]; if empty, those of maximum likelihood.
   std::optional<double> rate_walk, disturbed_rate_walk;
   size_t search_readings = 2000;  // of the maximum-likelihood search
   int runs = 20;                  // simulated, where there is no recording
@@ -39,7 +39,7 @@ struct RecordingNoise {
 RecordingNoise with_noise_of(const Sensors& sensors, const Recording& recording,
                              const std::string& name, const Platform& platform);
 
-// One way to estimate.
+// One combination of instruments and motion model, and its estimates.
 struct Ingredients {
   std::string name;  // as printed: "camera and gyro, disturbances"
   FilterSettings settings;
@@ -54,7 +54,7 @@ struct EstimateResult {
   std::vector<std::string> unseen;
 };
 
-// Every way that the channels allow. `truth` may be empty.
+// Estimates with every combination that the channels allow. `truth` may be empty.
 EstimateResult estimate_ways(const EstimateStudy& study, const Readings& readings,
                              const TruthTrack& truth,
                              const std::function<void(double)>& progress = {});
@@ -69,8 +69,8 @@ struct SimulatedRun {
   TruthTrack truth;
 };
 SimulatedRun simulate_run(const PropagationRun& nominal, uint64_t seed);
-// The attitudes and rates of a recording (q_w …, rate_x_rad_s …) at the rows of another: where one
-// of its rows lies within a thousandth of a second.
+// The attitudes and rates of a recording (q_w …, rate_x_rad_s …) at the rows of another one, if its
+// time differs by at most a thousandth of a second.
 TruthTrack truth_from(const Recording& known, const Recording& rows);
 
 // The chosen way over many simulated runs: tables and plot "consistency".

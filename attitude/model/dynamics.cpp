@@ -77,8 +77,8 @@ Dynamics::Dynamics(AttitudeModel model) : model_(std::move(model)) {
   try_laws();
 }
 
-// Which laws change the inertia, and whether what instruments add depends on the motion, whatever
-// their parameters are: tried on two states, because a law that does so does it always.
+// Determines which laws change the inertia, and whether the offsets of the instruments depend on
+// the motion. Both are tested with two states and other parameters.
 void Dynamics::try_laws() {
   changes_inertia_.assign(model_.disturbances.size(), false);
   const PlatformState rest = initial_state();
@@ -91,7 +91,7 @@ void Dynamics::try_laws() {
   try {
     if (tried(rest, others) == tried(moving, others)) offsets_ = as_stated;
   } catch (const NumericalError&) {
-    // A table that does not reach so far: then nothing is known beforehand.
+    // A table that does not cover these states: the offsets are computed at every state.
   }
 }
 

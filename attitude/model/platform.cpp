@@ -89,7 +89,7 @@ double mass_sigma_kg(const Settings& platform) {
 Mat3 inertia_sigma_kg_m2(const Settings& platform) {
   if (!has_sigma(platform)) return Mat3::Zero();
   const Settings both = platform.table(platform_key::inertia);
-  // Of three moments where products are known to vanish: numbers of the diagonal alone.
+  // Three moments without products: only the numbers of the diagonal.
   if (!both.raw("sigma").is_array()) {
     return both.number("sigma", Range::not_negative()) * Mat3::Identity();
   }

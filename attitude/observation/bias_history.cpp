@@ -11,23 +11,24 @@ namespace photorque {
 
 namespace {
 
-// Readings averaged down to so many blocks: a bias is slow. More where the body turns so fast that
-// the mean of a block's readings were not that of its motion; by how much it may turn in one.
+// Number of blocks to which readings are averaged, because a bias changes slowly. A fast rotation
+// needs more blocks: the body may rotate by at most `most_turn_rad` within one.
 constexpr double usual_blocks = 1200.0, most_turn_rad = 0.1;
 constexpr double knot_distance_s = 60.0;
 constexpr size_t fewest_intervals = 2, most_intervals = 24;
-// Any torque goes: the spectral density of the angle's third derivative [rad²/s⁵].
+// Spectral density of the third derivative of the angle [rad²/s⁵]: so large that it allows any
+// torque.
 constexpr double any_roughness = 1e-2;
-// Fall of χ² beyond what as many numbers gain by chance, for the larger model to be taken.
+// Decrease of χ², beyond that expected by chance, above which the larger model is used.
 constexpr double least_gain = 50.0;
 
-// Of the columns of a KinematicSeries (kinematics.h): what all recordings share.
+// The columns of a KinematicSeries (kinematics.h) that all recordings have in common.
 constexpr std::array<Eigen::Index, 13> shared_columns = {6,  7,  8,  9,  10, 11, 12,
                                                          13, 14, 15, 17, 18, 19};
 constexpr auto shared_count = static_cast<Eigen::Index>(shared_columns.size());
 
-// The pieces of one recording, and the knots over which its bias is a straight line. Even knots are
-// those of the model, odd ones halve its intervals: their gain is the gain of noise.
+// The segments of one recording, and the knots between which its bias is linear. Even knots are
+// those of the model. Odd knots halve its intervals; their decrease of χ² is that due to noise.
 struct Span {
   std::string name;
   std::vector<const Observation*> pieces;
@@ -39,7 +40,7 @@ struct Span {
   double knot_s(Eigen::Index k) const {
     return first_s + (last_s - first_s) * static_cast<double>(k) / static_cast<double>(intervals);
   }
-  // The weights of the knots at an instant: of one and of the next.
+  // The knot before an instant, and the weight of the next one.
   std::pair<Eigen::Index, double> place(double t_s) const {
     const double x =
         std::clamp((t_s - first_s) / (last_s - first_s), 0.0, 1.0) * static_cast<double>(intervals);
@@ -79,7 +80,7 @@ struct Equations {
   Eigen::VectorXd right;
 };
 
-// Values far outside of the rest are not readings of the motion.
+// Removes outliers.
 void drop_far_ones(std::vector<double>& values) {
   constexpr double far = 9.0;  // of the median distance from zero: six standard deviations of noise
   std::vector<double> distances;
@@ -105,7 +106,7 @@ double usual_rate_rad_s(const Observation& seen) {
   return *middle;
 }
 
-// Between two blocks a body that turns farther than this is not followed well enough.
+// Whether the rotation between two blocks is small enough for the linear model.
 bool turns_slowly(const Observation& seen) {
   const double apart_s =
       std::max(seen.row_interval_s,
@@ -168,12 +169,12 @@ Equations equations_of(const std::vector<Span>& spans) {
 // Scale and misalignment of a gyro: its nine numbers, by rows, come first of the shared columns.
 constexpr Eigen::Index of_matrix = 9;
 constexpr std::array<Eigen::Index, 3> scales = {0, 4, 8};
-// The usual error of each, and the largest error of a gyro's scale: there it is something else.
+// The usual error of each, and the largest error that is attributed to the scale of a gyro.
 constexpr double usual_matrix_error = 0.01, most_scale_error = 0.3;
 
-// Where a motion does not separate them, the bias is the culprit rather than what all recordings
-// share: scale and misalignment, of these widths, the camera's delay, the turning of the
-// laboratory.
+// Adds priors to the parameters that all recordings have in common: scale and misalignment, with
+// these widths, camera delay and rotation of the laboratory. If the motion does not separate them
+// from a bias, the difference is therefore attributed to the bias.
 Equations with_priors(Equations sums, const Eigen::VectorXd& matrix_errors) {
   Eigen::VectorXd widths = Eigen::VectorXd::Constant(sums.right.size(), 0.1);
   widths.head<shared_count>() << matrix_errors, 0.05, Vec3::Constant(7e-5);
@@ -181,7 +182,7 @@ Equations with_priors(Equations sums, const Eigen::VectorXd& matrix_errors) {
   return sums;
 }
 
-// A model of the biases at all knots: each column is one of its numbers.
+// A model of the biases at all knots; each column of its basis belongs to one parameter.
 enum class Bias { constant, lines, finer };
 
 Eigen::MatrixXd basis_of(Bias model, const std::vector<Span>& spans, Eigen::Index size) {
@@ -209,15 +210,15 @@ Eigen::MatrixXd basis_of(Bias model, const std::vector<Span>& spans, Eigen::Inde
   return basis;
 }
 
-// The least squares of a model; all by the knots.
+// The least-squares solution of a model.
 struct Solution {
   Eigen::MatrixXd basis;
   Eigen::LDLT<Eigen::MatrixXd> solver;
   Eigen::VectorXd numbers;
-  double gain = 0.0;  // fall of χ²
+  double gain = 0.0;  // decrease of χ²
 
   double count() const { return static_cast<double>(numbers.size()); }
-  // The bias at a knot less the mean of all knots, and its standard error.
+  // The bias at a knot minus the mean of all knots, and its standard error.
   double from_mean(const Span& span, Eigen::Index knot, Eigen::Index axis) const {
     return combination(span, knot, axis).dot(numbers);
   }
@@ -247,10 +248,10 @@ Solution solved(Bias model, const std::vector<Span>& spans, const Equations& sum
   return s;
 }
 
-// Standard deviations of a gyro's scale and misalignment. A scale more than is usual where the
-// motion shows it whatever the bias does: held to what is usual it would be taken for a drift. Not
-// so the misalignments: where axes are turned far the first order does not hold, and these numbers
-// would take up only half of what it leaves.
+// Standard deviations of the scale and misalignment of a gyro. A scale gets a wider prior if the
+// motion determines a large error whatever the bias is; with the usual prior it would appear as a
+// drift. Misalignments keep the usual prior, because large ones are beyond first order, and the
+// parameters would explain them only in part.
 Eigen::VectorXd matrix_errors(const std::vector<Span>& spans, const Equations& sums) {
   constexpr double clear_sigma = 3.0;
   const Solution free =
@@ -267,7 +268,7 @@ Eigen::VectorXd matrix_errors(const std::vector<Span>& spans, const Equations& s
   return errors;
 }
 
-// Of every second knot; `wider`: what noise is over what was stated of it.
+// The history at every second knot. `wider` is the ratio of the noise to the stated noise.
 BiasHistory history_of(const Span& span, const Solution& s, double wider) {
   BiasHistory history{span.name, {}, {}, {}};
   for (Eigen::Index k = 0; k < span.knots(); k += 2) {
@@ -305,8 +306,8 @@ std::vector<BiasHistory> bias_histories(const std::vector<const Observation*>& p
   const Equations sums = with_priors(seen, matrix_errors(spans, seen));
   const Solution constant = solved(Bias::constant, spans, sums),
                  lines = solved(Bias::lines, spans, sums), finer = solved(Bias::finer, spans, sums);
-  // Noise that is louder or more correlated than stated gains more than one a number, in knots that
-  // no bias needs as well.
+  // Noise above the stated level or with a correlation decreases χ² by more than one per parameter,
+  // also for the odd knots, which no bias needs.
   const double by_noise =
       std::max(1.0, (finer.gain - lines.gain) / (finer.count() - lines.count()));
   const double more = lines.count() - constant.count();

@@ -9,7 +9,7 @@
 
 namespace photorque {
 
-// Of one recording, less its mean: a straight line between instants. Body axes.
+// The bias of one recording minus its mean: linear between instants. Body axes.
 struct BiasHistory {
   std::string recording;
   std::vector<double> time_s;

@@ -9,7 +9,8 @@ namespace photorque {
 
 namespace {
 
-// The rate of rotation by a scalar: of an angle from one reading to the next, of a rate its value.
+// The largest rate of rotation in a scalar channel: for an angle, its change between two readings
+// per time; for a rate, its value.
 double fastest_of_scalar(const ScalarReadings& read, Measures measures,
                          const std::vector<double>& time_s) {
   if (measures != Measures::angle && measures != Measures::rate) return 0.0;
@@ -28,12 +29,13 @@ double fastest_of_scalar(const ScalarReadings& read, Measures measures,
   return fastest;
 }
 
-// At how many instants each block is looked at, by what would be left of the motion's curvature
-// against the noise of its means: of a motion that oscillates as fast as any is seen to turn.
+// Number of instants at which the model is evaluated in each block (1 to 3). The error due to the
+// curvature of the motion must be far below the noise of the block's mean. The motion is assumed to
+// oscillate at the fastest observed rate.
 size_t instants_needed(const Observation& seen, double fastest_rad_s) {
   constexpr double of_noise = 0.05;
-  // Of means, what one instant leaves of second order, two of fourth: that of even times, for rates
-  // and for attitudes, is within this.
+  // Bounds of the error of a mean, for equally spaced readings: of second order with one instant,
+  // of fourth order with two.
   constexpr double second = 0.5, fourth = 0.1;
   size_t needed = 1;
   for (size_t block = 0; block < seen.spread.size(); ++block) {
@@ -64,7 +66,7 @@ double fastest_rad_s(const Observation& seen) {
         fastest, fastest_of_scalar(seen.scalar[static_cast<size_t>(s)],
                                    channel_traits(vector_channels + s).measures, seen.time_s));
   }
-  // A gyro that reads all three axes is better than differences of attitudes.
+  // Differences of attitudes are used only if the gyro does not measure all three axes.
   Vec3 read = Vec3::Zero();
   if (seen.has_gyro) {
     for (const Vec3& rows : seen.gyro_rows) read = read.cwiseMax(rows);
@@ -104,7 +106,8 @@ BlockInstants::BlockInstants(const Observation& seen, double fastest_rad_s)
 double BlockInstants::gyro_weight(size_t block, size_t which) const {
   const double since = since_s(block, which);
   if (since == 0.0) return weight(block, which);
-  // As much more on one side as less on the other.
+  // The mean time of the gyro readings differs from that of the block: the weights of the two sides
+  // change by equal and opposite amounts.
   const double tilt = 0.5 * seen_.spread[block].gyro_offset_s / std::abs(since);
   return weight(block, which) + (since > 0.0 ? tilt : -tilt);
 }
@@ -114,10 +117,11 @@ double BlockInstants::attitudes_excess_s2(size_t block) const {
   return over.attitude_s * over.attitude_s - over.readings_s * over.readings_s;
 }
 
-// Instants of neighbours must not pass each other.
+// Largest distance of an instant from its block's time at which the instants of neighbouring blocks
+// remain in order.
 double BlockInstants::widest_reach_s(size_t block) const {
   const std::vector<double>& t = seen_.time_s;
-  // All of the time between where the other is a reading, else half of it.
+  // The whole interval if the neighbour is a single reading, else half of it.
   const auto up_to = [&](size_t other) {
     const double between_s = std::abs(t[other] - t[block]);
     return seen_.spread_of(other).readings_s > 0.0 ? 0.5 * between_s : between_s;
@@ -149,7 +153,7 @@ struct BlockRows {
   const Observation& from;
   size_t first, last;
 
-  // The mean time of the attitudes, because they move; of all rows where there is none.
+  // The mean time of the attitudes, which change with time; without attitudes that of all rows.
   double time_s() const {
     double rows = 0.0, sum_s = 0.0;
     for (size_t i = first; i < last; ++i) {
@@ -161,12 +165,13 @@ struct BlockRows {
     return sum_s / static_cast<double>(last - first);
   }
 
-  // A mean moved to another time with the slope about it.
+  // A mean that was extrapolated to another time, and the extrapolated amount.
   struct Moved {
     double value = NAN, by = 0.0;
   };
 
-  // Of times, those of rows that are means themselves included.
+  // Second and fourth moments of the times of the readings. Rows that are means contribute their
+  // own spread.
   struct Moments {
     double rows = 0.0, sum_s2 = 0.0, sum_s4 = 0.0;
 
@@ -202,15 +207,15 @@ struct BlockRows {
     return result;
   }
 
-  // The mean of the gyro's readings moved to `at_s`, and by how much.
+  // The mean of the gyro readings, extrapolated to `at_s`.
   Moved gyro_rate(int axis, double at_s) const {
     return mean_of(
         at_s, [&](size_t i) { return from.gyro_rows[i][axis]; },
         [&](size_t i) { return from.gyro_rad_s[i][axis]; });
   }
 
-  // The mean of one number's readings, moved to `at_s` with the slope over three blocks: a camera
-  // that sees every second row has another mean time.
+  // The mean of the readings of one channel, extrapolated to `at_s` with the slope over three
+  // blocks, because channels with different rates have different mean times.
   template <typename Weight, typename Value>
   Moved mean_of(double at_s, const Weight& weight_of, const Value& value_of) const {
     const size_t length = last - first;
@@ -240,15 +245,15 @@ struct BlockRows {
     return {rate_sum / rows + by_rad_s, by_rad_s};
   }
 
-  // Attitudes of which none is missing.
+  // An attitude that is not missing.
   struct Turned {
     Quat attitude;
     double since_s, rows;
   };
 
-  // Each attitude moved to the block's time as by the constant rate that leaves no trend, then
-  // their mean as rotations from the first of them. How the rate changes is left in it, as in the
-  // mean of the gyro's readings, so that the one stays the integral of the other.
+  // The mean attitude: each attitude is moved to the block's time with the constant rate that
+  // leaves no trend, then the rotation vectors from the first are averaged. The effect of a
+  // changing rate remains, as in the mean of the gyro, so that one is the integral of the other.
   Quat mean_attitude(double at_s) const {
     std::vector<Turned> all;
     double sum_s2 = 0.0, rows = 0.0;
@@ -319,26 +324,26 @@ struct BlockRows {
   }
 };
 
-// A change between two instants, over the time between them.
+// A change between two instants, divided by the interval.
 template <typename Value>
 struct Slope {
   Value per_s;
   double between_s;
 };
 
-// How fast it changes from one to the next.
+// The second derivative from two consecutive slopes.
 template <typename Value>
 Value curvature_of(const Slope<Value>& before, const Slope<Value>& after) {
   return 2.0 / (before.between_s + after.between_s) * (after.per_s - before.per_s);
 }
 
-// Makes the mean over a block of `all` a reading at its middle, with the curvature of the motion
-// from its neighbours.
+// Converts the mean over a block of `all` to a reading at its centre. The curvature of the motion
+// follows from the neighbouring blocks.
 class Straightened {
  public:
   Straightened(const Observation& all, size_t block) : all_(all), block_(block) {}
 
-  // Into the first block of `to`.
+  // Writes the reading to the first block of `to`.
   void put_into(Observation& to) const {
     const Observation::Spread over = all_.spread_of(block_);
     to.spread.front() = {};

@@ -10,8 +10,8 @@ namespace photorque {
 
 // The instants at which a model is evaluated for the mean over a block.
 
-// How fast the platform is seen to turn at most: by the gyro, or from one attitude to the next; 0.1
-// at least [rad/s].
+// The largest observed rate of the platform, from the gyro or from consecutive attitudes; at least
+// 0.1 rad/s.
 double fastest_rad_s(const Observation& seen);
 
 // When a block is looked at, and with which weights: Gauss's rules for the moments of its rows'
@@ -23,12 +23,12 @@ class BlockInstants {
   BlockInstants(const Observation& seen, double fastest_rad_s);
 
   size_t per_block() const { return per_block_; }
-  // Of the i-th instant of all. They do not fall.
+  // Time of the i-th of all instants. The times do not decrease.
   double time_s(size_t i) const {
     const size_t block = i / per_block_;
     return seen_.time_s[block] + since_s(block, i % per_block_);
   }
-  // From the block's time to one of its instants.
+  // Interval from the block's time to one of its instants.
   double since_s(size_t block, size_t which) const {
     if (per_block_ == 1 || (per_block_ == 3 && which == 1)) return 0.0;
     return which == 0 ? -rules_[block].reach_s : rules_[block].reach_s;
@@ -38,9 +38,9 @@ class BlockInstants {
     const double outer = rules_[block].outer_weight;
     return per_block_ == 3 && which == 1 ? 1.0 - 2.0 * outer : outer;
   }
-  // For the gyro, whose times may have another mean than the block's time.
+  // Weight of an instant for the gyro, whose mean time may differ from the block's time.
   double gyro_weight(size_t block, size_t which) const;
-  // By how much the second moment of the attitudes' times exceeds that of the other readings.
+  // Difference of the second moments of the times of attitudes and of other readings.
   double attitudes_excess_s2(size_t block) const;
 
  private:
@@ -58,7 +58,7 @@ class BlockInstants {
 
 // Rows of an observation on their way to one, and what their mean holds of the motion.
 
-// All of an observation but its blocks.
+// A copy of an observation without its blocks.
 Observation without_blocks(const Observation& seen);
 
 // Appends the mean of the rows [first, last) of `from` as a block.

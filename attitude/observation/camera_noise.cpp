@@ -77,7 +77,7 @@ class AngleFilter {
   }
 
  private:
-  // Of an acceleration that nothing is known of [rad²/s⁴].
+  // Prior variance of the unknown initial acceleration [rad²/s⁴].
   static constexpr double free_acceleration = 1.0;
 
   void set_step(double t) {

@@ -8,14 +8,14 @@
 
 namespace photorque {
 
-// How likely an angle and its rate, as a camera and a gyro read them, are under some noise.
+// Likelihood of the readings of an angle and its rate, by camera and gyro, under a model of noise.
 
 // The noise model of one axis. The angle's third derivative is white noise (Wiener torque), so that
 // any smooth torque is allowed, and none is preferred once `roughness` is large.
 struct AngleNoise {
   ChannelNoise camera;
   Vec3 gyro_rad_s = Vec3::Zero();  // one reading about body x, y, z
-  // Of the gyro's variance, the fraction that is correlated as exp(−t/τ), and τ.
+  // Fraction of the gyro's variance that is correlated as exp(−t/τ), and τ.
   double gyro_coloured = 0.0, gyro_time_s = 0.0;
   double roughness = 1e-8;  // spectral density of the third derivative [rad²/s⁵]
 };
@@ -31,7 +31,7 @@ void add_normal_equations(const KinematicSeries& series, const AngleNoise& noise
 
 // The camera's noise about one lab axis.
 
-// Of one channel: the estimate and its significance.
+// The noise of one channel: the estimate and its significance.
 struct FoundNoise {
   ChannelNoise noise;        // to be used: as stated unless something else was found
   bool level_found = false;  // differs from the stated level

@@ -13,13 +13,13 @@ Vec3 in_lane(const Vec3Of<Lanes>& v, int lane) {
   return {v[0][lane], v[1][lane], v[2][lane]};
 }
 
-// By how much the attitude that a camera reports is the past's. Body axes; the rate changes evenly
-// meanwhile: for delays far below the periods of the motion, as the square of their ratio.
+// The delay of the attitude that a camera reports. Body axes; the angular acceleration is assumed
+// constant during the delay, which is accurate to the square of delay over period of the motion.
 struct Delay {
   double time_s = 0.0;
   Vec3 rate_rad_s = Vec3::Zero(), acceleration_rad_s2 = Vec3::Zero();  // now
 
-  // From the attitude then to that now.
+  // The rotation during the delay.
   Vec3 turn_rad() const { return time_s * (rate_rad_s - 0.5 * time_s * acceleration_rad_s2); }
 };
 
@@ -27,7 +27,8 @@ struct StateChange {
   Vec3 rotation_body_rad, rate_rad_s;
 };
 
-// Their readings: f = ω' × r + ω × (ω × r) − g, without g in free fall, and the field of the lab.
+// Readings of accelerometer and magnetometer: f = ω' × r + ω × (ω × r) − g, without g in free fall,
+// and the field of the lab.
 class FieldReadings {
  public:
   FieldReadings(const Dynamics& dynamics, const Observation& seen)
@@ -67,8 +68,8 @@ class FieldReadings {
   Vec3 place_m_, bias_m_s2_, bias_T_, field_lab_T_, gravity_lab_m_s2_ = Vec3::Zero();
 };
 
-// How the angular acceleration changes by each variable: through the state, and by a parameter
-// itself.
+// Derivatives of the angular acceleration with respect to each variable: through the state, and
+// directly through a parameter.
 class AccelerationSlopes {
  public:
   AccelerationSlopes(const Sensitivity& sensitivity, const Samples& samples)
@@ -125,7 +126,7 @@ class AccelerationSlopes {
   std::vector<Lanes> all_;
 };
 
-// The slopes of the six readings in one lane, a row each.
+// Derivatives of the six readings at one instant (lane), one row each.
 class Slopes {
  public:
   Slopes(const Sensitivity& sensitivity, const Samples& samples)
@@ -136,7 +137,7 @@ class Slopes {
                          readings_.data());
   }
 
-  // Those of one lane, once see() was called.
+  // Fills in the derivatives of one lane; see() must have been called before.
   template <class Matrix>
   void fill(int lane, Matrix& slope) const {
     for (Eigen::Index r = 0; r < 6; ++r) {
@@ -145,7 +146,7 @@ class Slopes {
     }
   }
 
-  // The camera sees the attitude, its own misalignment, and all of it late, by `delay_s`.
+  // Computes the derivatives of the camera readings: attitude and misalignment, `delay_s` earlier.
   void see(const Lanes& delay_s, const Vec3Of<Lanes>& rate_then_rad_s) {
     const Lanes* y = samples_.y.data();
     const Lanes norm = sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2] + y[3] * y[3]);
@@ -173,12 +174,12 @@ class Slopes {
     }
   }
 
-  // Of one component of the state.
+  // Derivative of component `c` of the state.
   double of_component(int c, size_t v, int lane) const {
     return samples_.derivatives[static_cast<size_t>(c) * count_ + v][lane];
   }
 
-  // Of the state itself: the rotation of the body, in body axes, and the rate.
+  // Derivative of the state: rotation of the body, in body axes, and change of the rate.
   StateChange change(size_t v, int lane, const PlatformState& state) const {
     const auto by = [&](size_t c) { return samples_.derivatives[c * count_ + v][lane]; };
     const Quat turned(by(0), by(1), by(2), by(3));
@@ -198,7 +199,7 @@ struct Sight {
   Vec3Of<Lanes> gyro_rad_s, camera_error_rad, acceleration_rad_s2;
   Lanes delay_s = 0.0;
 
-  // When the attitude was as the camera reports it.
+  // The rate at the time of the attitude that the camera reports.
   Vec3Of<Lanes> rate_then_rad_s(const Lanes* y) const {
     Vec3Of<Lanes> rate;
     for (int k = 0; k < 3; ++k) rate[k] = y[component::rate + k] - delay_s * acceleration_rad_s2[k];
@@ -206,7 +207,7 @@ struct Sight {
   }
 };
 
-// The acceleration is zero where nothing that is read depends on it.
+// The acceleration is computed only if a reading depends on it, otherwise it is zero.
 Sight sight_of(const Dynamics& dynamics, const Samples& samples, bool needs_acceleration) {
   Sight sight;
   const std::optional<Dynamics::Offsets>& offsets = dynamics.offsets();

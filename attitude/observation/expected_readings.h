@@ -12,7 +12,7 @@ namespace photorque {
 
 // Accelerometer and magnetometer, in the order of their scalars.
 using FieldRow = Eigen::Matrix<double, first_place - first_field, 1>;
-// By channel (recordings/columns.h) and variable.
+// Derivatives by channel (recordings/columns.h) and variable.
 using SlopeRows = Eigen::Matrix<double, channel_count, Eigen::Dynamic, Eigen::RowMajor>;
 
 // The prediction of a model for a block, or for one of its instants.
@@ -24,7 +24,7 @@ struct ExpectedInstant {
   Eigen::Vector4d place = Eigen::Vector4d::Zero();  // and velocity
 };
 
-// At up to eight instants, of samples that are kept by reference.
+// Expected readings at up to eight instants. The samples are stored by reference.
 class ExpectedReadings {
  public:
   // `sensitivity`: null where no slopes are asked for. `scalars`: those that were read.

@@ -14,9 +14,10 @@ namespace {
 constexpr size_t reach = deviation_window / 2;
 constexpr size_t lags = 5;
 
-// Correlation at each lag of the residual of white noise at the middle of a fitted parabola.
+// Autocorrelation, at each lag, of the residuals at the centre of a moving parabola, for white
+// noise.
 std::array<double, lags + 1> correlations_of_white_noise() {
-  // Weights of the value at the middle (Savitzky and Golay, Anal. Chem. 36, 1627, 1964).
+  // Weights of the value at the centre (Savitzky and Golay, Anal. Chem. 36, 1627, 1964).
   const double m = reach;
   std::vector<double> kept(deviation_window);
   for (size_t j = 0; j < deviation_window; ++j) {
@@ -40,7 +41,7 @@ Deviations deviations(const Prediction& residuals, const Observation& seen, int 
   for (size_t i = 0; i < residuals.off.size(); ++i) {
     const double x = residuals.off[i][channel];
     const double rows = seen.rows_of(i, channel);
-    // An attitude that is elsewhere may be a turn off in its next reading.
+    // A residual of this size may be a whole turn in the next reading.
     constexpr double elsewhere_rad = 0.5;
     if (!std::isfinite(x) || !(rows > 0.0) || (channel < 3 && std::abs(x) > elsewhere_rad))
       continue;
@@ -74,7 +75,8 @@ void lay_curves(Deviations& channel, const std::vector<double>& weight) {
     }
     const Eigen::Matrix3d inverse = matrix.inverse();
     channel.curve[i] = inverse.row(0).dot(right);
-    // At the ends a curve follows its last reading; that it leaves nothing is no precision.
+    // At its ends the curve nearly passes through the readings, so that the residual there is
+    // small without being precise.
     constexpr double least_left = 0.05;
     const double left = std::max(1.0 - weight_of(i) * inverse(0, 0), least_left);
     channel.size[i] = channel.root_rows[i] * (channel.left[i] - channel.curve[i]) / std::sqrt(left);
@@ -107,7 +109,7 @@ bool are_independent(const std::vector<Deviations>& runs, double level) {
   }
   if (!(count > 0.0) || !(product[0] > 0.0)) return false;
   for (size_t lag = 1; lag <= lags; ++lag) {
-    // Where readings are missing and about large errors the parabola is another.
+    // Missing readings and large errors change the parabola; the tolerance allows for them.
     constexpr double tolerance = 0.05, sigmas = 5.0;
     const double off = std::abs(product[lag] / product[0] - white[lag]);
     if (off > tolerance + sigmas / std::sqrt(count)) return false;
@@ -146,7 +148,7 @@ void weigh(std::vector<Deviations>& runs, double degrees, double scale) {
   }
 }
 
-// The maximum-likelihood scale: where the weighted mean square is the square of it.
+// The maximum-likelihood scale, whose square equals the weighted mean square.
 double likeliest_scale(const std::vector<Deviations>& runs, double degrees, double scale) {
   constexpr int most_steps = 100;
   constexpr double close = 1e-5;
@@ -164,7 +166,7 @@ double likeliest_scale(const std::vector<Deviations>& runs, double degrees, doub
   return scale;
 }
 
-// −2 ln of the likelihood.
+// −2 ln of the likelihood under Student's t.
 double under_t(const std::vector<Deviations>& runs, double degrees, double scale) {
   double sum = 0.0, count = 0.0;
   for (const Deviations& run : runs) {
@@ -191,8 +193,8 @@ struct Likeliest {
   double log_degrees = 0.0, scale = 0.0, value = 0.0;
 };
 
-// From 1, the Cauchy distribution, to where it is as good as normal: first in large steps, then
-// in small ones about the best.
+// Searches the degrees of freedom from 1 (the Cauchy distribution) to nearly normal, first in large
+// steps, then in small steps around the best.
 Likeliest likeliest(const std::vector<Deviations>& runs, double scale) {
   constexpr double large = 0.25, small = 0.05, longest = 4.0;
   Likeliest best{0.0, scale, INFINITY};
@@ -211,7 +213,7 @@ Likeliest likeliest(const std::vector<Deviations>& runs, double scale) {
   return best;
 }
 
-// From the curvature of the likelihood along ln ν, with the maximum-likelihood scale at each.
+// Standard deviation of ln ν, from the curvature of the profile likelihood.
 double log_degrees_sigma(const std::vector<Deviations>& runs, const Likeliest& at) {
   constexpr double step = 0.1;
   double sides = 0.0;
@@ -223,7 +225,7 @@ double log_degrees_sigma(const std::vector<Deviations>& runs, const Likeliest& a
   return curvature > 0.0 ? std::sqrt(2.0 / curvature) : INFINITY;
 }
 
-// Whether many readings are the very same as the one before: steps so coarse have no tails.
+// Whether many readings equal the previous one: with such coarse steps, tails are not visible.
 bool are_coarse(const std::vector<Observation>& runs, int channel) {
   constexpr double coarse_fraction = 0.05;
   double same = 0.0, count = 0.0;
@@ -244,7 +246,7 @@ std::optional<HeavyTail> heavy_tail(std::vector<Deviations> runs, const Threshol
   if (count_of(runs) < limits.min_tail_readings) return std::nullopt;
   double scale = robust_level(runs);
   if (!(scale > 0.0)) return std::nullopt;
-  // The weights of the curve and the distribution about it, in turn.
+  // Alternates between the weights of the curve and the distribution of its residuals.
   constexpr int turns = 3;
   weigh(runs, 4.0, scale);
   Likeliest best = likeliest(runs, scale);
@@ -259,7 +261,7 @@ std::optional<HeavyTail> heavy_tail(std::vector<Deviations> runs, const Threshol
   return HeavyTail{degrees, degrees * log_degrees_sigma(runs, best), best.scale};
 }
 
-// A reading moved by so much [rad or rad/s].
+// Adds `by` [rad or rad/s] to a reading.
 void move(Observation& seen, size_t block, int channel, double by) {
   if (channel >= 3) {
     seen.gyro_rad_s[block][channel - 3] += by;
@@ -298,7 +300,8 @@ void robustify(const HeavyTails& tails, const std::vector<Prediction>& residuals
   for (int channel = 0; channel < 6; ++channel) {
     const std::optional<HeavyTail>& tail = tails[static_cast<size_t>(channel)];
     if (!tail) continue;
-    // Over the mean slope of the influence, so that a shift of all readings is unchanged.
+    // Divided by the mean slope of the influence function, so that a shift of all readings is
+    // unchanged.
     const double slope = (tail->degrees + 1.0) / (tail->degrees + 3.0);
     for (size_t run = 0; run < runs.size(); ++run) {
       std::vector<Deviations> one = {deviations(residuals[run], runs[run], channel)};
@@ -339,7 +342,7 @@ int64_t drop_bursts(const std::vector<Prediction>& residuals, const Thresholds::
       }
       found += static_cast<size_t>(std::count(in_burst[run].begin(), in_burst[run].end(), 1));
     }
-    // More than that is no fault of a few readings.
+    // A larger fraction is not a fault of a few readings.
     if (static_cast<double>(found) >
         limits.max_burst_fraction * static_cast<double>(count_of(all))) {
       continue;

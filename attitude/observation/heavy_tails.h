@@ -11,9 +11,9 @@
 
 namespace photorque {
 
-// How far each reading is from a smooth curve through its neighbours.
+// Heavy-tailed noise, found from the distance of each reading from a smooth curve.
 
-// One channel of one run, the readings alone, in order of time.
+// The deviations of one channel in one run, in order of time.
 struct Deviations {
   std::vector<size_t> block;  // of the observation
   std::vector<double> time_s;
@@ -30,7 +30,7 @@ struct Deviations {
 // Readings through which a parabola is laid about each of them, itself among them.
 constexpr size_t deviation_window = 15;
 
-// All readings weigh alike; none where there are fewer than a window.
+// The deviations with equal weights; empty if there are fewer readings than a window.
 Deviations deviations(const Prediction& residuals, const Observation& seen, int channel);
 
 // Again, with weights of the readings (> 0), as many as there are.
@@ -50,12 +50,13 @@ struct HeavyTail {
   double scale = 0.0;          // rad or rad/s, of one reading
 };
 
-// Of channels 0 to 5 (camera about lab x, y, z, gyro about body x, y, z).
+// Tails of channels 0 to 5 (camera about lab x, y, z, gyro about body x, y, z).
 using HeavyTails = std::array<std::optional<HeavyTail>, 6>;
 
-// How far each reading is from a smooth curve through its neighbours' residuals is its error,
-// whatever slow torque acts. `residuals`: of predictions near the runs, with `off`. A channel whose
-// deviations hang together is left alone: that is motion, or noise of another kind. Deterministic.
+// Finds the channels with heavy tails. The error of a reading is its distance from a smooth curve
+// through the residuals of its neighbours, independent of slow torques. `residuals`: of predictions
+// near the runs, with `off`. Channels with correlated deviations are omitted, because these are due
+// to motion or to another kind of noise. Deterministic.
 HeavyTails heavy_tails(const std::vector<Prediction>& residuals,
                        const std::vector<Observation>& runs, const Thresholds::Noise& limits);
 

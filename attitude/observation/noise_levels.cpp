@@ -74,8 +74,8 @@ double median(std::vector<double>& of) {
   return *middle;
 }
 
-// Whether `order` + 1 readings from the one at `first` are the same to the last digit: a counter
-// that stands still says nothing of its noise. Where it mostly does, its step says it.
+// Whether the `order` + 1 readings from `first` on are equal to the last digit. A counter that
+// stands still contains no information on its noise. If it mostly does, its step gives the noise.
 bool stands_still(const std::vector<ReadingAt>& x, size_t first, size_t order) {
   constexpr double rounding = 1e-12;
   for (size_t k = first + 1; k <= first + order; ++k) {
@@ -153,8 +153,8 @@ struct Differences {
   int order = 2;
 };
 
-// Of the residuals of the readings about a smooth motion; of the readings themselves, twice as
-// often, where that motion came from the camera and brings its noise.
+// Differences of the residuals from a smooth motion. If this motion is from the camera and has its
+// noise, differences of the readings are used instead, with twice the order.
 Differences differences_of(const Observation& seen, const KinematicRun& run, int k) {
   const double interval_s = reading_interval_s(seen, 3 + k);
   std::vector<size_t> read;
@@ -210,7 +210,7 @@ void add_powers(const Differences& d, std::vector<double>& powers) {
   constexpr size_t most = 800;
   const size_t frequencies = std::min(most, n / 4);
   for (size_t f = 0; f < frequencies; ++f) {
-    // Below the highest frequency, where there is no phase.
+    // Below the Nyquist frequency, at which a sinusoid has no phase.
     const double angle =
         pi * (0.5 + 0.48 * (static_cast<double>(f) + 0.5) / static_cast<double>(frequencies));
     const std::complex<double> turn = std::polar(1.0, angle);

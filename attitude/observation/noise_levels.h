@@ -14,10 +14,10 @@ namespace photorque {
 // The noise of one channel from its own readings, where no other instrument checks it.
 
 // Standard deviation of one reading of a channel (Observation::rows_of), from divided third
-// differences of neighbouring readings, which motion that is smooth from one to the next hardly
-// enters, however unevenly they lie; from those of an order up to the sixth where that is quieter
-// by half; at least that of the steps in which the channel is written. The motion's own roughness
-// counts as noise. Nothing where there are fewer than ten differences.
+// differences of neighbouring readings, which smooth motion hardly affects, also with unequal
+// steps. Orders up to six are used if their result is smaller by half. The result is at least that
+// of the digitisation steps. Rough motion counts as noise. Empty if there are fewer than ten
+// differences.
 std::optional<double> reading_level(const std::vector<Observation>& runs, int channel);
 
 // The level of a gyro's white noise, from the fine end of its spectrum.
@@ -27,9 +27,9 @@ struct NoiseLevel {
   double level = 0.0, log_sigma = 0.0;
 };
 
-// Of gyro axis k (body axes) in all runs: from the upper half of the spectrum of differences at
-// equal steps, without those across gaps and changes of the commands, the loudest fifth of the
-// frequencies left out: lines of what shakes and rings are few. None where too little is left.
+// Noise level of gyro axis k (body axes) in all runs, from the upper half of the spectrum of
+// differences at equal steps, without those across gaps and changes of commands. The strongest
+// fifth of the frequencies is omitted, because vibrations are lines. Empty if too few data remain.
 std::optional<NoiseLevel> gyro_level(const std::vector<Observation>& seen,
                                      const std::vector<KinematicRun>& runs, int k,
                                      const Thresholds::Noise& limits);

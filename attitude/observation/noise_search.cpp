@@ -33,7 +33,7 @@ class NoiseSearch {
     gyro_.gyro_rad_s = stated_.gyro_rad_s;
     for (int k = 0; k < 3; ++k) find_gyro_level(k);
     if (has_gyro_) {
-      // At first any torque goes.
+      // In the first step, any torque is allowed.
       constexpr double any_roughness = 1e-2;
       for (size_t k = 0; k < 3; ++k) {
         axes_[k].axis = gyro_;
@@ -81,8 +81,8 @@ class NoiseSearch {
     }
   }
 
-  // Correlated noise of the gyro, with one time and fraction about all axes: beside the camera's as
-  // it stands, or in its place where that says more.
+  // Searches for correlated noise of the gyro, with one time and fraction for all axes: in addition
+  // to that of the camera, or instead of it if this increases the likelihood.
   void find_gyro_colour() {
     double now = 0.0;
     for (const CameraNoise& axis : axes_) now += axis.value;

@@ -69,7 +69,7 @@ Whitening::Gain Whitening::gain(double time_s, double rows) {
   const double decay = std::exp(-(time_s - last_s_) / time_s_);
   variance_ = coloured_variance_ + decay * decay * (variance_ - coloured_variance_);
   last_s_ = time_s;
-  // Blocks that lie closer than their readings say would have no variance left at all.
+  // Lower bound of the variance: blocks that are closer than their readings would have none.
   constexpr double least = 1e-6;
   const double total = std::max(variance_ + alone, least * own * scale * scale);
   const double gain = variance_ / total;

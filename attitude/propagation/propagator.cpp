@@ -253,9 +253,9 @@ void Propagator::take_step() {
   }
 }
 
-// Newton's method takes over where for some steps the convergence of the fixed-point iteration
-// alone kept the steps short: they are several times shorter than accuracy asks for. It stays as
-// long as that iteration would contract by less than three in ten.
+// Selects the method that solves a step. Newton's method is used after several steps whose length
+// was limited by the convergence of the fixed-point iteration, not by the accuracy. It is used
+// until the fixed-point iteration would contract again (stiffness() at most `contracts`).
 void Propagator::choose_method(const CollocationStep::Outcome& outcome, bool was_at_ceiling) {
   constexpr int steps_before_switch = 8, slow_iterations = 20;
   constexpr double far_below = 1e-5;  // of the tolerance: four times the length would do
@@ -274,9 +274,9 @@ void Propagator::choose_method(const CollocationStep::Outcome& outcome, bool was
   ceiling_s_ = std::numeric_limits<double>::infinity();
 }
 
-// The length for the next attempt. Small changes are not worth a new continuation matrix, and a
-// step that a jump cut short says nothing about growth. Many iterations mean that the length is
-// close to where they stop converging, and that shorter steps would be cheaper.
+// The length for the next attempt. Small changes are avoided, because each requires a new
+// continuation matrix. A step that ends at a jump is no reason for longer steps. If a step needs
+// many iterations, it is close to the limit of convergence, and shorter steps are cheaper.
 double Propagator::propose_length(const CollocationStep::Outcome& outcome, double h_s,
                                   bool cut) const {
   constexpr int slow_iterations = 20, max_iterations = 30;

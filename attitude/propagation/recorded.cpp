@@ -45,7 +45,7 @@ double camera_delay_s(const Dynamics& dynamics, const PlatformState& state) {
   return dynamics.at(state.time_s, {}, y.data()).camera_delay_s[0];
 }
 
-// Reads the instruments at a tick and asks the run's commander.
+// Reads the instruments at a tick and calls the commander of the run.
 Propagator::Commander live_commander(const PropagationRun& run, const Propagator& propagator,
                                      LiveInstruments& instruments, const PowerHistory* beside) {
   return [&run, &propagator, &instruments, beside](double time_s, std::span<const double> y) {

@@ -17,34 +17,34 @@ namespace photorque {
 //   while (recorded.advance()) recorded.record();
 //   PropagationResult result = recorded.result();
 //
-// A process that runs beside the motion looks at the step and exchanges with motion() between
-// advance() and record(). A run that is broken off goes on from a snapshot, its results the same to
-// the last bit; runs with a commander cannot.
+// A simulation that is coupled to the motion exchanges data with motion() between advance() and
+// record(). An interrupted run continues from a snapshot with bitwise equal results, except runs
+// with a commander.
 class RecordedRun {
  public:
-  // `beside`: what battery and array do, where a power system runs beside the motion; its caller
-  // adds to it, and the recording waits for it. Battery current, array power and charge are then
-  // its, and it says when the battery is empty. All must outlive the run.
+  // `beside`: the history of a power system that is simulated together with the motion. The caller
+  // appends to it, and the recording waits for it. It then provides battery current, array power,
+  // charge and the time at which the battery is empty. All must outlive the run.
   RecordedRun(const PropagationRun& run, std::function<void(double)> progress,
               const PowerHistory* beside = nullptr);
   RecordedRun(const RecordedRun&) = delete;
   RecordedRun& operator=(const RecordedRun&) = delete;
 
   Propagator& motion() { return propagator_; }
-  // One step of the motion; false when the run has ended.
+  // Makes one integration step; false when the run has ended.
   bool advance() { return propagator_.advance(); }
-  // Records the rows that the last step passed, as far as `beside` is known.
+  // Records the rows within the last step, as far as the history `beside` extends.
   void record();
-  // After the last step.
+  // The results; call it after the last step.
   PropagationResult result();
 
-  // After a step; or before the first, from what an equal run kept.
+  // Stores the state after a step, or restores it before the first step of an equal run.
   void keep(Snapshot& snapshot);
 
  private:
-  // The times at which a run is looked at: its rows and, for a camera with latency, what it sees in
-  // them. Of two equal times what is seen comes first. What lies before the start is looked at
-  // there, `before_s` too late.
+  // The times at which the state of a run is needed: those of its rows and, for a camera with
+  // latency, those of its images. Of two equal times, the image comes first. Images before the
+  // start use the initial state, which is `before_s` later.
   struct Look {
     double time_s;
     bool is_row;

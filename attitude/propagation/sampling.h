@@ -1,4 +1,4 @@
-// States at the times that a user asks for, as the propagator passes them.
+// States at requested times, collected while the propagator passes them.
 #pragma once
 
 #include <array>
@@ -19,7 +19,8 @@ struct Samples {
   std::vector<Lanes>
       derivatives;  // of y, as Propagator::dense_derivatives; empty without variables
 
-  // Of samples of so many components at some of `times` times, without derivatives.
+  // Stores or restores samples of `components` components at some of `times` times, without
+  // derivatives.
   void keep(Snapshot& snapshot, size_t components, size_t times);
 };
 
@@ -30,12 +31,12 @@ class Sampler {
   Sampler(const Propagator& propagator, size_t count, std::function<double(size_t)> time_s,
           std::function<void(const Samples&)> sink);
 
-  // After every step: the samples within it, without its end.
+  // Call after every step: takes the samples within it, without its end.
   void follow();
   // When the run has ended: its end too. Returns the number of times reached.
   size_t finish();
 
-  // Of a sampler without derivatives, after a step.
+  // Stores or restores a sampler without derivatives, after a step.
   void keep(Snapshot& snapshot);
 
  private:

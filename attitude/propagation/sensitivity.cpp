@@ -26,7 +26,7 @@ bool only_reads(const Dynamics& dynamics, const Variable& variable) {
          dynamics.model().disturbances[variable.disturbance].stage == Stage::measurement;
 }
 
-// Those on which the motion depends: a parameter of an instrument changes only readings.
+// The variables on which the motion depends: parameters of instruments change only readings.
 std::vector<size_t> moving_among(const std::vector<Variable>& variables, const Dynamics& dynamics) {
   std::vector<size_t> moving;
   for (size_t v = 0; v < variables.size(); ++v) {
@@ -97,7 +97,8 @@ void Sensitivity::note_extent() {
   }
 }
 
-// States that begin by turning with the body change with its initial rate.
+// Derivatives of extra states that start at rest relative to the body, with respect to the initial
+// rate.
 void Sensitivity::seed_bound_states(size_t v, int axis) {
   const auto& disturbances = dynamics_.model().disturbances;
   for (size_t d = 0; d < disturbances.size(); ++d) {
@@ -108,7 +109,7 @@ void Sensitivity::seed_bound_states(size_t v, int axis) {
   }
 }
 
-// And with the axis along which they count it.
+// Derivatives of the same states with respect to the parameters of their axis.
 void Sensitivity::seed_states_of_axis(size_t v, const Vec3& rate_body_rad_s) {
   const Variable& variable = variables_[v];
   const Disturbance& disturbance = dynamics_.model().disturbances[variable.disturbance];

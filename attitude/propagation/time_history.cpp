@@ -45,8 +45,8 @@ constexpr const char* fixed_names[fixed] = {"t_s",
                                             "battery_current_A",
                                             "array_power_W"};
 
-// At most about 1600 points, as many as a picture has columns: of every interval its lowest and its
-// highest, in order of time.
+// Reduces a curve to about 1600 points, the number of columns of a picture: the minimum and the
+// maximum of every interval, in order of time.
 void thin(const std::vector<double>& x, const std::vector<double>& y, Plot::Curve& curve) {
   constexpr size_t most = 1600;
   if (x.size() <= most) {
@@ -114,7 +114,7 @@ std::vector<double> unwrapped_deg(std::vector<double> angle_deg) {
   return angle_deg;
 }
 
-// How far the body went from where it began.
+// Largest distance of the body from its initial position.
 struct Excursion {
   double largest_tilt_rad = 0.0, largest_tilt_at_s = 0.0;
   double yaw_rad = 0.0;  // from the least to the largest, whole turns counted
@@ -137,7 +137,7 @@ Excursion excursion_of(const std::vector<PlatformState>& states) {
   return found;
 }
 
-// Bars that stand on each other: means over each 120th of the run, in percent of the sum of all,
+// Stacked bars: means over each 120th of the run, in percent of the sum of all,
 // the strongest at the bottom.
 std::vector<Plot::Curve> stacked_fractions(const std::vector<double>& t,
                                            const std::vector<std::string>& labels,
@@ -269,7 +269,7 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
     plot.curves = std::move(curves);
     product.plots.push_back(std::move(plot));
   };
-  // Of a long trajectory curves are bands that hide each other: every axis has its own panel.
+  // In long runs, oscillating curves are bands that hide each other: every axis has its own panel.
   const auto add_vector_plot = [&](const std::string& name, const std::string& title,
                                    const std::string& unit, size_t x) {
     add_plot(name, title, "x [" + unit + "]", {curve("", t, values(x))});

@@ -231,7 +231,7 @@ std::string first_words(const std::filesystem::path& path) {
       if (!words.empty() && !words.starts_with(comment)) return std::string(words);
     }
   } catch (const InputError&) {
-    // Its reader reports its errors.
+    // The reader of the file reports its errors later.
   }
   return "";
 }

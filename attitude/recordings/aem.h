@@ -1,8 +1,8 @@
 // CCSDS attitude ephemeris messages (AEM), and the keyword-value notation (KVN) that they are
 // written in: blocks of assignments, comments and data lines.
 //
-// Everything is kept as text in its order, so that a message written back says the same in every
-// digit; AttitudeEphemeris reads its meaning. Source: CCSDS 504.0-B-2 (2024), section 7.
+// Everything is stored as text in its order, so that a message that is written again has the same
+// digits. AttitudeEphemeris interprets it. Source: CCSDS 504.0-B-2 (2024), section 7.
 #pragma once
 
 #include <filesystem>
@@ -97,8 +97,8 @@ struct AttitudeEphemeris {
   bool operator==(const AttitudeEphemeris&) const = default;
 };
 
-// Whether the first line that says something is that of an AEM in KVN, or XML has the element of
-// one. False for a file that cannot be read.
+// Whether the first line that is not empty is that of an AEM in KVN, or XML contains its element.
+// False for a file that cannot be read.
 bool is_aem(const std::filesystem::path& path);
 
 // The attitude of the body of a message over the time since its first row.

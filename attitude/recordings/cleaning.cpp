@@ -56,7 +56,7 @@ bool stands_out_of_motion(const std::vector<double>& x, size_t i, double noise) 
   const double before = off_parabola(x, i, -1), after = off_parabola(x, i, +1);
   const double off = before * after > 0.0 ? std::min(std::abs(before), std::abs(after)) : 0.0;
   if (!(off > threshold * std::sqrt(20.0) * noise)) return false;
-  // Where the motion itself is rough the parabolas miss it.
+  // The deviation of a rough motion from the parabolas; it is no evidence of an outlier.
   std::array<double, 2 * reach + 1> rough{};
   size_t count = 0;
   for (size_t j = i - std::min(i, reach); j < std::min(x.size(), i + reach + 1); ++j) {
@@ -147,8 +147,8 @@ struct Stuck {
   bool never_moves() const { return readings > 0 && stuck == readings; }
 };
 
-// Rows in which the readings say nothing of the motion. At the end of a sensor's range only what
-// noise brings below it is read between: such a reading is no fair one.
+// Rows whose readings are stuck, and their neighbours. Between saturated readings only those occur
+// that the noise shifts into the range of the sensor, so that they are biased.
 std::vector<size_t> stuck_rows(const std::vector<double>& x, const Stuck& found) {
   std::vector<size_t> rows;
   for (size_t i = 0; i < x.size(); ++i) {

@@ -237,7 +237,7 @@ class RecordingReader {
     recording_.report.has_old_yaw = true;
   }
 
-  // Of a channel of this file.
+  // The name that replaces a former name of a channel in this file.
   std::string successor_of(const std::string& channel) const {
     return recording_.report.has_old_yaw && channel == old_yaw ? std::string(new_yaw) : channel;
   }
@@ -280,7 +280,7 @@ class RecordingReader {
     }
   }
 
-  // Where commas do not separate cells they may stand in numbers.
+  // If commas do not separate cells, they may be decimal commas.
   std::optional<double> number_of(std::string_view cell) {
     std::optional<double> number = to_number(cell);
     if (number || separator_ == ',') return number;
@@ -366,7 +366,7 @@ Schedule Recording::schedule() const {
   const std::vector<WheelSpeeds> knots = wheel_speeds(*this);
   size_t next = 0;
   ZeroOrderHold held;
-  // Before its first knot a wheel is on the first line.
+  // Before its first knot, the speed of a wheel is on the line of its first interval.
   if (!knots.empty()) held.wheel = knots.front();
   // An empty cell keeps the previous value.
   const auto update = [](const Channel* channel, size_t row, double& value) {

@@ -234,7 +234,7 @@ void Recorder::add_camera(const Truth& truth) {
     seen = turn(noise_rad) * truth.lab_from_body_seen * turn(truth.camera_error_rad);
   } else if (due) {
     const Pose pose = pose_of(truth.lab_from_body_seen, truth.rate_body_rad_s);
-    // Without enough markers in sight there is no reading.
+    // If too few markers are visible, there is no reading.
     if (const auto covariance = attitude_covariance_lab_rad2(*camera.geometry, pose)) {
       const Vec3 noise_rad = Eigen::LLT<Mat3>(*covariance).matrixL() * draw;
       seen = turn(noise_rad) * marker_bias(*camera.geometry, pose) * truth.lab_from_body_seen *

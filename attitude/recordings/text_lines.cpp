@@ -78,7 +78,7 @@ std::string gzip(const std::string& text) {
     throw NumericalError("zlib could not be started");
   }
   std::string result(deflateBound(&stream, text.size()), '\0');
-  // zlib does not write to its input, but an old interface forgets to say so.
+  // zlib does not write to its input, but its interface has no const.
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
   stream.avail_in = static_cast<uInt>(text.size());
   stream.next_out = reinterpret_cast<Bytef*>(result.data());

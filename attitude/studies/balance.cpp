@@ -77,8 +77,8 @@ Vec3 offset_of(const Fit& fitted, size_t unbalance) {
   return offset_m;
 }
 
-// How far the offset of parts of the recording is from that of the whole at most, by axis: what the
-// model lacks pulls each of them another way, and all of them some way.
+// The largest difference, per axis, between the offset fitted to parts of the recording and that of
+// the whole: a measure of the systematic error due to effects that the model lacks.
 Vec3 distance_of_parts_m(const BalanceRun& run, const Fit& whole, size_t unbalance,
                          const std::vector<Observation>& segments) {
   constexpr size_t parts = 6, fewest_blocks = 60;
@@ -349,7 +349,7 @@ Product balance_product(const BalanceRun& run, const BalanceResult& result) {
   plot.name = "balance_residuals";
   plot.title = "Camera minus fitted trajectory, about lab axes";
   plot.x_label = "Time [s]";
-  // More points than these only blot out each other.
+  // More points would only cover each other.
   constexpr size_t max_points = 2000;
   const size_t rows = result.residual_time_s.size();
   const size_t every = rows / max_points + 1;

@@ -288,7 +288,7 @@ Plot tilt_plot(const Budget& budget) {
     const std::vector<Acting> acting = acting_within_a_second(budget.model, state);
     for (size_t d = 0; d < acting.size(); ++d) {
       const double torque_N_m = acting[d].largest_body_N_m.norm();
-      // Nothing to draw on a logarithmic axis.
+      // A logarithmic axis has no zero.
       if (!(torque_N_m > 0.0) || !std::isfinite(torque_N_m)) continue;
       plot.curves[d].x.push_back(tilt_rad / degree_rad);
       plot.curves[d].y.push_back(torque_N_m);

@@ -1,8 +1,8 @@
 // Every figure that the source paper prints about attitude, recomputed.
 //
-// The paper gives some inputs and leaves others out. What it leaves out stands in PaperInputs, each
-// value with where it comes from; nothing there is tuned to the figures. paper_sensitivities() says
-// how far each figure moves with each of them, and which value would give the paper's.
+// PaperInputs contains the inputs that the paper omits, each value with its origin; none is fitted
+// to the figures. paper_sensitivities() returns the change of each figure with each input, and the
+// value that would give the published figure.
 #pragma once
 
 #include <limits>

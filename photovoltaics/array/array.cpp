@@ -20,7 +20,7 @@ constexpr int curve_intervals = 200;
 // Light and photocurrent of the cells.
 struct CellLight {
   std::vector<double> incident_W;  // per cell
-  std::vector<double> entering_W;  // counted as perpendicular light
+  std::vector<double> entering_W;  // incident_W times the relative transmission at its angles
   std::vector<double> current_A;
 };
 
@@ -37,12 +37,12 @@ struct PreparedArray {
   CellCover cover;
   std::vector<double> area_m2 = {};
   double total_area_m2 = 0.0;
-  double temperature_K = 0.0;            // that the rest is for
+  double temperature_K = 0.0;            // of the members below
   std::vector<double> factor_A_W = {};   // per band
-  std::vector<double> cell_factor = {};  // per cell, over that of a cell like the others
+  std::vector<double> cell_factor = {};  // per cell, relative to a cell without override
   CellTables tables = {};
 
-  // Without tables.
+  // Sets the temperature; the tables of the cells are not computed.
   void warm_to(double kelvin);
   ArrayCurve curve(const std::vector<double>& photocurrents_A) const {
     return {design.wiring, tables, photocurrents_A};
@@ -50,8 +50,8 @@ struct PreparedArray {
   CellLight light(const LightBins& bins) const;
 };
 
-// Per cell and band, the fraction of the light that enters; of the whole array where no sampled ray
-// met the cell.
+// The fraction of the light that enters, per cell and band. A cell without sampled rays gets the
+// fraction of the whole array.
 std::vector<double> entering_fraction(const CellCover& cover, size_t bands,
                                       std::span<const double> entry_W) {
   std::vector<double> fraction(cover.cells() * bands, 1.0);
@@ -94,7 +94,7 @@ CellCover cover_of(const ArrayDesign& design, const ArrayLight& light) {
           cell_rectangles(light, design.columns, design.rows, design.gap_m, design.margin_m)};
 }
 
-// Without the cells' tables.
+// Prepares the array for its light; the tables of the cells are not computed.
 PreparedArray prepare_light(const ArrayDesign& design, const ArrayLight& light,
                             std::span<const double> responsivity_A_W) {
   if (responsivity_A_W.size() < static_cast<size_t>(light.bands)) {
@@ -128,10 +128,11 @@ void PreparedArray::warm_to(double kelvin) {
   tables.clear();
 }
 
-// Cells of equal area share a law: a table, or for one maximum of the power what is made fastest.
+// The diode law of each cell; cells of equal area share one. It is a table, unless `once` (a single
+// maximum of the power) makes the direct computation faster.
 CellTables laws_at(const ArrayDesign& design, std::span<const double> cell_area_m2,
                    double largest_photocurrent_A, double temperature_K, bool once = false) {
-  // As long as a table takes, so long takes one maximum of so many cells without it.
+  // Number of cells for which one maximum without a table takes as long as computing the table.
   constexpr size_t few_cells = 400;
   const bool tabulated = !once || cell_area_m2.size() > few_cells;
   std::vector<std::pair<double, std::shared_ptr<const DiodeVoltageLaw>>> known;
@@ -149,7 +150,7 @@ CellTables laws_at(const ArrayDesign& design, std::span<const double> cell_area_
       tables.push_back(law_of(one->model, area_m2));
       continue;
     }
-    // Areas that differ by the rounding of a model's single numbers alone are one.
+    // Areas that differ only by the rounding of single-precision coordinates are equal.
     constexpr double rounding = 1e-6;
     auto same = std::ranges::find_if(known, [&](const auto& pair) {
       return std::abs(pair.first - area_m2) <= rounding * area_m2;
@@ -215,7 +216,8 @@ Headline headline(const PreparedArray& array, const LightBins& bins) {
            alone_W > 0 ? 1.0 - power_W / alone_W : 0.0, array.temperature_K}};
 }
 
-// The light on the cells at the array's temperature → that of their steady state.
+// The steady-state temperature of the cells in this light. The photocurrents at the temperature of
+// the array are converted to other temperatures.
 double steady_temperature_K(const PreparedArray& array, const LightBins& bins) {
   const ArrayDesign& design = array.design;
   const CellLight light = array.light(bins);
@@ -231,7 +233,8 @@ double steady_temperature_K(const PreparedArray& array, const LightBins& bins) {
       .steady_K(sum_of(light.incident_W) / array.total_area_m2, electric_W_m2);
 }
 
-// Per kelvin of the cells in the same light; leaves the array as it was.
+// Derivative of the results with respect to the cell temperature, in the same light. The array is
+// unchanged afterwards.
 Headline slope_of_headline(PreparedArray& array, const LightBins& bins) {
   const double kelvin = array.temperature_K;
   const double step_K = 1e-3 * kelvin;
@@ -250,8 +253,8 @@ Headline slope_of_headline(PreparedArray& array, const LightBins& bins) {
   return slope;
 }
 
-// How the temperature follows other light, to first order: from the headline of that light at the
-// temperature of this one.
+// Change of the steady-state temperature with the light, to first order, computed from the results
+// in the other light at the present temperature.
 class FollowingTemperature {
  public:
   FollowingTemperature(const PreparedArray& array, const Headline& here, const Headline& slope)
@@ -263,7 +266,7 @@ class FollowingTemperature {
                slope.value[Headline::power];
   }
 
-  // Per relative change of all light, as power follows it in proportion.
+  // Change of temperature per relative change of all light; the power is proportional to the light.
   double kelvin_per_light() const {
     if (!(W_per_K_ > 0.0)) return 0.0;
     return (absorptance_ * here_.value[Headline::light] - here_.value[Headline::power]) / W_per_K_;
@@ -283,7 +286,7 @@ class FollowingTemperature {
   double absorptance_ = 0.0, W_per_K_ = 0.0;
 };
 
-// The mean of all replicates but one; noise may have made it negative.
+// The mean of all replicates except one, at least zero: noise can make it negative.
 std::vector<double> mean_without(int replicate, const BinSums& sums, std::span<const double> mean) {
   const std::span<const double> one = sums.of(replicate);
   const double count = sums.replicates;
@@ -294,8 +297,8 @@ std::vector<double> mean_without(int replicate, const BinSums& sums, std::span<c
   return others;
 }
 
-// The values at the mean of all replicates, with Tukey's errors. The bias is left in, so that the
-// headline is the maximum of the curve that is printed; it is of second order in the error.
+// The values at the mean of all replicates, with Tukey's jackknife errors. The bias is of second
+// order in the error and not removed, so that the results agree with the printed curve.
 Estimates estimate(const PreparedArray& array, const ArrayLight& light, const LightBins& mean,
                    const Headline& slope) {
   const Headline value = headline(array, mean);
@@ -379,7 +382,7 @@ CellCurrents cell_currents(const ArrayDesign& design, const ArrayLight& light,
     if (light.entry.bins > 0) others.entry_W = mean_without(r, light.entry, mean.entry_W);
     without.push_back(array.light(others));
   }
-  // Tukey's error, with the part that all replicates share.
+  // Tukey's jackknife error, with the error that all replicates have in common.
   const double count = replicates;
   const auto error = [&](const std::function<double(const CellLight&)>& of, double value) {
     double average = 0.0, squares = 0.0;

@@ -114,7 +114,7 @@ DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const Day
   if (design.heat) {
     plate.emplace(*design.heat, array.area_of_cells_m2);
     temperature_K = design.heat->start_K;
-    // Between the start and the steady states of the least and the most light.
+    // The temperature is between the initial one and the steady states in least and most light.
     const double absorptance = design.heat->absorptance;
     const double least =
         s.droop.min_light() * std::max(0.0, absorptance - 1.5 * array.efficiency.value);

@@ -14,7 +14,7 @@ namespace {
 
 // 2 π⁵ k⁴/(15 h³ c²).
 constexpr double stefan_boltzmann_W_m2_K4 = 5.670374419e-8;
-// Of the cosmic background: D. J. Fixsen, ApJ 707 (2009) 916.
+// Temperature of the cosmic background: D. J. Fixsen, ApJ 707 (2009) 916.
 constexpr double deep_space_K = 2.725;
 
 namespace thermal_key {

@@ -6,7 +6,7 @@
 namespace photorque {
 namespace {
 
-// Of a lag towards 1 (on) or 0.
+// State of a first-order lag towards 1 (on) or 0 (off) after `elapsed_s`.
 double lagged(double from, bool on, double elapsed_s, double time_constant_s) {
   const double target = on ? 1.0 : 0.0;
   return target + (from - target) * std::exp(-elapsed_s / time_constant_s);
@@ -67,7 +67,7 @@ struct PowerSupply::Curves {
     for (size_t i = 0; i < curve.size(); ++i) sum += weight[i] * curve[i].open_circuit_V();
     return sum;
   }
-  // Beyond the open circuit the converter's diode lets nothing back.
+  // Above the open-circuit voltage, the diode of the converter blocks.
   double current_A(double voltage_V) const {
     double sum = 0.0;
     for (size_t i = 0; i < curve.size(); ++i) {

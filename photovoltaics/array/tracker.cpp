@@ -36,7 +36,7 @@ constexpr NumberKey rescan_fraction("rescan_fraction", usual.rescan_fraction, Ra
 constexpr const char* names[] = {"perturb_and_observe", "incremental_conductance", "global_scan",
                                  "periodic_sweep"};
 
-// Which of the maxima lies uphill.
+// The maximum in the direction of rising power.
 const ArrayPoint* uphill(const ArrayCurve& curve, const std::vector<ArrayPoint>& maxima,
                          double voltage_V) {
   const double open_V = curve.open_circuit_V(), h = 1e-6 * open_V;
@@ -132,7 +132,7 @@ std::vector<TrackerRun> run_trackers(const std::vector<Tracker>& trackers,
     const double open_V = curve.open_circuit_V();
     for (size_t i = 0; i < runs.size(); ++i) {
       const double v = controllers[i].voltage_V();
-      // Beyond the open circuit the converter's diode lets nothing back.
+      // Above the open-circuit voltage, the diode of the converter blocks.
       const double current_A = v < open_V ? curve.current_A(v) : 0.0;
       record(runs[i], time_s, v, curve, maxima, v * current_A);
       controllers[i].observe({v, current_A});

@@ -27,7 +27,7 @@ void check(const CellParameters& p) {
   require(finite(p.saturation_2_A) && p.saturation_2_A >= 0, "saturation_2_A", p.saturation_2_A,
           "a number >= 0");
   if (!(p.saturation_1_A + p.saturation_2_A > 0)) {
-    // Very cold cells have none that a number could hold.
+    // The saturation currents of very cold cells are below the smallest double.
     throw InputError({}, "saturation_1_A",
                      "no saturation current at " + std::to_string(p.temperature_K) + " K",
                      "one > 0 in one of the diodes");
@@ -50,12 +50,13 @@ void check(const CellParameters& p) {
           "a number > 0");
 }
 
-// The voltage at which one diode alone carries `current` (> 0 forward); ∞ without that diode.
+// The voltage at which one diode alone carries `current_A` (> 0); ∞ without that diode.
 double forward_inverse(double current_A, double saturation_A, double scale_V) {
   return saturation_A > 0 ? scale_V * std::log1p(current_A / saturation_A) : infinity;
 }
 
-// The size of the reverse voltage at which it carries `current` (> 0); ∞ if it never does.
+// The magnitude of the reverse voltage at which one diode alone carries the reverse current
+// `current_A` (> 0); ∞ if the current exceeds the saturation current.
 double reverse_inverse(double current_A, double saturation_A, double scale_V) {
   return current_A < saturation_A ? -scale_V * std::log1p(-current_A / saturation_A) : infinity;
 }
@@ -71,7 +72,8 @@ CellParameters in_light(CellParameters p, double photocurrent_A) {
     const double base_ohm = std::max(0.0, (p.shunt_ohm - p.shunt_dark_ohm * full) / (1.0 - full));
     ohm = base_ohm + (p.shunt_dark_ohm - base_ohm) * std::exp(-p.shunt_exponent * x);
   }
-  // In the dark next to nothing leaks; the breakdown fraction stays within its range.
+  // In the dark the shunt is nearly infinite; its factor is limited, and the breakdown fraction
+  // remains in its valid range.
   constexpr double most = 1e9, most_fraction = 6.9;
   double times = std::clamp(ohm / p.shunt_ohm, 1.0 / most, most);
   if (p.breakdown_fraction > 0.0) {
@@ -122,15 +124,15 @@ DarkCurrent CellCurve::dark(double diode_V) const {
   return d;
 }
 
-// Each term alone would need at least the voltage at which the sum reaches the current; and one of
-// the terms carries its equal part of it at least.
+// Each term alone needs at least the voltage of the sum to carry the whole current: an upper bound.
+// At least one of the n terms carries 1/n of the current: a lower bound.
 CellCurve::Bracket CellCurve::forward_bracket(double dark_A, double conductance_S) const {
   const auto smallest = [&](double term_A, double linear_S) {
     return std::min({forward_inverse(term_A, parameters_.saturation_1_A, scale_1_V_),
                      forward_inverse(term_A, parameters_.saturation_2_A, scale_2_V_),
                      term_A / linear_S});
   };
-  // Forward, the breakdown factor is below 1.
+  // For forward voltages, the breakdown factor is below 1.
   return {smallest(dark_A / 3.0, conductance_S + breakdown_S_), smallest(dark_A, conductance_S)};
 }
 
@@ -142,8 +144,8 @@ CellCurve::Bracket CellCurve::reverse_bracket(double dark_A, double conductance_
                              reverse_inverse(term_A, parameters_.saturation_2_A, scale_2_V_),
                              term_A / conductance_S});
   if (breakdown_S_ > 0) {
-    // Beyond half the breakdown voltage the factor V_d is between V_br/2 and V_br; before it, the
-    // power is between 1 and 2^m.
+    // Bounds of the breakdown current: beyond V_br/2, V_d is between V_br/2 and V_br; below V_br/2,
+    // the factor (1 − V_d/V_br)^−m is between 1 and 2^m.
     const double far_y = std::pow(half_V * breakdown_S_ / size_A, 1.0 / m);
     farthest = std::min(farthest, std::max(half_V, breakdown_size_V_ * (1.0 - far_y)));
     const double near_y = std::pow(breakdown_size_V_ * breakdown_S_ / term_A, 1.0 / m);
@@ -159,12 +161,13 @@ double CellCurve::diode_voltage_V(double dark_A, double extra_S) const {
   const double linear_S = shunt_S_ + extra_S;
   auto [low, high] =
       dark_A > 0 ? forward_bracket(dark_A, linear_S) : reverse_bracket(dark_A, linear_S);
-  // Rounding may put the root a few units outside.
+  // Because of rounding, the root may be outside by a few units in the last place.
   low -= 4 * rounding * std::abs(low);
   high += 4 * rounding * std::abs(high);
   double v = dark_A > 0 ? high : low;
   if (breakdown_S_ > 0) v = std::max(v, -breakdown_size_V_ * (1.0 - rounding));
-  // On log(D/j), which is straight both for exponentials and for powers.
+  // Newton steps on log(D/j), which is nearly linear in V_d for exponentials and in log V_d for
+  // powers.
   return newton_root(low, high, v, 4 * rounding, [&](double trial_V) {
     DarkCurrent d = dark(trial_V);
     d.value_A += extra_S * trial_V;
@@ -179,12 +182,12 @@ double CellCurve::voltage_V(double photocurrent_A, double current_A) const {
 }
 
 double CellCurve::current_A(double photocurrent_A, double voltage_V) const {
-  // V_d + D R_s = V + I_L R_s: eq. 2 with a shunt 1/R_s beside it.
+  // V_d + D R_s = V + I_L R_s: eq. 2 with an additional shunt conductance 1/R_s.
   const double rs = parameters_.series_ohm;
   if (rs == 0.0) return photocurrent_A - dark(voltage_V).value_A;
   const double diode_V = diode_voltage_V(photocurrent_A + voltage_V / rs, 1.0 / rs);
   const DarkCurrent d = dark(diode_V);
-  // Of the two explicit forms of eq. 1 the one that magnifies the rounding of V_d less.
+  // Two explicit forms of eq. 1 give the current; this one amplifies the rounding of V_d less.
   return d.slope_S * rs > 1.0 ? (diode_V - voltage_V) / rs : photocurrent_A - d.value_A;
 }
 
@@ -195,7 +198,7 @@ double CellCurve::photocurrent_A(double short_circuit_A) const {
 CellOperatingPoint CellCurve::maximum_power(double photocurrent_A) const {
   if (photocurrent_A <= 0.0) return {};
   const double rs = parameters_.series_ohm;
-  // dP/dV_d = I − D′ (V_d − 2 I R_s) falls through zero between short and open circuit.
+  // dP/dV_d = I − D′ (V_d − 2 I R_s) decreases through zero between short and open circuit.
   const double low = short_circuit_A(photocurrent_A) * rs;
   const double high = open_circuit_V(photocurrent_A);
   double v = std::max(low, high - 3.0 * std::max(scale_1_V_, scale_2_V_));

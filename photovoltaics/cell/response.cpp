@@ -17,7 +17,7 @@ struct BandFraction {
   double current_A_W = 0.0;
 };
 
-// Of a line so narrow that all of its light counts as of one wavelength.
+// The fraction of a spectral line that is so narrow that it is treated as one wavelength.
 BandFraction line_fraction(const QuantumEfficiency& efficiency, const Spectrum& spectrum,
                            double low_m, double high_m) {
   const double power = band_fractions(spectrum, Bands{{low_m, high_m}})[0];

@@ -16,8 +16,8 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-// Of a curve, the logarithm of its photocurrent; shared, the gap and the logarithms of I₀, n V_t,
-// R_s and 1/R_sh at the first curve's temperature and light.
+// The shared parameters: the gap and the logarithms of I₀, n V_t, R_s and 1/R_sh at temperature and
+// light of the first curve. Each curve has the logarithm of its photocurrent in addition.
 enum Shared { gap, saturation, scale, series, shunt, shared_count };
 
 constexpr double silicon_gap_eV = 1.121, silicon_gap_slope_1_K = -0.0002677;  // De Soto (2006)
@@ -26,7 +26,7 @@ struct Task {
   std::vector<CurveAt> curves;
   SweepNoise noise;
   ShuntLaw law = ShuntLaw::constant;
-  double first_A = 1.0;         // about the first photocurrent
+  double first_A = 1.0;         // approximate photocurrent of the first curve
   double reference_K = 298.15;  // of the shared values
   bool fits_gap = false;
   bool holds_shared = false;      // fits the photocurrents only
@@ -81,7 +81,7 @@ Reading reading_of(const Task& task, const Circuit& c, const CellCurve& cell, do
   return r;
 }
 
-// Of the values of a point, those of a curve and the shared ones.
+// The values of one curve: its photocurrent and the shared values.
 VectorXd values_of(const VectorXd& at, Index run) {
   VectorXd x(1 + Index{shared_count});
   x << at[run], at.tail(Index{shared_count});
@@ -163,7 +163,7 @@ inference::Fit fit_rounds(Task& task, VectorXd at, int rounds) {
   return fit;
 }
 
-// Each curve's light by its short circuit; the rest from the first curve alone.
+// Initial values: photocurrents from the short-circuit currents, the others from the first curve.
 VectorXd start_of(const Task& task) {
   const SingleDiode first = fit_sweeps(std::span(&task.curves[0].sweep, 1), task.noise).diode;
   VectorXd at(static_cast<Index>(task.curves.size()) + Index{shared_count});
@@ -203,7 +203,7 @@ inference::Fit best_fit(Task& task, const VectorXd& start, std::vector<OutlierRe
   return fit;
 }
 
-// Squares of a curve's residuals, of the current over its photocurrent, summed; at its values.
+// Sum of squares of the residuals of a curve's current, divided by the square of its photocurrent.
 double relative_squares(const Task& task, Index run, const VectorXd& at) {
   const Circuit c = circuit_of(task, run, values_of(at, run));
   const CellCurve cell = c.cell();
@@ -216,8 +216,9 @@ double relative_squares(const Task& task, Index run, const VectorXd& at) {
   return sum / (c.photocurrent_A * c.photocurrent_A);
 }
 
-// Of each curve, the mean square residual by a fit that left it out with a fifth of all (of less
-// than five curves, alone); only its photocurrent is fitted to it. Infinite where that fails.
+// The mean square residual of each curve under a fit to the other curves (five-fold
+// cross-validation, or leave-one-out for fewer than five curves). Only the photocurrent is fitted
+// to the curve itself. Infinite if the fit fails.
 std::vector<double> predicted_squares(const Task& task, const VectorXd& start) {
   const size_t count = task.curves.size(), folds = std::min<size_t>(5, count);
   std::vector<size_t> by_light(count);
@@ -256,8 +257,8 @@ std::vector<double> predicted_squares(const Task& task, const VectorXd& start) {
   return squares;
 }
 
-// Whether the other law predicts curves better that were left out: the mean logarithm of the ratio
-// of their squares by more than two standard errors, else the simple one stands.
+// Whether the other law predicts left-out curves better than the simple one: the mean logarithm of
+// the ratio of their squares exceeds two standard errors.
 bool predicts_better(const std::vector<double>& simple, const std::vector<double>& other) {
   double sum = 0.0, squares = 0.0;
   for (size_t k = 0; k < simple.size(); ++k) {

@@ -245,7 +245,7 @@ bool is_of_curve(std::string_view line, const Header& header) {
   return true;
 }
 
-// Of a curve with the current counted into the device: the signs of its currents are changed.
+// Reverses the currents of a curve whose current is counted into the device.
 bool reverse_negative(IvSweep& sweep) {
   double nearest_V = 1e300, short_circuit_A = 0.0, highest_V = -1e300, last_A = 0.0;
   for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
@@ -346,7 +346,7 @@ class Reader {
   }
 
   void read_row(const std::vector<std::string_view>& cells) {
-    // Decimal commas, say, which would shift what follows them.
+    // For example decimal commas, which would shift the columns after them.
     size_t used = 0;
     for (const auto& place : header_.place) used = std::max(used, place ? *place + 1 : 0);
     if (header_.separator == ',' && cells.size() > used && used == 2 && cells.size() == 4) {
@@ -400,7 +400,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// By rising voltage, and by falling current where it stands still.
+// Order of the readings: by rising voltage, and at equal voltage by falling current.
 std::vector<size_t> order_of(const IvSweep& sweep) {
   std::vector<size_t> order(sweep.voltage_V.size());
   std::iota(order.begin(), order.end(), size_t{0});
@@ -440,7 +440,7 @@ size_t take_spikes(IvSweep& sweep) {
       ++count;
     }
   }
-  // Many are no accident.
+  // If there are many, they are not outliers.
   if (count * 20 > order.size()) return 0;
   if (count > 0) remove(sweep, out);
   return count;
@@ -492,7 +492,7 @@ CurveCleaning clean_curve(IvSweep& sweep) {
       low = std::min(low, amperes(k));
       high = std::max(high, amperes(k));
     }
-    // How steeply the curve falls before, over a tenth of the short-circuit current at least.
+    // The largest slope before these readings, over at least a tenth of the short-circuit current.
     double steepest_S = 0.0;
     for (size_t k = first; k-- > 0;) {
       const double fall_A = amperes(k) - high;

@@ -153,7 +153,7 @@ VectorXd start_from(const IvSweep& sweep, const SweepNoise& noise) {
   return best.at;
 }
 
-// How many of its errors each reading is off the curve.
+// Distance of each reading from the curve, in units of its error.
 std::vector<std::vector<double>> off_curve(std::span<const IvSweep> sweeps, const SweepNoise& noise,
                                            const VectorXd& x) {
   const CellCurve cell = circuit(x);

@@ -69,7 +69,7 @@ std::vector<std::string> quoted_cells(std::string_view line) {
   return cells;
 }
 
-// As pvlib names rows.
+// The name of a row in the notation of pvlib.
 std::string underscored(std::string_view name) {
   std::string result(name);
   for (char& c : result) {

@@ -22,10 +22,10 @@ struct ListedModule {
   RatedPoint predict(double irradiance_W_m2, double temperature_K) const;
 };
 
-// The module of a text, which `file` names in messages.
+// The module that a text describes; messages call it `file`.
 //
 // A table with the columns A_c, N_s, alpha_sc, a_ref, I_L_ref, I_o_ref, R_s, R_sh_ref and Adjust is
-// a library of SAM; `name` says which row: its Name, also with "_" for everything but letters and
+// a library of SAM; `name` selects the row: its Name, also with "_" for everything but letters and
 // digits as pvlib writes it, or a part of it that no other row has. The circuit is that of
 // A. Dobos, Journal of Solar Energy Engineering 134 (2012) 021011, with the gap of silicon.
 //

@@ -227,7 +227,7 @@ bool take_outliers(std::span<IvSweep* const> sweeps, const std::vector<std::vect
   std::ranges::nth_element(all, middle);
   constexpr double of_median = 1.4826;  // a normal variable's standard deviation
   const double limit = far * std::max(1.0, of_median * *middle);
-  // More than two in a row are a part of the curve, a step of a shadow, say.
+  // More than two in a row are a part of the curve, for example a step due to a shadow.
   constexpr size_t longest = 2;
   std::vector<std::vector<char>> is_out(sweeps.size());
   std::vector<OutlierReading> found;

@@ -21,7 +21,7 @@ using Eigen::Index, Eigen::VectorXd;
 
 enum Parameter { saturation, scale, series, shunt, count };
 
-// The points, and how the shunt changes from that at the short-circuit current of the first.
+// The points, and the law of the shunt, whose reference is the short-circuit current of the first.
 struct Figures {
   std::span<const RatedPoint> points;
   ShuntLaw law = ShuntLaw::constant;
@@ -34,8 +34,8 @@ struct Circuit {
   double light_A;
 };
 
-// Of the shunt's conductance, by the photocurrent over that of the first point: 0 = I_L − D(I_sc
-// R_s) − f G I_sc R_s − I_sc with I_L = f I_L1 gives f.
+// The circuit of a point. With the inverse law, the shunt conductance is multiplied by the factor
+// f = I_L/I_L1, which follows from 0 = I_L − D(I_sc R_s) − f G I_sc R_s − I_sc.
 Circuit circuit_of(const VectorXd& x, const Figures& figures, const RatedPoint& point) {
   const double series_ohm = std::exp(x[series]), shunt_S = std::exp(x[shunt]);
   const auto with_shunt = [&](double conductance_S) {
@@ -47,7 +47,7 @@ Circuit circuit_of(const VectorXd& x, const Figures& figures, const RatedPoint& 
   const double first_A = cell.photocurrent_A(figures.first_A);
   const double leak_A = shunt_S * series_ohm * point.short_circuit_A;
   double factor = (cell.photocurrent_A(point.short_circuit_A) - leak_A) / (first_A - leak_A);
-  // Only of resistances that no fit ends at.
+  // Happens only for resistances that are never the result of a fit.
   if (!(factor > 0.0) || !std::isfinite(factor)) {
     factor = point.short_circuit_A / figures.first_A;
   }
@@ -68,9 +68,9 @@ void check(std::span<const RatedPoint> points) {
   }
 }
 
-// As they would be at the temperature of the first: every current of a point by what its short
-// circuit changes, every voltage by what the first one's open circuit does (IEC 60891, procedure 1,
-// without the correction of the curve's own change).
+// The points translated to the temperature of the first one: currents by the change of the
+// short-circuit current, voltages by that of the open-circuit voltage of the first point
+// (IEC 60891, procedure 1, without curve correction).
 std::vector<RatedPoint> at_first_temperature(std::span<const RatedPoint> points,
                                              const TemperatureSlopes& slopes) {
   std::vector<RatedPoint> moved(points.begin(), points.end());
@@ -116,7 +116,7 @@ std::vector<inference::Parameter> parameters_from(const VectorXd& start,
 inference::Fit fit_from(const VectorXd& start, const Figures& figures, double guess_V) {
   std::vector<inference::Parameter> parameters = parameters_from(start, figures.points);
   if (figures.points.size() == 1) {
-    // Without a second point a weak pull keeps n V_t where it was guessed.
+    // A single point does not determine n V_t: a weak prior keeps it near the guess.
     parameters[scale].mean = std::log(guess_V);
     parameters[scale].sigma = 1.0;
   }
@@ -144,8 +144,8 @@ inference::Fit best_fit(const Figures& figures, double guess_V) {
   return best;
 }
 
-// Mean square error of each point as a fit of the other ones predicts it; of two points, whose
-// single ones determine no ideality, that of the fit itself, `fitted`.
+// Mean square error of the prediction of each point by a fit to the others. For two points it is
+// that of the fit to both, `fitted`, because a single point does not determine the ideality factor.
 double predictive_error(const Figures& figures, double guess_V, const inference::Fit& fitted) {
   const auto count = static_cast<double>(3 * figures.points.size());
   if (figures.points.size() < 3) return fitted.chi2 / count;
@@ -162,8 +162,8 @@ double predictive_error(const Figures& figures, double guess_V, const inference:
   return squares / count;
 }
 
-// Of the photocurrent over the irradiance: least squares of their logarithms about the first point;
-// 1 where all points have one irradiance.
+// Exponent of the photocurrent as a power of the irradiance: least squares of the logarithms, with
+// the first point fixed; 1 if all points have the same irradiance.
 double light_exponent(const VectorXd& x, const Figures& figures) {
   const RatedPoint& first = figures.points[0];
   const double first_A = circuit_of(x, figures, first).light_A;
@@ -176,7 +176,7 @@ double light_exponent(const VectorXd& x, const Figures& figures) {
   return squares > 0.0 ? products / squares : 1.0;
 }
 
-// Without errors.
+// The result of a fit, without standard errors.
 RatedFit described(const VectorXd& x, const Figures& figures, const TemperatureSlopes& slopes) {
   const RatedPoint& first = figures.points[0];
   RatedFit result;
@@ -200,7 +200,7 @@ RatedFit described(const VectorXd& x, const Figures& figures, const TemperatureS
   return result;
 }
 
-// Everything that has a standard error, in one row.
+// The figures with a standard error, as a vector.
 constexpr Index with_errors = 6;
 using FigureErrors = Eigen::Vector<double, with_errors>;
 FigureErrors figures_of(const RatedFit& fit) {
@@ -209,8 +209,8 @@ FigureErrors figures_of(const RatedFit& fit) {
           d.series_ohm.value,     d.shunt_ohm.value,    fit.model.gap_eV};
 }
 
-// From the covariance of the parameters, by central differences. Figures that depend on a parameter
-// which the points do not determine are undetermined too.
+// Errors from the covariance of the parameters, by central differences. Figures that depend on an
+// undetermined parameter are undetermined too.
 FigureErrors scatter_errors(const inference::Fit& fitted, const Figures& figures,
                             const TemperatureSlopes& slopes) {
   constexpr double step = 1e-4;  // of logarithms
@@ -241,8 +241,8 @@ double rounded_sigma(double figure, double step, double fraction) {
   return std::hypot(step / std::sqrt(12.0), fraction * figure);
 }
 
-// Half the difference of the fits with one figure moved up and down by its standard deviation, in
-// quadrature over all figures.
+// Errors due to rounding: half the difference of the fits with one figure changed by plus and minus
+// its standard deviation, added in quadrature over all figures.
 FigureErrors rounding_errors(const VectorXd& start, const Figures& figures,
                              const TemperatureSlopes& slopes, double guess_V,
                              const RatedTolerance& tolerance) {
@@ -272,8 +272,8 @@ FigureErrors rounding_errors(const VectorXd& start, const Figures& figures,
   return squares.cwiseSqrt();
 }
 
-// How well each of relative_errors() is known: by rounding and tolerance, and by `scatter`. A
-// current's holds the short circuit's, of which the photocurrent is made.
+// Standard deviation of each of relative_errors(), from rounding, tolerance and `scatter`. That of
+// a current includes the short-circuit current, which determines the photocurrent.
 VectorXd known_to(std::span<const RatedPoint> points, const RatedTolerance& tolerance,
                   double scatter) {
   constexpr double exact = 1e-12;  // figures without rounding
@@ -292,7 +292,7 @@ VectorXd known_to(std::span<const RatedPoint> points, const RatedTolerance& tole
   return sigma;
 }
 
-// The limits of the resistances: the profile of the figures' errors over how well they are known.
+// The limits of the resistances, from the profile of χ² of the figures.
 void limit_by_figures(const inference::Fit& best, const Figures& figures,
                       const RatedTolerance& tolerance, SingleDiode& diode) {
   const std::span<const RatedPoint> points = figures.points;
@@ -303,7 +303,7 @@ void limit_by_figures(const inference::Fit& best, const Figures& figures,
       });
   std::vector<inference::Parameter> parameters = parameters_from(best.at, points);
   if (points.size() == 1) {
-    constexpr double assumed = 0.1;  // of the ideality, which one point leaves open
+    constexpr double assumed = 0.1;  // of the ideality, which one point does not determine
     parameters[scale].mean = best.at[scale];
     parameters[scale].sigma = assumed;
   }
@@ -312,7 +312,7 @@ void limit_by_figures(const inference::Fit& best, const Figures& figures,
   limit_resistances(fit, residuals, series, shunt, 1.0, diode);
 }
 
-// The unit of the last decimal of a number, as its first nine digits show it.
+// The unit of the last decimal of a number that is printed with nine digits.
 double last_decimal(double number) {
   std::array<char, 32> text;
   const auto end =

@@ -103,7 +103,7 @@ std::vector<NamedBound> named_bounds(Index substrings) {
   return all;
 }
 
-// How steeply the measured curve falls at each point [S], over its neighbours.
+// Slope of the measured curve at each point [S], from its neighbours.
 VectorXd measured_slopes_S(const IvSweep& sweep) {
   const size_t points = sweep.voltage_V.size();
   VectorXd slopes(static_cast<Index>(points));
@@ -117,7 +117,7 @@ VectorXd measured_slopes_S(const IvSweep& sweep) {
 }
 
 VectorXd fitted_slopes_S(const IvSweep& sweep, const VectorXd& x) {
-  // Where all substrings are bypassed there is none.
+  // Slope of the curve where all substrings are bypassed.
   constexpr double steepest_S = 1e9;
   const auto points = string_points(x, sweep.voltage_V);
   VectorXd slopes(static_cast<Index>(points.size()));

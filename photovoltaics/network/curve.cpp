@@ -15,9 +15,9 @@
 namespace photorque {
 namespace {
 
-// Where a diode switches that does not.
+// The switching point of a diode that never switches.
 constexpr double never = std::numeric_limits<double>::infinity();
-// Above any voltage.
+// The switching point of a diode that always conducts.
 constexpr double always = std::numeric_limits<double>::max();
 // Relative step of a string's current at which its solution ends: the error is of second order.
 constexpr double fine = 1e-9;
@@ -48,7 +48,7 @@ void check(const ArrayWiring& wiring, size_t cells) {
   if (wiring.strings.empty()) throw InputError({}, "array", "no strings", "at least one");
 }
 
-// Between two points, from values and slopes.
+// Hermite interpolation between two points, from values and slopes.
 double hermite_A(const StringState& a, const StringState& b, double voltage_V) {
   const double width = b.voltage_V - a.voltage_V, t = (voltage_V - a.voltage_V) / width;
   const auto c = hermite_coefficients(a.current_A, b.current_A - a.current_A, -width / a.slope_ohm,

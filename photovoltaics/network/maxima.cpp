@@ -60,8 +60,8 @@ class ArrayCurve::Search {
   }
 
  private:
-  // How close to the strings' currents their cells are evaluated, as a fraction: for bounds, and
-  // for points, whose currents are exact whatever it is.
+  // Relative tolerance of the strings' currents at which their cells are evaluated: for bounds, and
+  // for points, whose currents are exact with any tolerance.
   static constexpr double near = 1e-6, any = std::numeric_limits<double>::infinity();
 
   struct Bounds {
@@ -166,7 +166,8 @@ class ArrayCurve::Search {
     scan_.maxima.push_back(curve_.point(x, y));
   }
 
-  // By d ln P/d ln x: some thousandths of the light turn it round.
+  // Keeps a corner if |d ln P/d ln x| is small: a change of the light by some thousandths may then
+  // make it a maximum.
   void add_corner(const Node& at) {
     constexpr double nearly_level = 0.1;
     if (std::abs(at.power_slope()) * at.x > nearly_level * at.power_W()) return;

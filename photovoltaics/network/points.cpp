@@ -1,5 +1,5 @@
-// Points of ArrayCurve at given voltages and near readings, beyond short and open circuit too, and
-// how points move with the photocurrents.
+// Points of ArrayCurve at given voltages and nearest to readings, also beyond short and open
+// circuit, and their derivatives with respect to the photocurrents.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -13,7 +13,7 @@ namespace photorque {
 namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
-// As a slope: a voltage that no current changes.
+// Slope of a curve whose voltage does not depend on the current.
 constexpr double steepest_S = 1e12;
 
 double inverse_or_steepest(double slope_ohm) {
@@ -22,7 +22,7 @@ double inverse_or_steepest(double slope_ohm) {
 
 }  // namespace
 
-// One node, moved along the curve.
+// A node that is moved along the curve.
 class ArrayCurve::Probe {
  public:
   explicit Probe(const ArrayCurve& curve) : curve_(curve), node_(curve.make_node()) {}
@@ -41,7 +41,7 @@ class ArrayCurve::Probe {
                                : node_.slope / (1.0 + curve_.series_ohm_ * node_.slope);
   }
 
-  // Where the terminal voltage, which falls with the current, has a value.
+  // The point with a given terminal voltage, which decreases with the current.
   SlopedPoint at_voltage(double voltage_V, double low_x, double high_x, double guess_x) {
     const bool by_current = curve_.by_current();
     const double R = node_.series_ohm;
@@ -65,7 +65,7 @@ class ArrayCurve::Probe {
   std::vector<StringRegime> regimes_;
 };
 
-// Below it no current has the voltage of a string whose substrings all clamp.
+// Lower limit of x: below it, a string whose substrings all clamp has no solution.
 double ArrayCurve::lowest_x() const {
   if (by_current()) return strings_[0].has_blocking_clamp() ? 0.0 : -unlimited;
   double lowest_V = -unlimited;
@@ -93,7 +93,7 @@ std::vector<ArrayCurve::SlopedPoint> ArrayCurve::at_voltages(
         points.push_back({V, probe.at(V).y, probe.slope_S()});
         continue;
       }
-      // The voltage over the resistance lies between zero and the whole.
+      // The voltage across the series resistance is between zero and that of the first estimate.
       const double other_x = V + series_ohm_ * probe.at(V).y;
       points.push_back(probe.at_voltage(V, std::min(V, other_x), std::max(V, other_x), V));
     }
@@ -183,7 +183,7 @@ ArrayCurve::SlopedPoint ArrayCurve::nearest(const ArrayPoint& reading, const Arr
     const ArrayPoint p = probe.point();
     return {distance2(p), x, {p.voltage_V, p.current_A, probe.slope_S()}};
   };
-  // Gauss–Newton along the curve, each step halved until it comes nearer.
+  // Gauss–Newton steps along the curve; each step is halved until the distance decreases.
   const auto descend = [&](double start_x) {
     Foot best = foot_at(start_x);
     for (int k = 0; k < 60; ++k) {
@@ -194,7 +194,7 @@ ArrayCurve::SlopedPoint ArrayCurve::nearest(const ArrayPoint& reading, const Arr
       double step = ((reading.voltage_V - best.point.voltage_V) * dv * wv +
                      (reading.current_A - best.point.current_A) * di * wi) /
                     along2;
-      // A millionth of an error along the curve changes no distance.
+      // Steps below a millionth of the error do not change the distance.
       if (step * step * along2 < 1e-12) break;
       bool is_nearer = false;
       for (int half = 0; half < 30 && std::abs(step) > 1e-13 * (1.0 + std::abs(best.x));
@@ -213,14 +213,14 @@ ArrayCurve::SlopedPoint ArrayCurve::nearest(const ArrayPoint& reading, const Arr
   const auto closest = std::ranges::min_element(trace, {}, distance2);
   if (closest != trace.end()) start_x = x_of(*closest);
   Foot best = descend(start_x);
-  // A corner of the curve has two sides.
+  // At a corner of the curve, a second start on the other side may find a nearer point.
   constexpr double far2 = 9.0;
   if (best.distance2 > far2 && trace.empty()) {
     const Foot second = descend(by_current() ? at_voltages({reading.voltage_V}).front().current_A
                                              : reading.voltage_V);
     if (second.distance2 < best.distance2) best = second;
   }
-  // A blocked string has any voltage above its open circuit's.
+  // A blocked string can have any voltage above its open-circuit voltage.
   if (by_current() && best.x == 0.0 && lowest == 0.0 && reading.voltage_V > best.point.voltage_V) {
     return {reading.voltage_V, 0.0, 0.0};
   }

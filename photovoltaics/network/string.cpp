@@ -8,7 +8,7 @@
 namespace photorque {
 namespace {
 
-// Beyond this a junction carries nothing that double precision can see; keeps its cube finite.
+// Largest slope resistance of a junction: its current is then below rounding, and its cube finite.
 constexpr double max_ohm = 1e90;
 
 }  // namespace
@@ -171,7 +171,7 @@ void StringCurve::beside_junction_at_voltage(double voltage_V, const StringRegim
         at_A = rows_A;
         return beside_junction(rows_A, voltage_V, regime, rows, state);
       });
-  // To third order in the last step.
+  // The result is extrapolated to third order in the last step.
   const double step_A = root_A - at_A;
   rows.voltage_V -=
       step_A *
@@ -217,7 +217,7 @@ void StringCurve::at_voltage(double voltage_V, const StringRegime& regime, doubl
                       close(excess)};
   };
   if (voltage_V < 0.0) {
-    // More than any photocurrent: through shunts, breakdown and diodes.
+    // Upper limit of the current at negative voltages, through shunts, breakdown and diodes.
     constexpr double most_A = 1e6;
     const double guess_A = state.current_A;
     for (double step = 1e-3 * high_A + 1e-9; high_A < most_A && excess_V(high_A).value > 0.0;

@@ -232,7 +232,7 @@ double StringCurve::tied_A(uint32_t index, double voltage_V, const StringRegime*
   return sum_A;
 }
 
-// By one search for the voltage, with a search for each branch's current inside.
+// Solves for the common voltage by a search, with an inner search for the current of each branch.
 ElementPoint StringCurve::tied_nested_at(uint32_t index, double current_A,
                                          const StringRegime* regime, StringState& state) const {
   const Part& part = parts_[index];

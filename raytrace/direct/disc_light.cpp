@@ -269,7 +269,7 @@ std::vector<double> DiscLight::tangent_lines(const Vec3& corner_m, const Vec3& a
   std::vector<double> lines;
   for (const double slope : all_slopes()) {
     for (const double side : {-slope, slope}) {
-      // Where two kinks of a line meet, its discriminant passes zero: it is quadratic in t.
+      // Two kinks of a line meet at a zero of the discriminant, which is quadratic in t.
       const auto discriminant = [&](double t) {
         return Quadratic(corner_m + t * across_m, along_m, radius_m(), side).discriminant();
       };

@@ -31,7 +31,7 @@ FactorTable<Count>::FactorTable(double low_m, double high_m, std::vector<Kink> k
       kinks_(std::move(kinks)),
       nodes_(2 * (kinks_.size() - 1) * (steps + 1)) {}
 
-// Nothing where they cross within the heights, or the light reaches to the side.
+// Empty if they cross within the range of heights, or if the light extends to the side.
 template <int Count>
 std::optional<std::vector<typename FactorTable<Count>::Kink>> FactorTable<Count>::kinks_of(
     const DiscLight& light, double low_m, double high_m) {

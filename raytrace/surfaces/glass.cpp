@@ -112,7 +112,8 @@ class OverCell final : public AlbedoLaw {
   PowerFractions fractions(double cosine, size_t band) const override {
     const double reflected = front_(cosine), enters = 1.0 - reflected;
     const double base = specular_[band];
-    // Of what enters, this much gets to the base in the end; at grazing incidence nothing enters.
+    // Light that meets the base, inner reflections included, as a fraction of the incident light;
+    // at grazing incidence none enters.
     const double meets = enters > 0.0 ? enters / (1.0 - reflected * base) : 0.0;
     return {.absorbed = meets * (1.0 - base), .specular = 1.0 - meets * (1.0 - base)};
   }

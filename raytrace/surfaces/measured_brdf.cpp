@@ -9,7 +9,7 @@
 namespace photorque {
 namespace {
 
-// How far an angle lies beyond the nodes.
+// Distance of an angle from the range of the nodes.
 double beyond(const std::vector<double>& nodes, double angle) {
   constexpr double slack_rad = 1e-9;
   const double far = std::max(nodes.front() - angle, angle - nodes.back());
@@ -134,7 +134,7 @@ class BrdfLobe final : public Lobe {
     return (1.0 - part) * reflectance_[i] + part * reflectance_[i + 1];
   }
   double asymmetry() const { return brdf_.asymmetry; }
-  // Between nodes the reflectance is linear, so that the largest stands at one of them.
+  // The reflectance is linear between nodes, so that its maximum is at one of them.
   size_t brightest_node() const {
     return static_cast<size_t>(std::max_element(reflectance_.begin(), reflectance_.end()) -
                                reflectance_.begin());

@@ -100,7 +100,7 @@ Ray make_ray(const Vec3& origin_m, const Vec3& direction, uint32_t sample) {
   return ray;
 }
 
-// How light meets the surface at hit i, in the body frame.
+// Direction and side of the light at hit i, in the body frame.
 Incidence incidence_at(const TraceableScene::Data& scene, const HitBuffer& buffer, int i) {
   const TrianglePlane& plane = scene.plane(buffer.hits.instance[i], buffer.hits.triangle[i]);
   const Vec3 outward(plane.normal[0], plane.normal[1], plane.normal[2]);

@@ -30,7 +30,7 @@ RayPlacement::RayPlacement(const RigidTransform& body_from_emitter,
   }
 }
 
-// Input and output do not overlap, which the compiler must know to vectorise.
+// Input and output do not overlap; __restrict lets the compiler vectorise.
 void RayPlacement::place(const RayBlock& __restrict rays, RayColumns& __restrict placed,
                          Landing& __restrict landing) const {
   constexpr float min_z = 1e-6f;  // of the directions of rays that may reach the plane
@@ -82,7 +82,7 @@ struct LandingGrid {
   uint32_t bits;  // per side
   float x_low, y_low, x_scale, y_scale;
 
-  // From some rays of the batch.
+  // Makes the grid from some rays of the batch.
   LandingGrid(const LaunchPlan& plan, uint32_t batch, const Landing& some)
       : bits(cell_bits(batch)) {
     const auto [x_least, x_most] = std::minmax_element(some.x.begin(), some.x.end());
@@ -180,9 +180,9 @@ BeamSample sample_beam(const Emitter& emitter, const std::optional<Targets>& tar
   return sample;
 }
 
-// Which leading bits the rays of a batch share: those that bring them closest together where they
-// land. Halving the aperture and the directions in turn, whichever spreads the landing points more;
-// of each, the azimuth first.
+// Number of leading bits, in each dimension, that the rays of a batch have in common, so that they
+// land close together. Aperture and directions are halved in turn, whichever spreads the landing
+// points more; in each, the azimuth first.
 std::array<int, sobol_dimensions> shared_bits(int bits, double aperture_m, double spread_m) {
   int of_aperture = 0, of_direction = 0;
   while (of_aperture + of_direction < bits) {

@@ -79,7 +79,7 @@ void find_in_packets(const TraceableScene::Data& scene, std::span<const ShadowRa
 
 std::vector<TriangleCorners> triangles_above(const Scene& scene, const Vec3& plane_point_m,
                                              const Vec3& plane_normal) {
-  // Below this height a triangle lies in the plane to single precision.
+  // A triangle below this height is in the plane, to single precision.
   Eigen::AlignedBox3d box;
   for (const Instance& instance : scene.instances) {
     for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {

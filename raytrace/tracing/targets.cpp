@@ -124,7 +124,7 @@ void BitGrid::mark(const SeenTriangle& triangle, double margin_m) {
     return;
   }
   for (size_t row = first; row <= last; ++row) {
-    // Where the triangle lies beside the row, which is as much higher and lower as the margin.
+    // The range of the triangle within the row, which is extended by the margin on both sides.
     const double bottom_m = low_m_.y() + static_cast<double>(row) * size_m_ - margin_m;
     const double top_m = bottom_m + size_m_ + 2.0 * margin_m;
     double from_m = std::numeric_limits<double>::max(), to_m = -from_m;
@@ -219,7 +219,7 @@ Targets::Cells cells_within(const std::vector<SeenTriangle>& triangles, double s
       high_m = high_m.cwiseMax(Vec2(seen.x_m, seen.y_m) + margin_m);
     }
   }
-  // As fine as the rays are worth.
+  // The number of cells follows from the number of rays.
   const uint64_t side = std::clamp<uint64_t>(
       std::bit_ceil(static_cast<uint64_t>(4.0 * std::sqrt(static_cast<double>(rays)))), 64, 4096);
   const uint64_t most_cells = std::clamp<uint64_t>(rays / 16, 256, 65536);
@@ -249,7 +249,7 @@ std::optional<Targets> Targets::of(const Emitter& emitter, const RigidTransform&
   const std::vector<SeenTriangle> triangles =
       triangles_of(scene.scene, body_from_emitter.inverse(), light->radius_m(), rays / 8);
   if (triangles.empty()) return std::nullopt;
-  // Of coordinates in single precision, a few operations after each other.
+  // Rounding error of a few operations on coordinates in single precision.
   const double rounding_m = 1e-6 * light->radius_m();
   // A range ends where the angle has grown by this factor, from the outside inwards.
   constexpr double worth = 1.5, rounding_of_sine = 1.0 + 1e-6;

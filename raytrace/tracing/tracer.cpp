@@ -299,7 +299,7 @@ class Replicates {
     }
   }
 
-  // From any thread.
+  // Can be called from any thread.
   void add(size_t item, TraceSums sums) {
     Replicate& one = replicates_[item / parts_];
     const std::lock_guard lock(one.mutex);

@@ -40,7 +40,7 @@ class OpenLight {
   // the lamp's light).
   static constexpr double tolerance = 3e-7;
 
-  // For tiles of at most `tile_side` bins a side. Both must outlive this.
+  // The tiles have at most `tile_side` bins a side. `plane` and `flux` must outlive this.
   OpenLight(const GatherPlane& plane, const FluxEntries& flux, int tile_side);
 
   // Adds the light of a lamp on all bins of a tile to `entries`, see FluxEntries.

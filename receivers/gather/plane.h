@@ -98,7 +98,7 @@ class GatherPlane {
   Vec3 corner_m_, column_m_, row_m_;
 };
 
-// One beam as the plane sees it.
+// One beam relative to the plane.
 class GatherLamp : public PlacedLamp {
  public:
   // `light` is of the beam's emitter.
@@ -123,11 +123,11 @@ class GatherLamp : public PlacedLamp {
   void use(std::shared_ptr<const IrradianceTable> table) { table_ = std::move(table); }
   // The least and the largest height of the whole grid above the aperture.
   std::pair<double, double> heights_m(const GatherPlane& plane) const;
-  // Where along a straight line of the plane to cut integrals of its light: see
+  // Positions along a straight line of the plane at which integrals of its light are divided, see
   // DiscLight::kinks_along(); the last is 1.
   std::vector<double> kinks_along(const Vec3& from_m, const Vec3& to_m) const;
-  // At which fractions of its second edge to cut an integral over lines along the first edge of a
-  // patch; the last is 1.
+  // Fractions of the second edge of a patch at which an integral over lines along its first edge is
+  // divided; the last is 1.
   std::vector<double> kinks_across(const SurfacePatch& patch) const;
   // Every ray of the beam that meets the plane does so from the lit side (all but 1e-9 of them).
   bool lights_front() const { return lights_front_; }

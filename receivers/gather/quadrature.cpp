@@ -8,8 +8,8 @@
 namespace photorque {
 namespace {
 
-// How much the terms after the last of a Chebyshev series add, from its four highest coefficients
-// (rows) for any number of series (columns): they go on falling as they do.
+// Remainder of a truncated Chebyshev series, from its four highest coefficients (rows) for any
+// number of series (columns). The coefficients are assumed to decrease further at the same rate.
 double remainder_of(const Eigen::MatrixXd& highest) {
   double worst = 0.0;
   for (Eigen::Index k = 0; k < highest.cols(); ++k) {

@@ -17,7 +17,7 @@ namespace photorque {
 // Immutable; called from many threads at once.
 class ChebyshevTiles {
  public:
-  // For tiles of at most `tile_side` bins a side, halved as often as may be.
+  // Tiles of at most `tile_side` bins a side, which are halved as often as possible.
   ChebyshevTiles(const SurfaceGrid& grid, int tile_side);
 
   // Points a side that are worth trying for a function with this many scales across the tile:

@@ -1,5 +1,5 @@
-// Which bins nothing can shade, lamp by lamp, and shadow rays between the others and apertures. For
-// the files of this folder only.
+// Bins that nothing can shade, for each lamp, and shadow rays between the other bins and apertures.
+// For the files of this folder only.
 #pragma once
 
 #include <algorithm>
@@ -43,7 +43,7 @@ class Gathering {
  public:
   static constexpr int tile_side = 16;  // bins
 
-  // With `tables`, lights that many bins see get a table of their irradiance.
+  // With `tables`, lights that illuminate many bins get a table of their irradiance.
   Gathering(const TraceableScene& scene, const RigidTransform& lab_from_body,
             std::span<const Beam> beams, const GatherSide& side, int threads, bool tables);
 

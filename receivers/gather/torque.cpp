@@ -103,7 +103,7 @@ class OpenTorque {
  private:
   static constexpr double tolerance = 1e-6;
 
-  // Of the whole bins of a tile, if all are whole and of one.
+  // The instance of a tile, if all of its bins are completely on one instance.
   std::optional<uint32_t> only_instance(const BinTile& tile) const {
     std::optional<uint32_t> instance;
     for (int row = tile.row; row < tile.row + tile.rows; ++row) {

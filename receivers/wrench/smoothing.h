@@ -1,9 +1,10 @@
-// A wrench over the directions of light that is known with noise, made smooth.
+// Smoothing of a table of force and torque over the directions of light that contains noise.
 //
-// Every direction is known twice, from independent rays. The parts of each degree of the spherical
-// harmonics that both know alike are the wrench's own, the rest is noise: each degree is kept in
-// the ratio of the first to all (N. Wiener, Extrapolation, Interpolation, and Smoothing of
-// Stationary Time Series, 1949), and the remaining noise and the removed part are the error.
+// Every direction has two estimates from independent rays. For each degree of the spherical
+// harmonics, the part that both have in common is the signal, and the rest is noise. Each degree is
+// multiplied by the ratio of signal to total power (N. Wiener, Extrapolation, Interpolation, and
+// Smoothing of Stationary Time Series, 1949). The error contains the remaining noise and the
+// removed part.
 #pragma once
 
 #include <optional>
@@ -27,8 +28,8 @@ struct SmoothWrench {
   std::vector<double> at_node;  // six numbers for each node of the table
 };
 
-// Of the nodes of a table of azimuths evenly all round (the first may be there again after a whole
-// turn) and of elevations from pole to pole.
+// Smooths the values at the nodes of a table with equally spaced azimuths over the whole circle
+// (the first may be repeated at the end) and elevations from pole to pole.
 SmoothWrench smooth_over_sphere(const WrenchTable& table, std::span<const TwofoldWrench> wrenches);
 
 }  // namespace photorque

@@ -13,13 +13,13 @@
 namespace photorque {
 namespace {
 
-constexpr int side = 241;  // nodes of a disc's picture
+constexpr int side = 241;  // nodes along each side of the picture of a disc
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// One component of a table as a smooth function of both angles.
+// One component of the torque as a smooth function of both angles of a table.
 class SmoothComponent {
  public:
-  // Nothing where the angles around are not in even steps all the way round.
+  // Empty unless the azimuths (headings) cover the whole circle in equal steps.
   static std::optional<SmoothComponent> of(const WrenchTable& table, int axis) {
     constexpr double same = 1e-6;
     std::vector<double> around = table.around_rad;
@@ -35,9 +35,9 @@ class SmoothComponent {
     return SmoothComponent(table, std::move(around), axis);
   }
 
-  // The value with its standard error: it is a weighted sum of the values at the nodes.
+  // The interpolated value, a weighted sum of the values at the nodes, and its standard error.
   Estimate operator()(double polar_rad, double around_rad) const {
-    // The four nodes about the angle, perhaps beyond a pole.
+    // The four nodes around the polar angle, some of them possibly beyond a pole.
     const std::vector<double>& polar = table_.polar_rad;
     const auto count = static_cast<int>(polar.size());
     const auto above = std::upper_bound(polar.begin(), polar.end(), polar_rad) - polar.begin();
@@ -46,7 +46,7 @@ class SmoothComponent {
     for (int i = first; i < first + 4; ++i) {
       if (const auto node = node_at(i, count)) nodes.push_back(*node);
     }
-    // By polar angle, which beyond a pole may be there twice.
+    // Weights by polar angle; a polar angle occurs twice if one of its nodes is beyond a pole.
     std::vector<Row> rows;
     for (size_t i = 0; i < nodes.size(); ++i) {  // Lagrange
       double weight = 1.0;
@@ -77,9 +77,9 @@ class SmoothComponent {
   struct Node {
     double at_rad;
     size_t index;
-    bool opposite;  // on the other side of a pole
+    bool opposite;  // beyond a pole: azimuth + 180 deg
   };
-  // The nodes of one polar angle.
+  // The weights of all azimuths at one polar angle.
   struct Row {
     size_t polar;
     std::vector<double> weights;
@@ -88,8 +88,8 @@ class SmoothComponent {
   SmoothComponent(const WrenchTable& table, std::vector<double> around, int axis)
       : table_(table), around_rad_(std::move(around)), axis_(axis) {}
 
-  // Node i of the polar angles, those below 0 and from `count` on being mirrored at the pole, if
-  // the table reaches to it.
+  // Node i of the polar angles. Indices below 0 and from `count` are mirrored at the pole; the
+  // result is empty if the table does not extend to it.
   std::optional<Node> node_at(int i, int count) const {
     const std::vector<double>& polar = table_.polar_rad;
     const bool tilt = table_.angles == WrenchTable::Angles::tilt_heading;
@@ -107,7 +107,7 @@ class SmoothComponent {
     return std::nullopt;
   }
 
-  // The trigonometric polynomial through the values of one polar angle: `weight` of it.
+  // Adds `weight` times the trigonometric interpolation at `at_rad` to the weights of the azimuths.
   // Source: A. Zygmund, Trigonometric Series, chapter X (its Dirichlet kernels).
   void add_round(double at_rad, double weight, std::vector<double>& weights) const {
     const auto count = static_cast<double>(around_rad_.size());
@@ -127,12 +127,12 @@ class SmoothComponent {
   int axis_;
 };
 
-// A map over the disc of radius `reach`, by `value(distance from the middle, angle around)`.
+// A map of `value(distance from the centre, azimuth)` over the disc of radius `reach`.
 template <typename Value>
 Map disc(double reach, const Value& value) {
   Map map;
   map.width = map.height = side;
-  const double edge = reach * side / (side - 1.0);  // the outermost nodes lie on the rim
+  const double edge = reach * side / (side - 1.0);  // the outermost nodes are on the rim
   map.x_low = map.y_low = -edge;
   map.x_high = map.y_high = edge;
   map.smooth = map.signed_values = true;
@@ -153,7 +153,8 @@ Map disc(double reach, const Value& value) {
   return map;
 }
 
-// |T| of the maps "torque_x_NAME" + ending, … for body y and z; the error is that along T.
+// Magnitude of the torque whose components are the maps "torque_x_NAME" + ending, … The error is
+// the component of the errors along the torque.
 Map size_of(const std::vector<Map>& maps, const std::string& name, const std::string& ending,
             const std::string& seen_from) {
   std::array<const Map*, 3> parts{};
@@ -185,7 +186,7 @@ std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name) {
     const auto component = SmoothComponent::of(table, axis);
     if (!component) return maps;
     const std::string stem = std::string("torque_") + "xyz"[axis] + "_" + name;
-    // A whole body needs no name.
+    // The title omits the name "body", which stands for the whole platform.
     const std::string title = std::string("Torque of light about body ") + "xyz"[axis] +
                               (name == "body" ? "" : " on " + name);
     if (table.angles == WrenchTable::Angles::tilt_heading) {
@@ -205,7 +206,7 @@ std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name) {
                         std::abs(table.polar_rad.back() - 0.5 * pi) < same;
     if (!sphere) return maps;
     for (const bool plus : {true, false}) {
-      // Seen from −z, x runs to the left.
+      // In the view from −z, body x points to the left.
       Map map = disc(1.0, [&](double distance, double around_rad) {
         const double from_pole = 2.0 * std::asin(std::min(1.0, distance * std::sqrt(0.5)));
         const double elevation = 0.5 * pi - from_pole;
@@ -232,7 +233,7 @@ double stated_deg(double angle_rad) {
 
 namespace {
 
-// One of the four vector columns of a WrenchTable.
+// A vector column of a WrenchTable, force or torque, with its standard error.
 struct VectorColumn {
   const char* name;
   const char* unit_suffix;
@@ -285,7 +286,7 @@ Table rows(const WrenchTable& table, const std::string& name) {
   return result;
 }
 
-// The step of an axis whose nodes are evenly spaced, else 0.
+// The step of an axis with equally spaced nodes, else 0.
 double regular_step_rad(const std::vector<double>& axis_rad) {
   if (axis_rad.size() < 2) return 0.0;
   const double step =
@@ -308,7 +309,7 @@ Map component_map(const WrenchTable& table, const VectorColumn& column, int axis
   map.title = (std::string(column.name) == "force" ? "Force along " : "Torque about ") +
               ("body " + letter(axis)) + (name == "body" ? "" : " on " + name);
   map.unit = column.unit;
-  // Where the table goes all the way round, its first nodes, repeated, close the picture.
+  // If the table covers the whole circle, its first nodes are repeated at the end of the picture.
   const size_t around_nodes = table.around_rad.size();
   const double missing_rad =
       2.0 * pi - (table.around_rad.back() - table.around_rad.front()) - 2.0 * half_around_rad;
@@ -356,7 +357,7 @@ Plot component_plot(const WrenchTable& table, const VectorColumn& column, const 
   return plot;
 }
 
-// The longest vector of a column.
+// The largest magnitude of a column, with the error along that vector.
 Quantity largest(const VectorColumn& column, const std::string& name) {
   Estimate longest;
   for (size_t i = 0; i < column.value->size(); ++i) {

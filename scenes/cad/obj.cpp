@@ -9,7 +9,7 @@
 namespace photorque::cad {
 namespace {
 
-// More are no face of a model; cutting one takes the square of its corners.
+// Largest number of corners of a face; the time of triangulation is proportional to its square.
 constexpr size_t most_corners = 4096;
 
 class ObjReader {
@@ -30,7 +30,7 @@ class ObjReader {
   }
 
  private:
-  // A line that ends in a backslash goes on in the next.
+  // A line that ends in a backslash continues in the next one.
   bool next(std::string_view& line) {
     if (!lines_.next(line)) return false;
     where_ = lines_.where();
@@ -40,7 +40,7 @@ class ObjReader {
       if (!lines_.next(line)) break;
       joined_ += line;
     }
-    // A comment may stand behind.
+    // A comment may follow.
     words_ = words_of(std::string_view(joined_).substr(0, joined_.find('#')));
     return true;
   }
@@ -129,7 +129,7 @@ class ObjReader {
     }
   }
 
-  // Faces of one object, group and material are one part, wherever they stand in the file.
+  // All faces of one object, group and material are one part, also if they are not consecutive.
   void begin_part() {
     std::string name = object_;
     if (!group_.empty() && group_ != object_) name += (name.empty() ? "" : "/") + group_;

@@ -70,7 +70,7 @@ class EarClipper {
     return true;
   }
 
-  // Where none is an ear, the polygon crosses itself or is flat: then any corner that turns left,
+  // If no corner is an ear, the polygon intersects itself or is flat: then a convex corner is used,
   // else the first.
   size_t next_ear() const {
     for (size_t i = 0; i < left_.size(); ++i) {
@@ -82,7 +82,7 @@ class EarClipper {
     return 0;
   }
 
-  // Only its neighbours may have become ears, or none any more.
+  // Only the neighbours of the removed corner may change between ear and no ear.
   void cut(size_t i) {
     triangles_.push_back({left_[before(i)], left_[i], left_[after(i)]});
     left_.erase(left_.begin() + static_cast<ptrdiff_t>(i));
@@ -105,7 +105,7 @@ std::vector<std::array<uint32_t, 3>> triangles_of(const std::vector<Vec3>& corne
   if (corners.size() < 3) return {};
   if (corners.size() == 3) return {{0, 1, 2}};
   const Vec3 normal = mean_normal(corners);
-  // Without an area there is no side to see it from; a fan has none either.
+  // A polygon without area has no normal; it is triangulated as a fan.
   if (!(normal.stableNorm() > 0.0) || !normal.allFinite()) {
     std::vector<std::array<uint32_t, 3>> fan;
     for (uint32_t i = 2; i < corners.size(); ++i) fan.push_back({0, i - 1, i});

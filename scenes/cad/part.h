@@ -24,10 +24,10 @@ inline constexpr size_t most_triangles = 50'000'000;
 
 // STL, as text or binary. Text: every `solid` is a part; binary: the whole is one. Corners at the
 // same place are one vertex. Normals, attributes and colours are not read: the order of the corners
-// says which side is the front. `file` is what messages call it, `name` the part's where the file
-// gives none. Source: 3D Systems, "StereoLithography Interface Specification" (1989).
-// Throws InputError with the line (of binary files the facet) for what is no number, not finite, or
-// not as the format says, and for a file without a triangle.
+// determines the front side. Messages name `file`; `name` is the name of a part that has none in
+// the file. Source: 3D Systems, "StereoLithography Interface Specification" (1989).
+// Throws InputError with the line (in binary files the facet) for text that is no number, numbers
+// that are not finite, violations of the format, and files without a triangle.
 std::vector<Part> read_stl(std::string_view bytes, const std::string& file,
                            const std::string& name);
 

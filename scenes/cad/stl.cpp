@@ -48,7 +48,7 @@ double float_at(std::string_view bytes, size_t at) {
   return value;
 }
 
-// Many writers begin binary files with "solid" too: the length decides.
+// Whether the length is that of a binary file: many writers begin binary files with "solid", too.
 bool has_binary_length(std::string_view bytes) {
   if (bytes.size() < stl_header_bytes + count_bytes) return false;
   const uint64_t count = little_endian_32(bytes, stl_header_bytes);

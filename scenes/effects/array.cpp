@@ -101,9 +101,8 @@ std::vector<LightEffectKind> array_effect_kinds() {
              state.photocurrent_per_K += x[0];
              state.voltage_V_per_K += x[1];
            }},
-      // From one instant to another of one recording (counted from 0). At which of the maxima the
-      // tracker stands follows from every reading: as the platform turns, maxima change places and
-      // vanish.
+      // Between two instants of one recording (counted from 0). The maximum that the tracker holds
+      // follows from every reading, because maxima move and vanish when the platform rotates.
       {.name = "tracker_trapped",
        .explanation = "the tracker holds a local maximum of the power",
        .parameters = {{.key = "interval_s",

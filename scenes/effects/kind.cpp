@@ -12,7 +12,7 @@
 namespace photorque {
 namespace {
 
-// Of light at 45°, by Fresnel, beyond the loss at normal incidence.
+// Loss of light at 45° by Fresnel's law, in addition to that at normal incidence.
 double slant_loss(double index) {
   CellFront front;
   front.index = index;

@@ -41,7 +41,7 @@ std::string quoted_text(std::string_view text) {
     if (clean != " " || character == " ") return clean;
     if (character == "\n") return std::string("\\n");
     if (character == "\t") return std::string("\\t");
-    // Of the control characters from U+0080 on the second byte is the number.
+    // For control characters from U+0080 on, the second UTF-8 byte is the code.
     char code[8];
     std::snprintf(code, sizeof code, "\\u%04x", static_cast<unsigned char>(character.back()));
     return std::string(code);

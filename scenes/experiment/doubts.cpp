@@ -20,8 +20,8 @@ Eigen::AlignedBox3d box_of(const Scene& scene, const Instance& instance) {
   return box;
 }
 
-// How often a closed surface goes round a point: 1 inside, 0 outside, 1/2 on a face of it. The sum
-// of the solid angles of its triangles over 4π.
+// Winding number of a closed surface about a point: 1 inside, 0 outside, 1/2 on a face. It is the
+// sum of the solid angles of its triangles divided by 4π.
 // Source: A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125, eq. 8.
 double winding(const Scene& scene, const Instance& instance, const Vec3& point_m) {
   const Mesh& mesh = scene.meshes[instance.mesh];

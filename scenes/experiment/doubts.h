@@ -12,9 +12,8 @@
 
 namespace photorque {
 
-// One line each, for warnings: lamps whose
-// middle stands inside a closed part that lets no light through, at this attitude; parts so small
-// beside the scene that single precision, in which rays are cast, does not resolve them.
+// Warnings, one line each: lamps whose centre is inside a closed opaque part, at this attitude;
+// parts that are too small, compared with the scene, for the single precision of ray casting.
 std::vector<std::string> doubts_about(const Scene& scene, std::span<const Beam> beams,
                                       const RigidTransform& lab_from_body);
 

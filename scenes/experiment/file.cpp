@@ -86,7 +86,7 @@ TraceEffort read_effort(const Settings& root) {
   return effort;
 }
 
-// Without the table a first look: tilts to 30 deg towards all sides.
+// The default grid: tilts up to 30 deg in all directions.
 AttitudeGrid usual_torque_map() {
   AttitudeGrid grid;
   for (int tilt = 0; tilt <= 30; tilt += 10) grid.tilt_rad.push_back(tilt * degree_rad);
@@ -178,7 +178,7 @@ void require_model(const Settings& scene, const std::filesystem::path& file) {
                     "a model that ends in .gltf, .glb, .stl or .obj");
 }
 
-// Of an STL or OBJ file, which states neither; a glTF file does.
+// Unit and axis of an STL or OBJ file; a glTF file states both itself.
 std::optional<CadConventions> read_cad_conventions(const Settings& scene,
                                                    const std::filesystem::path& file) {
   if (!cad_format(file)) {

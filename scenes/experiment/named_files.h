@@ -18,8 +18,8 @@ std::filesystem::path named_file(const std::filesystem::path& folder, const std:
 std::vector<std::filesystem::path> files_named_in(const std::filesystem::path& path,
                                                   const std::string& bytes);
 
-// Every file that a text of the tree names from `folder`, and what these name in turn: absolute
-// paths in normal form.
+// Absolute normal paths of all files to which texts of the tree refer, relative to `folder`, and of
+// the files to which these refer.
 std::set<std::filesystem::path> all_named_files(const SettingsNode& root,
                                                 const std::filesystem::path& folder);
 

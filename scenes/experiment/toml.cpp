@@ -65,7 +65,7 @@ size_t end_of_string(std::string_view text, size_t begin) {
     if (text[i] == '\\' && quote == '"') {
       ++i;
     } else if (text.substr(i, quotes) == std::string(quotes, quote)) {
-      // Up to two quotes more may end the text itself.
+      // Up to two more quotes may belong to the end of the text.
       size_t end = i + quotes;
       while (multiline && end < std::min(i + quotes + 2, text.size()) && text[end] == quote) ++end;
       return end;

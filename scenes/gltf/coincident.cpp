@@ -35,10 +35,10 @@ struct KeyedFace {
   Face face;
 };
 
-// How two faces that overlap lie to each other, if not in each other.
+// Relative position of two overlapping faces.
 enum class Relation {
   coincident,  // within the tolerance, all over the overlap
-  touching,    // within it at one end; `front` lies before `behind`
+  touching,    // within it at one end; `front` is in front of `behind`
   parted,      // so too, with the fronts towards each other
   crossing,
 };
@@ -125,8 +125,8 @@ bool overlap(const PlacedFace& a, const PlacedFace& b, double sliver_m) {
   return true;
 }
 
-// How far `small` lies before the plane of `large`, where it covers it: least and most. The overlap
-// of two triangles in nearly one plane has at most six corners.
+// Smallest and largest height of `small` above the plane of `large` within their overlap. The
+// overlap of two triangles in nearly the same plane has at most six corners.
 std::optional<std::array<double, 2>> heights_over(const PlacedFace& large,
                                                   const PlacedFace& small) {
   std::vector<Vec3> polygon(small.corner_m.begin(), small.corner_m.end());
@@ -258,8 +258,8 @@ std::vector<Pair> find_pairs(const Scene& scene, const Vec3& centre_m, double si
   return search.pairs();
 }
 
-// How many steps each face moves: one before its opposite, one before each that faces alike, and
-// back from a face that its front looks at.
+// Number of steps by which each face is displaced along its normal: one in front of an opposite
+// face, one in front of each equal-facing face, and back from a face towards which it faces.
 std::map<Face, int> levels_of(const std::vector<Pair>& pairs) {
   constexpr int most = 100;  // faces in one place; an order that contradicts itself ends there
   std::map<Face, int> levels;

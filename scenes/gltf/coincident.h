@@ -23,10 +23,10 @@
 
 namespace photorque {
 
-// Sets faces apart that lie in each other within 1e-6 of the scene's size over more than a sliver,
-// in one part or in two, of the same corners or not, and those that touch or cross at a slight
-// angle. Meshes of several instances are copied where they differ then. Returns one line for each
-// of the few pairs of parts of which most lies in each other.
+// Separates overlapping faces that coincide within 1e-6 of the scene's size, in one part or in two,
+// with equal or different corners. It also separates faces that touch or cross at a small angle.
+// Meshes of several instances are copied if they differ afterwards. Returns one line for each of
+// the few pairs of parts that coincide mostly.
 std::vector<std::string> separate_coincident_faces(Scene& scene);
 
 }  // namespace photorque

@@ -40,9 +40,8 @@ bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b - a).cross(c - a).norm() <= rounding * longest;
 }
 
-// Accessors without bytes are zeros by the specification. For indices that is what a model looks
-// like whose geometry is packed in a way that this program does not know; it must not pass for one
-// without triangles.
+// Accessors without bytes are zeros by the specification. Indices without bytes indicate geometry
+// with an unsupported compression; the model is rejected, because it would have no triangles.
 void refuse_absent_indices(const Document& document, const tinygltf::Primitive& primitive,
                            const std::string& where) {
   if (primitive.indices < 0) return;

@@ -109,8 +109,7 @@ Vec3 turned(const Vec3& file) {
   return {file.x(), -file.z(), file.y()};
 }
 
-// How far a lamp that looks along `direction` is turned about it for its x axis to lie along
-// `across`.
+// Rotation of a lamp about its `direction` that turns its x axis to `across`.
 double turn_towards(const Vec3& direction, const Vec3& across) {
   const RigidTransform lab_from_lamp = frame_looking_along(direction, Vec3::Zero());
   const Vec3 seen = lab_from_lamp.rotation.conjugate() * across;
@@ -198,7 +197,7 @@ Settings source_at_light(const Settings& source, const std::vector<GltfLight>& l
     if (key == "light") continue;
     keys[key] = source.raw(key);
     const std::string stem(unit_of_key(key).stem);
-    // `aim` alone is how the lamps of an array stand to each other, not a point.
+    // `aim` alone states the relative directions of the lamps of an array, not a point.
     aimed = aimed || (stem == "aim" && key != stem);
     stems.insert(stem);
   }

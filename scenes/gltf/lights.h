@@ -1,8 +1,8 @@
-// Lamps that a glTF file places: where they stand and how wide they shine (KHR_lights_punctual), or
-// the photometric file of their shape (EXT_lights_ies).
+// Lamps of a glTF file: position and cone (KHR_lights_punctual), or the photometric file
+// (EXT_lights_ies).
 //
-// Their intensity is for pictures (candela, lux) and is not read: what a lamp radiates, and at
-// which wavelength, the experiment states.
+// Their intensity (candela, lux) is for pictures and not read: the experiment states radiant power
+// and wavelength.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@
 
 namespace photorque {
 
-// As the file shows it, with the platform at zero tilt: lab frame.
+// A lamp in the lab frame, as in the file with the platform at zero tilt.
 struct GltfLight {
   enum class Kind { point, spot, directional, profile };
   std::string name;  // of its node, else of the light, else "light_3"
@@ -24,14 +24,14 @@ struct GltfLight {
   Vec3 position_m = Vec3::Zero();
   Vec3 direction = -Vec3::UnitZ();  // in which it shines; not of a point
   double outer_cone_rad = 0.0;      // of a spot: half the angle of its cone
-  // Of a profile: the IES file, what messages call it, and the angle about `direction` that a lamp
-  // as place_lamps() puts it is turned by for its C0 to lie along the node's x.
+  // A light profile: the name of the IES file in messages, its content, and the rotation of a lamp
+  // placed by place_lamps() about `direction` that turns its C0 to the node's x.
   std::string profile_name, profile_bytes;
   double turn_rad = 0.0;
 };
 
-// In the order of the nodes. Throws InputError as read_gltf() does, and for lights that are not as
-// the extension says.
+// The lights in the order of the nodes. Throws InputError as read_gltf() does, and for lights that
+// violate the extension.
 std::vector<GltfLight> read_gltf_lights(const std::filesystem::path& path, double metres_per_unit,
                                         bool may_leave_folder = false);
 

@@ -15,7 +15,7 @@ struct Edge {
   auto operator<=>(const Edge&) const = default;
 };
 
-// For every vertex the first one at its place.
+// For every vertex, the first one at the same position.
 std::vector<uint32_t> welded(const std::vector<Vec3>& vertices_m) {
   std::vector<uint32_t> order(vertices_m.size()), first(vertices_m.size());
   std::iota(order.begin(), order.end(), 0u);

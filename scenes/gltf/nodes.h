@@ -1,4 +1,4 @@
-// The node hierarchy of a glTF document: where its meshes stand.
+// The node hierarchy of a glTF document: the placement of its meshes.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@ namespace photorque::gltf {
 // 3.5.2). The rotation is normalised.
 Affine parent_from_node(const tinygltf::Node& node);
 
-// Of unit length within 1 %: quaternions in normalized bytes are off by up to 0.8 %.
+// Whether a quaternion has unit length within 1 %: in normalized bytes the error is up to 0.8 %.
 bool is_unit(const Quat& rotation);
 
 // Finite, and with three axes that are neither zero nor (to 1e-12) in one plane, however unequal

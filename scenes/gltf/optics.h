@@ -51,7 +51,7 @@ MaterialOptics material_optics(const Document& document, int index, int bands,
 // A dielectric (m = 0) that carries KHR_materials_ior, n from 1 to 10, and covers everything
 // depends on the angle instead, by raytrace/surfaces/glass.h: glass of index n and roughness r over
 // ground that scatters Y of what enters (t = 0), or a pane that passes Y on a way through (t = 1, r
-// = 0). It is a stand-in for measured values: drawing colours say little about absorptance.
+// = 0). It replaces measured values only roughly: colours for drawing hardly determine absorptance.
 OpticalSurface derived_surface(const nlohmann::json& material, int bands, std::string name);
 
 // The derived surface with the base colour multiplied by a picture's mean, linear red, green and
@@ -68,7 +68,8 @@ std::optional<UvTransform> uv_transform(const Document& document, int material);
 // Whether a texture would change the result of derived_surface() from the factors alone.
 bool has_ignored_texture(const nlohmann::json& material);
 
-// The tree that core/settings reads, from JSON. InputError for null, which settings do not know.
+// Converts JSON to the tree that core/settings reads. Throws InputError for null, which settings do
+// not have.
 SettingsNode settings_from_json(const nlohmann::json& value, const InputLocation& where);
 
 // "absorptance 0.83, specular 0.01, diffuse 0.16, transmittance 0" of the first band; then the

@@ -112,8 +112,8 @@ class Assembly {
                                ": texture coordinates that are not finite are ignored");
     }
     if (read->mesh.triangles.empty()) return std::nullopt;
-    // With the corners of triangles that were left out: one that is very far away makes its
-    // triangle a needle, and would otherwise go unnoticed.
+    // Includes the corners of omitted triangles: a very distant corner makes its triangle a needle
+    // and would otherwise not be noticed.
     double square = read->degenerate_reach * read->degenerate_reach;
     for (const Vec3& vertex : read->mesh.vertices_m) {
       square = std::max(square, vertex.squaredNorm());

@@ -1,8 +1,8 @@
-// Base colour from pictures, where the experiment asks for it.
+// Base colour from pictures, if the experiment enables it.
 //
-// The tracer knows surfaces by the triangle. The picture's mean over each triangle takes the place
-// of one colour for all, in 32 steps of luminance; within a step every triangle has the mean of
-// the step, weighted by area, so that the absorbed fraction of even light is unchanged.
+// Each triangle has one surface. Its colour is the mean of the picture over the triangle, in 32
+// steps of luminance. Within a step, every triangle has the mean of the step, weighted by area, so
+// that the absorbed fraction of uniform light is unchanged.
 #pragma once
 
 #include <string>

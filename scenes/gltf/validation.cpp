@@ -46,7 +46,7 @@ class Checker {
       throw wrong(where + "/byteStride", text(view.byteStride),
                   "at most the byteLength, " + text(view.byteLength));
     }
-    // From the JSON: tinygltf sets targets.
+    // The target is read from the JSON, because tinygltf changes it.
     if (view.byteStride > 0 && document_.json["bufferViews"][i].value("target", 0) ==
                                    TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER) {
       throw wrong(where + "/byteStride", "it on a view of indices", "none");
@@ -267,8 +267,8 @@ std::vector<int> parents_of(const Document& document) {
   return parents;
 }
 
-// With one parent at most, a cycle is a way up that returns. Every node is visited once: `seen`
-// holds from which start.
+// Each node has at most one parent, so that a cycle is found by following the parents. Every node
+// is visited once; `seen` contains the start from which it was reached.
 void refuse_cycles(const Document& document, const std::vector<int>& parents) {
   std::vector<int> seen(parents.size(), none);
   for (size_t start = 0; start < parents.size(); ++start) {

@@ -157,7 +157,7 @@ Json node_json(const GltfWriterNode& node) {
   return json;
 }
 
-// Nodes and roots, and the glTF meshes (a mesh with its material) that the nodes ask for.
+// Writes nodes and roots, and the glTF meshes (a mesh with its material) that the nodes use.
 void write_nodes(const GltfWriterModel& model, Json& document, Buffer& buffer) {
   std::map<std::pair<int, int>, size_t> mesh_indices;
   Json nodes = Json::array(), meshes = Json::array(), roots = Json::array();

@@ -14,7 +14,7 @@
 //                      position_m [0, 0, 0] of the shape's origin, axis [0, 0, 1] along which its z
 //                      points, and copies_deg: angles about body z at which to repeat the part,
 //                      nodes then end in _1, _2, ...
-// Shapes (z is their axis, the origin their middle unless said otherwise):
+// Shapes (z is their axis, the origin their centre unless stated otherwise):
 //   box       size_m [3], hole_radius_m (optional, along z)
 //   sheet     size_m [2]: a rectangle facing +z with texture coordinates, for layers of cells
 //   cylinder  radius_m, height_m, top_radius_m (radius_m), inner_radius_m (0)

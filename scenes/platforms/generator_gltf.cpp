@@ -23,7 +23,7 @@ SettingsNode node_of(const Vec3& vector) {
   return node;
 }
 
-// Below this, a length is rounding: 1e-9 of the platform's own.
+// Sets lengths below 1e-9 of the platform's size, which are rounding errors, to zero.
 Vec3 without_rounding(const Vec3& v, double scale) {
   return (v.array().abs() < 1e-9 * scale).select(Vec3::Zero(), v);
 }

@@ -70,7 +70,7 @@ std::vector<double> cut_angles(const Vec2& half, int segments) {
   return angles;
 }
 
-// Where the ray at `angle` leaves the rectangle.
+// The point at which a ray from the centre at `angle` leaves the rectangle.
 Vec2 on_rectangle(const Vec2& half, double angle) {
   const Vec2 direction(std::cos(angle), std::sin(angle));
   const Vec2 reach = half.cwiseQuotient(direction.cwiseAbs());

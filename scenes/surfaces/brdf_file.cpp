@@ -23,7 +23,7 @@ struct BrdfRow {
   int line;
 };
 
-// Where each of brdf_columns stands in the header.
+// The position of each of brdf_columns in the header.
 std::array<size_t, 4> read_header(const std::vector<std::string_view>& fields,
                                   const InputLocation& where) {
   std::array<size_t, 4> places{};
@@ -142,7 +142,7 @@ std::optional<std::string> coverage_notice(const BrdfTable& table) {
   words << "measured up to an incidence of " << incidence_rad / degree_rad
         << " deg and a scatter of " << scatter_rad / degree_rad
         << " deg; to 90 deg the last values go on";
-  // Of a table in radians no angle is larger than pi.
+  // A table in radians has no angle above pi/2.
   constexpr double right_angle = pi / 2.0 + 1e-2;
   const double widest = std::max(incidence_rad, scatter_rad) / degree_rad;
   const double azimuth = table.azimuth_rad.back() / degree_rad;

@@ -5,9 +5,9 @@
 //   10,0,0,0.21
 //   …
 //
-// The columns stand in any order, separated by commas; so do the rows. Angles are those of
-// BrdfTable, in degrees. Every incidence comes with every scatter and every azimuth, once; one
-// azimuth alone means that scattering does not depend on it.
+// Columns and rows have any order; commas separate the columns. Angles are those of BrdfTable, in
+// degrees. Every incidence has every scatter angle and every azimuth once. With a single azimuth,
+// scattering does not depend on it.
 #pragma once
 
 #include <optional>

@@ -20,7 +20,7 @@ class SunlitDirections final : public LightDirections {
     constexpr size_t few = 32;
     constexpr double small = 3e-5;
     const std::vector<RigidTransform> attitudes = fresh_directions(few, sun);
-    // Where torques cancel by symmetry, against those that cancel.
+    // If torques cancel by symmetry, the tolerance follows from the force times a small lever arm.
     const double lever_m = 1e-3 * run.experiment().scene.radius_m();
     std::vector<double> torques_N_m(few, 0.0);
     parallel_for(few, threads, [&](size_t i) {
@@ -72,7 +72,7 @@ class SunlitDirections final : public LightDirections {
   }
 
  private:
-  // How far rays are off in directions that the table does not have, and how far they may be.
+  // Prints the difference between table and rays in other directions, and its expected size.
   void say(double stated_N_m, const WrenchTable& table, const Console& console, int threads,
            std::vector<std::string>& warnings) const {
     constexpr size_t fresh = 16;
@@ -94,8 +94,8 @@ class SunlitDirections final : public LightDirections {
       squares += square[i] / fresh;
       noises += noise[i] / fresh;
     }
-    // Of all the light at the largest arm. Rays are single precision: a torque that is zero by
-    // symmetry is so to 1e-7 of this.
+    // Relative to the torque of all the light at the largest arm. Rays have single precision, so
+    // that a torque that is zero by symmetry is computed to 1e-7 of this.
     const double arm_m = run_.experiment().scene.radius_m() + table.about_body_m.norm();
     const double scale_N_m = arm_m * *std::ranges::max_element(emitted_W) / speed_of_light_m_s;
     const double rounding_N_m = 1e-7 * scale_N_m;

@@ -102,7 +102,7 @@ class TracedDirections final : public LightDirections {
     }
   }
 
-  // How far the series is off in directions that it was not made from.
+  // Prints the difference between series and rays in directions to which it was not fitted.
   void say(const SmoothWrench& smooth, const WrenchTable& table, const Console& console,
            int threads) const {
     constexpr size_t fresh = 32;

@@ -74,7 +74,7 @@ void CheckpointFile::write(const std::string& identity, double table_tilt_rad,
   const std::string tilt = shortest(table_tilt_rad);
   const std::string head = std::string(checkpoint_format) + "\n" + tilt + "\n" +
                            hash_of_run(identity, tilt) + "\n" + content_hash(state) + "\n";
-  // Not at once again if this fails.
+  // Restarts the interval first, so that a failed write is not repeated immediately.
   wait();
   write_file_whole(path_, [&](const std::filesystem::path& temporary) {
     std::ofstream out(temporary, std::ios::binary);
@@ -122,7 +122,7 @@ Battery battery_of(const ExperimentFile& file, const DaySettings& day, const Pla
   return battery;
 }
 
-// The largest photocurrent of any cell that the run may ask for, with something in hand.
+// An upper bound of the photocurrents of all cells in the run, with a margin.
 double max_photocurrent_A(const LightModel& light, const RotationTable* table,
                           const PropagationRun& run) {
   double most = 0.0;
@@ -279,9 +279,9 @@ std::optional<double> attitude_error_rad(const PropagationRun& run, const Rotati
   return bound_rad;
 }
 
-// Where a table is further off than it was asked to be and noise explains, or nothing. Deviations
-// have the noise of a trace and of the table: 1.4 times that of one trace in the mean, five times
-// at the worst of some dozens.
+// Messages for quantities whose deviation exceeds both the tolerance of the table and the noise.
+// Deviations have the noise of a trace and of the table: 1.4 times that of one trace on average,
+// five times for the largest of some dozens.
 std::vector<std::string> missed_tolerance(const RotationTable& table, double tolerance) {
   constexpr double mean_noises = 2.0, most_noises = 5.0;
   const RotationTableError& error = table.error();
@@ -306,11 +306,11 @@ class KeptState {
     if (file_ != nullptr) kept_ = file_->read(identity_);
   }
 
-  // How far the table of light reached in the run that was broken off.
+  // The range of the table of light in the interrupted run.
   std::optional<double> table_tilt_rad() const {
     return kept_ ? std::optional(kept_->table_tilt_rad) : std::nullopt;
   }
-  // The state that was kept, once: the first run goes on from it.
+  // The stored state, once: the first run continues from it.
   std::optional<std::string> take() {
     if (!kept_) return {};
     console_.line("goes on from " + file_->path().string());

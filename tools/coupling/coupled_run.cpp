@@ -209,8 +209,8 @@ void CoupledRun::look_for_light(double time_s, double light_W) {
   const double limit_W = dark * max_light_W_;
   const bool lit = light_W > limit_W;
   if (lit != is_lit_ && max_light_W_ > 0.0) {
-    // At a switch of lamps, with which a segment begins, the light jumps; else it passes the limit
-    // on a straight line.
+    // When lamps are switched, at the beginning of a segment, the light jumps; otherwise the time
+    // follows by linear interpolation.
     double when_s = segment_from_s_;
     const bool jumps = last_light_s_ <= segment_from_s_ &&
                        std::ranges::binary_search(switches_s_, segment_from_s_);

@@ -33,8 +33,8 @@ struct SunLight {
   Vec3 towards_lab;
   double pressure_Pa = 0.0;  // irradiance over the speed of light
 
-  // Attitude in which the Sun stands at `towards_body`. It depends on nothing else, so that the
-  // same direction, reached by two azimuths, is the same work.
+  // The attitude at which the Sun is in the direction `towards_body`. It depends on nothing else,
+  // so that equal directions with different azimuths give equal results.
   RigidTransform lab_from_body(const Vec3& towards_body) const;
 };
 
@@ -55,7 +55,7 @@ struct DirectionWrench {
 class LightDirections {
  public:
   virtual ~LightDirections() = default;
-  // From many threads at once.
+  // Safe to call from many threads.
   virtual DirectionWrench at(const RigidTransform& lab_from_body) const = 0;
   // Puts the result at each node into the table, and states its error; warns where a check fails.
   // `whole`: the nodes go from pole to pole and all round.
@@ -64,13 +64,13 @@ class LightDirections {
                     std::vector<std::string>& warnings) const = 0;
 };
 
-// By rays; direct light is gathered from the surfaces where that is possible. Bounced light is made
-// smooth over a whole sphere.
+// Tables by ray tracing; direct light is integrated over the surfaces if possible. Over a whole
+// sphere, light after the first contact is smoothed.
 std::unique_ptr<LightDirections> traced_directions(const OpticalRun& run, const SunLight& sun,
                                                    const Vec3& about_body_m);
 
-// By quadrature (receivers/gather/bodies/sunlit_body.h). Null where the scene is not for that, or
-// the experiment requires rays.
+// Tables by quadrature (receivers/gather/bodies/sunlit_body.h). Null if the scene does not permit
+// it, or if the experiment requires rays.
 std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const SunLight& sun,
                                                    const Vec3& about_body_m, int threads);
 

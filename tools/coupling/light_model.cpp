@@ -67,8 +67,8 @@ LightModel::LightModel(const RunOptions& options, const Console& console,
                        const LightSettings& settings, const Platform& platform)
     : settings_(settings), threads_(options.threads), options_(options) {
   options_.seed.reset();  // that of the instruments
-  // Of a table many attitudes are traced at a time, which keeps all processors busier than one
-  // does.
+  // For a table, many attitudes are traced in parallel, each with one thread; this uses the
+  // processors better than one trace with many threads.
   if (settings.mode == LightSettings::Mode::table) options_.threads = 1;
   auto whole = std::make_unique<OpticalRun>(options_, console);
   const std::vector<Beam> beams = whole->experiment().beams;

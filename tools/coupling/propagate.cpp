@@ -92,7 +92,7 @@ RunOptions with_orbit_overrides(const RunOptions& options) {
   return full;
 }
 
-// Those that are not there yet: scene and lamps.
+// Adds the inputs that are missing in the provenance: scene and lamps.
 void add_inputs(Provenance& provenance,
                 const std::vector<std::pair<std::string, std::string>>& inputs) {
   for (const auto& input : inputs) {

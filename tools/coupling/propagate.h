@@ -26,9 +26,9 @@ struct FurtherTorques {
   std::vector<std::pair<std::string, std::string>> inputs;  // name, hash
 };
 
-// `prepare` may change the run that was read from the experiment's settings before it begins. With
-// a checkpoint file the run goes on from the state that an equal run left there: the same program,
-// experiment, overrides, seed and files. InputError for that of another run.
+// `prepare` may change the run that was read from the experiment before it starts. With a
+// checkpoint file, the run continues from the state of an equal run: the same program, experiment,
+// overrides, seed and files. InputError for the checkpoint of another run.
 MotionRun run_propagate(
     const RunOptions& options, const Console& console, const FurtherTorques& further = {},
     const std::function<void(const Settings& root, PropagationRun& run)>& prepare = {},

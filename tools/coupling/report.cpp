@@ -14,7 +14,7 @@ struct EnergyRow {
   bool is_detail = false;  // printed with --verbose alone
 };
 
-// Where every joule went.
+// The rows of the energy balance.
 std::vector<EnergyRow> energy_rows(const CoupledRun& run) {
   const PowerSupply& supply = *run.supply();
   const SupplyEnergies& e = supply.energies();
@@ -54,7 +54,7 @@ bool has_column(const Table& table, const std::string& name) {
 
 Plot::Curve curve(const std::string& label, const std::vector<double>& x,
                   const std::vector<double>& y) {
-  // As many points as a picture has columns, the extremes of each interval.
+  // Number of intervals of a plot; each has its minimum and maximum.
   constexpr size_t intervals = 700;
   Plot::Curve c;
   c.label = label;

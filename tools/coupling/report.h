@@ -22,7 +22,7 @@ void print_power(const Console& console, const CoupledRun& run);
 // A warning of cells that were warmer than they are rated; none where they were not.
 std::optional<std::string> hot_cells(const CoupledRun& run);
 
-// How still the body's z axis stands, from the true attitudes at even times.
+// Pointing stability of the body's z axis, from the true attitudes at equal intervals.
 // Source of the measures: ECSS-E-ST-60-10C (absolute error, and relative error over a window).
 Product pointing_product(const std::vector<PlatformState>& states);
 void print_pointing(const Console& console, const Product& pointing);

@@ -35,7 +35,7 @@ std::string written_out(const SettingsNode& node, const std::set<std::string>& w
     std::string operator()(bool value) const { return value ? "true" : "false"; }
     std::string operator()(int64_t value) const { return number_of(static_cast<double>(value)); }
     std::string operator()(double value) const { return number_of(value); }
-    // With its length, so that no text can look like another value.
+    // The length is included, so that different sequences of values have different texts.
     std::string operator()(const std::string& value) const {
       return std::to_string(value.size()) + ":" + value;
     }

@@ -28,7 +28,7 @@ Resources read_resources(const std::filesystem::path& folder) {
   std::getline(lines, experiment);
   std::getline(lines, has_light);
   resources.options.experiment = folder / experiment;
-  // Where the table of light lies that came with the unit.
+  // The folder of the table of light in the unit.
   if (has_light == "light") {
     resources.options.overrides.push_back("light.cache=\"" + (folder / "light").string() + "\"");
   }
@@ -364,7 +364,7 @@ PHOTORQUE_ABSENT(fmi3EnterEventMode)
 PHOTORQUE_ABSENT(fmi3EnterStepMode)
 PHOTORQUE_ABSENT(fmi3GetOutputDerivatives)
 PHOTORQUE_ABSENT(fmi3ActivateModelPartition)
-// Of model exchange.
+// Functions of model exchange, which the unit does not support.
 PHOTORQUE_ABSENT(fmi3EnterContinuousTimeMode)
 PHOTORQUE_ABSENT(fmi3CompletedIntegratorStep)
 PHOTORQUE_ABSENT(fmi3SetTime)

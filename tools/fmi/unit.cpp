@@ -16,7 +16,7 @@ namespace {
 constexpr uint32_t first_flag_reference =
     first_output_reference + static_cast<uint32_t>(UnitOutputs::numbers);
 
-// Where each begins among the numbers.
+// The index of the first number of each quantity.
 enum Place : uint32_t {
   place_attitude = 0,
   place_gyro = 4,
@@ -105,7 +105,7 @@ const bool* UnitOutputs::flag(uint32_t reference) const {
 
 namespace {
 
-// Of a tick: sums of communication steps are not exact.
+// Tolerance as a fraction of a tick, because sums of communication steps are not exact.
 constexpr double same_tick = 1e-6;
 
 }  // namespace

@@ -30,7 +30,7 @@ struct UnitVariable {
 // References of the standard; outputs follow in the order of UnitOutputs::values.
 constexpr uint32_t time_reference = 0, first_input_reference = 1, first_output_reference = 10;
 
-// All of them, but those of instruments that the platform lacks.
+// All variables, except those of instruments that the platform lacks.
 std::vector<UnitVariable> unit_variables(const Sensors& sensors);
 
 // The outputs at a tick. Readings that come less often than ticks are held in between.
@@ -39,7 +39,7 @@ class UnitOutputs {
   static constexpr size_t numbers = 17, flags = 2;
 
   void take(const LiveRow& row);
-  // By reference; null where there is no such output.
+  // The output with this reference; null if there is none.
   const double* number(uint32_t reference) const;
   const bool* flag(uint32_t reference) const;
 
@@ -78,7 +78,7 @@ class CoSimulation {
   void advance_to(double time_s, const Vec3& command_body_N_m);
 
   const UnitOutputs& outputs() const { return outputs_; }
-  // Of the last tick; of the run's end where it came earlier (the bearing's stop).
+  // Time of the last tick, or of the end of the run if this is earlier (tilt limit).
   double tick_s() const { return tick_s_; }
   // The platform has reached its stop.
   bool ended() const { return ended_; }
@@ -99,7 +99,7 @@ class CoSimulation {
   std::thread thread_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  // All below belongs to him whose turn it is.
+  // Only the thread whose turn it is may access the members below.
   Turn turn_ = Turn::importer;
   bool abandoned_ = false, ended_ = false;
   std::exception_ptr failure_;

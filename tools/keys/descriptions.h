@@ -16,8 +16,8 @@ std::string description_of(const Key& key);
 std::string range_in_words(const Key& key);
 // The default as TOML, or in words; "required".
 std::string default_in_words(const Key& key);
-// The words of a choice with their meanings: "`\"table\"`: traced once; …"; empty where they say
-// nothing more than their names.
+// The words of a choice with their meanings: "`\"table\"`: traced once; …"; empty if the meanings
+// only repeat the words.
 std::string choices_in_words(const Key& key);
 
 }  // namespace photorque

@@ -8,7 +8,7 @@
 
 namespace photorque {
 
-// A document with its tables of keys replaced: what stands between the lines
+// A document with its tables of keys replaced, the text between the lines
 //   <!-- keys WHAT begin -->
 //   <!-- keys WHAT end -->
 // WHAT is the path of a table, `array.day`, and for a table of kinds perhaps some of them, which

@@ -1,4 +1,4 @@
-// Every key that an experiment may hold.
+// All keys of an experiment.
 #pragma once
 
 #include <vector>

@@ -161,7 +161,7 @@ std::vector<std::string> names_of(const Key& key) {
   return names;
 }
 
-// As a pattern: "pitch_(m|mm|cm)".
+// The names of a key as a regular expression: "pitch_(m|mm|cm)".
 std::string pattern_of(const Key& key) {
   const KeyUnit own = unit_of_key(key.name);
   if (own.unit.empty()) return key.name;

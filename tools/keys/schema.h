@@ -8,13 +8,13 @@
 
 namespace photorque {
 
-// The schema of a file that holds these tables. Units, ranges and defaults stand in the
-// descriptions as well; any unit of a quantity is taken, with the bounds in that unit. What a
-// choice brings (`kind`, `profile`) is known with it alone, and nothing else is known. What rests
-// on several keys or on files is left to `check`.
+// The schema of a file with these tables. The descriptions contain units, ranges and defaults. Any
+// unit of a quantity is accepted, with the bounds in that unit. Keys of a choice (`kind`,
+// `profile`) are accepted only with it, and unknown keys are rejected. `check` tests conditions on
+// several keys or on files.
 //
-// Conditions stand in `if` and `then`, and all properties beside each other: so taplo, which
-// follows no conditions when it completes and shows, finds every key.
+// Conditions are in `if` and `then`, and all properties are on the same level, because taplo does
+// not evaluate conditions when it completes and shows keys.
 std::string json_schema(const std::vector<Key>& tables);
 
 }  // namespace photorque

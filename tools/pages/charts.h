@@ -27,8 +27,8 @@ BarChart dependence_chart(const Where& where);
 // `of`: which domain's, where motion and light were recorded together.
 BarChart ranking_chart(const Diagnosis& diagnosis, const std::string& of = {});
 
-// Readings beside both models, where the channel has them, above the residuals of both;
-// held-out data are shaded, twice the noise of a reading dotted.
+// Readings with both models, if the channel has them, above the residuals of both. Held-out data
+// are shaded; dotted lines show twice the noise of a reading.
 Plot channel_plot(const ChannelSeries& channel, const RecordingSeries& recording);
 
 // "tilt 12 deg, heading 60 deg"
@@ -41,10 +41,10 @@ struct ScanGroup {
   std::vector<size_t> rows;
   std::string name() const { return recording->recording + ", " + attitude_words(lab_from_body); }
 };
-// Of all recordings, which must outlive them.
+// The groups of scans of all recordings, which must outlive them.
 std::vector<ScanGroup> scan_groups(const std::vector<RecordingSeries>& recordings);
 
-// One direction of a regular grid: where its first place is and how far apart they are.
+// One direction of a regular grid: its first position and its step.
 struct Steps {
   double first = 0.0, step = 1.0;
   size_t count = 1;
@@ -72,7 +72,7 @@ Map scan_map(const ScanGroup& group, const ScanView& shown, size_t number);
 
 // The curves that a sweep holds, by their numbers.
 std::vector<int> sweeps_of(const LightSeries& light);
-// A sweep: points beside both models, and their residuals.
+// A plot of a sweep: points with both models, and their residuals.
 Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_found);
 
 // The array from its front as an element of a page, cells by their numbers, those that something

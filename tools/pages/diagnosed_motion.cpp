@@ -55,7 +55,7 @@ Span span_of(const RecordingSeries& recording) {
   return span;
 }
 
-// Those of the attitude, else of the first channel that was read.
+// The instants of the attitude, otherwise those of the first channel with readings.
 const std::vector<double>& own_instants(const RecordingSeries& recording) {
   if (!recording.attitude.time_s.empty()) return recording.attitude.time_s;
   return std::ranges::find_if(recording.channels, [](const auto& c) { return !c.time_s.empty(); })
@@ -104,8 +104,8 @@ std::vector<double> lengths_of(const std::vector<RecordingSeries>& recordings,
   return lengths;
 }
 
-// How many times the differences are enlarged so that they can be seen: up to 10 deg, or until the
-// noise shakes the body by 1 deg; 1, 2, 5, 10 …
+// Factor (1, 2, 5, 10 …) that makes differences visible: they become at most 10 deg, and the noise
+// at most 1 deg.
 double enlargement(double largest_rad, double noise_rad) {
   const double most = std::min(10.0 * degree_rad / std::max(largest_rad, 1e-12),
                                1.0 * degree_rad / std::max(noise_rad, 1e-12));
@@ -148,8 +148,8 @@ void add_attitude_figures(const RecordingSeries& recording, const Quat& q, doubl
   }
 }
 
-// The mean of some rotation vectors about an instant, and its standard error: of what the camera
-// says, or as they scatter where that is more.
+// The mean of the rotation vectors near an instant, and its standard error: that from the noise of
+// the camera or from their scatter, whichever is larger.
 struct MeanTurn {
   Vec3 mean_rad = Vec3::Zero(), error_rad = Vec3::Zero();
 };

@@ -117,7 +117,7 @@ Mat3 half_axes_m(const Platform& platform) {
   }
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(platform.inertia_kg_m2);
   const Vec3& moments = solver.eigenvalues();
-  // Of an even ellipsoid of mass m: I1 = m (b² + c²) / 5 and so on, so a² ∝ I2 + I3 − I1.
+  // A uniform ellipsoid of mass m has I1 = m (b² + c²) / 5 and so on, so that a² ∝ I2 + I3 − I1.
   Vec3 lengths;
   for (int k = 0; k < 3; ++k) {
     lengths[k] = std::sqrt(std::max(0.0, 0.5 * moments.sum() - moments[k]));
@@ -227,7 +227,7 @@ RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageH
 SceneStage platform_stage(const Platform& platform) {
   SceneStage stage;
   const Mat3 axes_m = half_axes_m(platform);
-  // Of the ellipsoid along x: the largest x of a point on it.
+  // The extent of the ellipsoid along x is the largest x of a point on it.
   stage.parts = {ellipsoid(axes_m), rod_along_x(axes_m.row(0).norm() + 0.15)};
   stage.radius_m = 0.6;
   const Camera camera = camera_framing(stage.radius_m);

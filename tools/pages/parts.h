@@ -12,8 +12,8 @@
 
 namespace photorque {
 
-// The page of a run without its stage: figures with names and units as printed, of which those
-// whose names begin with one of `headlines` stand at the top (at most six, in this order).
+// The page of a run without its stage. Figures have names and units as printed; those whose names
+// begin with one of `headlines` are at the top (at most six, in this order).
 RunPage page_of(const RunResult& result, const PageHead& head,
                 const std::vector<std::string>& headlines);
 
@@ -55,12 +55,12 @@ PaintedSurface painted_receiver(const OpticalRun& run, const std::string& receiv
 // states it. A platform about one axis has one moment: a disc about that axis.
 SceneStage platform_stage(const Platform& platform);
 
-// Recordings as people know them: the end of one that was held out is part of it again, names are
-// those of files and each is there once. At most `most`.
+// Recordings as the user provided them: held-out ends are joined to their recordings, names are
+// those of files, and each occurs once. At most `most`.
 std::vector<RecordingSeries> shown_recordings(const Diagnosis& diagnosis, size_t most);
 
-// The body as it was measured with both models beside it, its differences as arrows, over time;
-// where no attitude was recorded the rates, in body axes. `stage` has the body.
+// Shows the measured body with both models over time, and their differences as arrows. Without a
+// recorded attitude it shows the rates, in body axes. `stage` contains the body.
 void show_motion(const std::vector<RecordingSeries>& recordings, bool something_was_found,
                  SceneStage stage, RunPage& page);
 
@@ -69,8 +69,8 @@ void show_motion(const std::vector<RecordingSeries>& recordings, bool something_
 void show_light(const std::vector<RecordingSeries>& recordings, bool something_was_found,
                 const OpticalRun* run, RunPage& page);
 
-// Readings beside both models of every channel, a plot each, whose names end in `suffix`; with the
-// line of a slider, where there is one (the plot that it names is filled in).
+// Adds a plot of every channel, readings with both models, whose name ends in `suffix`. If there is
+// a slider, the plots have its line (the plot that it names is filled in).
 void add_curves(const RecordingSeries& recording, const std::string& suffix,
                 const std::optional<PlotCursor>& cursor, RunPage& page);
 

@@ -74,7 +74,7 @@ PaintedSurface painted(const Scene& scene, const SurfaceGrid& grid, const std::s
     const auto corners = corners_in_bins(grid, scene, face);
     const Vec3 normal = (face.corner_body_m[1] - face.corner_body_m[0])
                             .cross(face.corner_body_m[2] - face.corner_body_m[0]);
-    // Of a mirrored instance the corners run the other way round.
+    // In a mirrored instance, the order of the corners is reversed.
     const bool turned = normal.dot(face.area_body_m2) < 0.0;
     for (const size_t k : {size_t{0}, size_t{turned ? 2u : 1u}, size_t{turned ? 1u : 2u}}) {
       pool.add(face.corner_body_m[k], {corners[k].x() / grid.width, corners[k].y() / grid.height});
@@ -182,8 +182,8 @@ void light_along(SceneStage& stage, const OpticalRun& run, const std::vector<Qua
 
 void add_light(SceneStage& stage, const OpticalRun& run, const RigidTransform& lab_from_body,
                const OpticalResult& result, size_t lights) {
-  // Of one light enough rays to see the beams, not so many that they hide the body; of many
-  // together about half a megabyte, and so many bins that the page keeps them all.
+  // Enough rays to show the beams without hiding the body. The rays of many lights together take
+  // about half a megabyte.
   constexpr size_t most_rays = 400, most_rays_together = 24'000;
   constexpr size_t most_bins_together = 1u << 20;
   stage.rays_of_light_lab_m.push_back(shown_rays(run.scene(), run.experiment().beams, lab_from_body,

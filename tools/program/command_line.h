@@ -10,7 +10,7 @@
 namespace photorque {
 
 struct CommandLine {
-  // Of a line that is answered already: help, version, manual, or one line on standard error.
+  // Exit status of a command line that needs no run: help, version, manual, or an error.
   std::optional<int> status;
   const Verb* verb = nullptr;
   Command command = {};  // of the verb, its options read

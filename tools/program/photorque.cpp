@@ -95,7 +95,8 @@ int run(int argc, char** argv, Interruption& interruption) {
   ::_exit(3);
 }
 
-// Where memory ends in a thread or a destructor no exception reaches main().
+// Ends the program if memory is exhausted in a thread or a destructor, from which no exception
+// reaches main().
 [[noreturn]] void end_without_memory() {
   try {
     if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
@@ -111,8 +112,8 @@ int run(int argc, char** argv, Interruption& interruption) {
   end_after_fault(SIGABRT);
 }
 
-// Where nothing has its own handler yet, as sanitizers do. On a separate stack, since the ordinary
-// one may be at its end.
+// Installs handlers for faults, except for signals that have one already (as with sanitizers). They
+// run on a separate stack, because the ordinary one may be exhausted.
 void catch_faults() {
   alignas(16) static std::array<std::byte, 1 << 16> room;
   const stack_t stack{room.data(), 0, room.size()};

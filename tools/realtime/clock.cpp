@@ -18,7 +18,7 @@ double percentile(const std::vector<float>& sorted, double fraction) {
   return sorted[static_cast<size_t>(std::max(rank, 1.0)) - 1];
 }
 
-// How many are beyond so long, as a fraction: at every value down to the last.
+// Complementary distribution: the fraction of values above each value.
 Plot::Curve beyond(const std::string& label, const std::vector<float>& sorted) {
   Plot::Curve curve;
   curve.label = label;

@@ -36,8 +36,8 @@ struct ClientPacket {
   photorque_command_packet command{};  // a hello and a goodbye have its header alone
 };
 
-// One client at a time: the first to send a hello, until its goodbye or a silence of `silence_ns`.
-// Sequence numbers count from the hello of a session.
+// Accepts one client at a time: the first that sends a hello, until its goodbye or a silence of
+// `silence_ns`. Sequence numbers start with the hello of a session.
 class Gate {
  public:
   Gate(uint64_t run, double max_torque_N_m, int64_t silence_ns);

@@ -196,8 +196,8 @@ void Session::wait_until_due(size_t tick) {
   }
 }
 
-// Measurements that have come through the link. In lockstep the last of them, or an empty one where
-// none has, asks for the answer.
+// Sends the measurements that have passed the simulated link. In lockstep, the last of them, or an
+// empty one if there is none, requests the answer.
 void Session::send_arrived(double now_s, bool is_late) {
   const uint32_t late = is_late ? uint32_t{PHOTORQUE_LATE} : 0;
   std::optional<photorque_measurement_packet> packet = to_client_.pop(now_s);
@@ -287,7 +287,8 @@ bool Session::take_in(int64_t until_ns) {
   return true;
 }
 
-// Nothing of one session acts in the next: neither its last command nor those on their way.
+// Clears the last command of a session and those in the simulated link, so that none of them acts
+// in the next session.
 void Session::end_command() {
   acting_ = {};
   from_client_.clear();

@@ -42,7 +42,7 @@ std::optional<ReceivedBytes> receive_now(int socket) {
   ReceivedBytes got;
   sockaddr_in from{};
   socklen_t from_size = sizeof from;
-  // With MSG_TRUNC the size is that of the packet, though longer than the room.
+  // With MSG_TRUNC, the result is the size of the packet, even if it exceeds the buffer.
   const ssize_t size =
       ::recvfrom(socket, got.bytes.data(), got.bytes.size(), MSG_DONTWAIT | MSG_TRUNC,
                  reinterpret_cast<sockaddr*>(&from), &from_size);

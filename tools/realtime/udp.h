@@ -26,11 +26,11 @@ class UdpSocket {
   // the socket is polled instead of slept on. InputError (key serve.address) where that cannot be.
   UdpSocket(const std::string& address, int port, int64_t spin_ns);
 
-  // To the client. A client that has left is not an error.
+  // Sends a packet to the client. A client that has closed its port is not an error.
   void send(const photorque_measurement_packet& packet, uint64_t client) const;
   // The next packet that is there or comes until `until_ns` (CLOCK_MONOTONIC).
   std::optional<ReceivedBytes> receive(int64_t until_ns) const;
-  // As text: "127.0.0.1:4160".
+  // The address as text: "127.0.0.1:4160".
   const std::string& where() const { return where_; }
   static std::string text_of(uint64_t client);
 

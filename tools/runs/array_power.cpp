@@ -129,7 +129,7 @@ ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const Trace
   ArrayResult power = evaluate_array(array.design, light, array.responsivity_A_W);
   const double delivered = power.efficiency.value;
   const bool too_dark = array.design.heat && array.design.heat->absorptance < delivered;
-  // More than all of the light is the fault of the cells.
+  // An efficiency above 1 is an error of the cells and reported elsewhere.
   if (too_dark && delivered <= 1.0) {
     throw InputError({run.experiment().file.path.string()}, "array.thermal.absorptance",
                      show(array.design.heat->absorptance),

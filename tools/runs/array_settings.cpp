@@ -92,7 +92,7 @@ ArrayReport::Motion read_motion(const Settings& s) {
   using namespace motion_key;
   ArrayReport::Motion motion;
   motion.trackers = read_trackers(s);
-  // Without instants it is for `propagate`, where the platform moves.
+  // Without instants, the tracker is for `propagate`, in which the platform moves.
   if (!s.has(motion_key::time) && !s.has(tilt)) return motion;
   motion.time_s = s.get(motion_key::time);
   motion.tilt_rad = s.get(tilt);

@@ -48,7 +48,7 @@ size_t width_of(const std::string& text) {
       std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
-// Where the markers' light starts, as a model of a small body has no thickness to stand on.
+// Smallest height above a marker at which its light starts, for models without thickness.
 constexpr double least_height_m = 1e-4;
 
 bool is_shaded(const TraceableScene& scene, const Marker& marker, const Vec3& camera_body_m) {

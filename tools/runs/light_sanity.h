@@ -8,9 +8,9 @@
 
 namespace photorque {
 
-// One for each source that stands inside of a closed part or whose light misses the scene, and
-// for each flux map that no light reaches at the experiment's attitude. Nothing for scenes with so
-// many lamps that a few rays are many.
+// One error for each source inside a closed part, for each source whose light misses the scene, and
+// for each flux map without light at the experiment's attitude. Empty for scenes with too many
+// lamps for a quick test.
 std::vector<InputError> light_mistakes(const OpticalRun& run);
 
 }  // namespace photorque

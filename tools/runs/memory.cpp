@@ -19,7 +19,7 @@ std::optional<uint64_t> number_of_file(const char* path) {
   return std::nullopt;
 }
 
-// Of /proc/meminfo, which counts in kibibytes.
+// Available memory from /proc/meminfo, which states kibibytes.
 std::optional<uint64_t> available_bytes() {
   std::ifstream in("/proc/meminfo");
   std::string word;

@@ -13,8 +13,8 @@ namespace photorque {
 // known.
 uint64_t memory_limit_bytes(std::optional<double> allowed_GB);
 
-// Where the user allows so much the system holds it too: what is not foreseen ends with "not enough
-// memory" and exit status 3.
+// Sets the memory allowed by the user as a limit of the process. An allocation beyond it ends the
+// run with "not enough memory" and exit status 3.
 void hold_memory(std::optional<double> allowed_GB);
 
 // Throws InputError at `where` if about `bytes` for `what` exceed the limit.

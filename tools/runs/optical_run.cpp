@@ -20,7 +20,7 @@
 namespace photorque {
 namespace {
 
-// Of maps on surfaces in layers: the light of all shares its bins.
+// Notices for maps on surfaces in several layers, whose light is summed in the same bins.
 void add_notices_of_layers(Experiment& experiment) {
   constexpr double noticeable = 1e-3;
   for (const NamedReceiver& receiver : experiment.receivers) {
@@ -61,7 +61,7 @@ size_t whole_wrench(Experiment& experiment) {
     const auto& wrench = experiment.receivers[i].wrench;
     if (wrench && wrench->part_names().size() == all.size()) return i;
   }
-  // Its files would overwrite each other's; reported before the trace.
+  // Two receivers named "body" would overwrite each other's files; reported before the trace.
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {
     const NamedReceiver& other = experiment.receivers[i];
     if (other.wrench && other.name == "body") {
@@ -96,7 +96,7 @@ double momentum_disagreement(const OpticalRun& run, const OpticalResult& result)
   return worst;
 }
 
-// Before the trace: whether its maps fit into memory.
+// Checks before the trace that its maps fit into memory.
 Experiment checked(Experiment experiment, const RunOptions& options) {
   const int threads =
       options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());

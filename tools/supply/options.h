@@ -9,7 +9,7 @@
 
 namespace photorque {
 
-// Of an efficiency.
+// Range of an efficiency.
 inline constexpr Range conversion_range{0.0, 1.0, true, false};
 
 // [supply_trade.battery]: specific_energy_Wh_kg (150 ± 50, of the pack), usable_fraction (0.9),

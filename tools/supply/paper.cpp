@@ -34,7 +34,7 @@ const SupplyOption* first_beam(const SupplyTrade& trade) {
   return nullptr;
 }
 
-// Of one of the array's named cells, 1 cm2 in sunlight of 1000 W/m2 with so much current.
+// Efficiency of a named cell of 1 cm2 in sunlight of 1000 W/m2 with this short-circuit current.
 double in_sunlight(const char* cell, double short_circuit_A) {
   for (const NamedCell& known : known_cells()) {
     if (known.name != cell) continue;

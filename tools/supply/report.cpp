@@ -84,9 +84,9 @@ Table charge_table(const SupplyTrade& trade) {
   return table;
 }
 
-// Below it is no torque worth a decade of the picture.
+// Smaller torques are not drawn, so that the logarithmic axis has fewer decades.
 constexpr double least_torque_N_m = 1e-13;
-// Level, light does not turn: the remainder is the noise of the trace.
+// At zero tilt the torque of light is zero; smaller values are the noise of the trace.
 constexpr double level_torque_N_m = 1e-10;
 
 Plot tilt_plot(const SupplyTrade& trade) {
@@ -101,14 +101,14 @@ Plot tilt_plot(const SupplyTrade& trade) {
   for (const SupplyOption& option : trade.options) {
     Plot::Curve delivered, pushes;
     delivered.label = pushes.label = option.name;
-    // Battery and cable deliver the same.
+    // The curves of battery and cable coincide; the dashed one leaves the other visible.
     delivered.dashed = pushes.dashed = option.symbol == "cable";
     for (size_t t = 0; t < option.curve.size(); ++t) {
       const double tilt_deg = trade.task.tilt_rad[t] / degree_rad;
       const SupplyPoint& point = option.curve[t];
       delivered.x.push_back(tilt_deg);
       delivered.y.push_back(point.delivered_W.value);
-      // Nothing on average, but not exactly: as large as its error.
+      // A torque with the mean zero, as of induction, is drawn with its standard error.
       const double size =
           std::max(std::abs(point.torque_N_m.value), point.torque_N_m.standard_error);
       if (size < least_torque_N_m || (t == 0 && size < level_torque_N_m)) continue;

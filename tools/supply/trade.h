@@ -22,7 +22,7 @@ struct SupplyTask {
   double weight_N() const;
 };
 
-// At one tilt, about the axis that tilts.
+// The results at one tilt; the torque is about the axis of the tilt.
 struct SupplyPoint {
   Estimate delivered_W;  // to the load
   // Mean torque; fast alternating torque without effect is separate, as an amplitude.

@@ -1,4 +1,4 @@
-// Which run is whose, among processes that work on one database.
+// Assignment of runs to the processes that work on one database.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace photorque {
 // without locks: everybody gets every claim.)
 class Claims {
  public:
-  // One claim, held while it lives.
+  // A claim on a run; it ends with the lifetime of the object.
   class Claim {
    public:
     Claim(Claim&& other) noexcept;
@@ -34,7 +34,7 @@ class Claims {
   Claims(const Claims&) = delete;
   Claims& operator=(const Claims&) = delete;
 
-  // Nothing when another process has it.
+  // Claims a run; empty if another process has it.
   std::optional<Claim> take(const std::string& name) const;
   // When the others are done with it.
   Claim wait_for(const std::string& name) const;

@@ -32,7 +32,7 @@ CREATE VIEW IF NOT EXISTS figures AS
   FROM figure JOIN run ON run.id = figure.run JOIN quantity ON quantity.id = figure.quantity;
 )";
 
-// As SQL's name of a column.
+// A text as a quoted column name in SQL.
 std::string sql_name(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);

@@ -36,7 +36,7 @@ class RunDatabase {
   RunDatabase(const RunDatabase&) = delete;
   RunDatabase& operator=(const RunDatabase&) = delete;
 
-  // The run of this hash; nothing where there is none.
+  // The run with this hash, if it exists.
   std::optional<RunOutcome> find(const std::string& hash) const;
   // Keeps a run, in place of one that failed; one that succeeded stays.
   void keep(const RunRecord& record);
@@ -46,7 +46,7 @@ class RunDatabase {
   void take_from(const std::filesystem::path& other);
   // Replaces the table `designs`.
   void write_designs(const Table& table);
-  // A copy that stands alone; appears whole.
+  // Writes an independent copy, which gets its name when it is complete.
   void copy_to(const std::filesystem::path& path) const;
 
  private:

@@ -6,7 +6,7 @@
 namespace photorque {
 namespace {
 
-// With the absolute values that the plan asks for.
+// Adds the absolute values of figures that the plan uses, such as |torque|.
 std::vector<Figure> with_absolutes(const SweepPlan& plan, std::vector<Figure> figures) {
   const auto add = [&figures](const SweepFigure& wanted) {
     const Figure* plain = find_figure(figures, wanted.name);
@@ -38,7 +38,7 @@ std::vector<Figure> mean_of(const SweepPlan& plan, std::span<const RunOutcome> r
   return mean;
 }
 
-// How far a figure is inside of its limits; negative: outside.
+// Distance of a figure from its limits; negative outside.
 double margin(const Constraint& constraint, double value) {
   return std::min(value - constraint.at_least, constraint.at_most - value);
 }

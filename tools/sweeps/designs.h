@@ -40,7 +40,7 @@ struct SweepResult {
 // the first objective, or else the first constrained figure, is worst.
 Design combine(const SweepPlan& plan, std::span<const RunOutcome> runs);
 
-// Nothing where a design does not have the figure.
+// The figure of a design, if it has it.
 std::optional<Estimate> figure_of(const Design& design, const std::string& column);
 
 // The feasible design that is best in the first objective; nothing without any.

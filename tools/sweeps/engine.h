@@ -1,4 +1,4 @@
-// The runs that a sweep asks for: from its database, or made now and kept there.
+// The runs of a sweep: read from its database, or computed and stored there.
 #pragma once
 
 #include <filesystem>
@@ -17,15 +17,15 @@
 
 namespace photorque {
 
-// Where a sweep keeps what it found, below its output folder. A shard has a separate database,
-// because shards may run on several machines, and SQLite shares a file among the processes of one
-// only; what a shard has finished stands beside it as a copy that no one writes to any more.
+// The files of a sweep in its output folder. A shard has a separate database, because shards may
+// run on several machines, and SQLite shares a file only among processes of one machine. When a
+// shard ends, it writes a final copy of its database.
 struct SweepFiles {
   std::filesystem::path folder;
   std::filesystem::path database() const { return folder / "designs.sqlite"; }
   std::filesystem::path shard(size_t number, size_t count) const;       // shards/3-of-8.sqlite
   std::filesystem::path done_shard(size_t number, size_t count) const;  // shards/3-of-8.done.sqlite
-  // Those that are there; with `unfinished` also databases of shards that did not come to an end.
+  // The existing databases of shards; with `unfinished` also those of incomplete shards.
   std::vector<std::filesystem::path> shards(bool unfinished) const;
 };
 
@@ -49,7 +49,7 @@ class RunEngine {
   // again, and waits for those that another process is at. `made` may be empty.
   std::vector<RunOutcome> outcomes(std::span<const Changes> runs,
                                    const std::function<void(double)>& progress = {});
-  // Existing outcomes only: nothing where there is none.
+  // The stored outcomes; empty for runs without one.
   std::vector<std::optional<RunOutcome>> kept_outcomes(std::span<const Changes> runs);
 
   size_t made() const { return made_; }

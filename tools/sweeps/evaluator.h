@@ -1,4 +1,4 @@
-// From the changes of a design to its figures: its runs and those of its built copies, combined.
+// Computes the figures of a design from its runs and those of its built copies.
 #pragma once
 
 #include <functional>
@@ -18,7 +18,7 @@ class DesignEvaluator {
   // `plan` and `engine` outlive it.
   DesignEvaluator(const SweepPlan& plan, RunEngine& engine);
 
-  // Every run that these designs need, those of copies where every design has some.
+  // All runs that these designs need, including those of copies if every design has some.
   std::vector<Changes> runs_of(std::span<const Changes> designs) const;
   // The designs of such runs, which stand in the same order.
   std::vector<Design> designs_of(std::span<const RunOutcome> outcomes) const;

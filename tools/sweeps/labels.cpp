@@ -11,7 +11,7 @@
 namespace photorque {
 namespace {
 
-// Units whose parts are divided, or that have special letters.
+// Units in the names of keys that need a fraction bar or special characters in a label.
 constexpr std::array<std::pair<const char*, const char*>, 16> unit_texts = {
     {{"W_m2", "W/m²"},
      {"W_K", "W/K"},

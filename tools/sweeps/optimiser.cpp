@@ -17,8 +17,8 @@ bool is_feasible(const PointValue& value) {
          std::ranges::all_of(value.margins, [](double m) { return m >= 0.0; });
 }
 
-// The box as the unit cube, with a memory: constraints ask for the point that the merit was just
-// asked for.
+// The box as the unit cube. It stores the last evaluation, because NLopt evaluates constraints at
+// the same point as the objective.
 class Problem {
  public:
   Problem(const SearchBox& box, size_t most_evaluations,
@@ -31,11 +31,11 @@ class Problem {
   size_t dimensions() const { return box_.low.size(); }
   const Point& best() const { return best_; }
 
-  // Of a point that did not fail; of none before the first.
+  // Number of constraints, known after the first point that did not fail; 0 before.
   size_t constraints() const { return constraints_; }
 
-  // Throws nlopt::forced_stop where no evaluation is left: the libraries count points that failed
-  // or were refused otherwise than a user would.
+  // Throws nlopt::forced_stop if no evaluation is left. The evaluations are counted here, because
+  // NLopt counts failed points differently.
   const PointValue& at(const Point& x) {
     if (x == last_) return last_value_;
     if (left_ == 0) throw nlopt::forced_stop();
@@ -55,7 +55,7 @@ class Problem {
     return last_value_;
   }
 
-  // For a model of the surroundings: a point that fails is worse than all that do not.
+  // The merit for a local model: a failed point is worse than all others.
   double merit_or_penalty(const Point& x) {
     const PointValue& value = at(x);
     if (!value.failed && std::isfinite(value.merit)) return value.merit;
@@ -97,9 +97,9 @@ void run(nlopt::opt& optimiser, Problem& problem, size_t evaluations) {
   try {
     optimiser.optimize(x, value);
   } catch (const nlopt::roundoff_limited&) {
-    // As near as the figures allow; the best point is stored.
+    // The limit of rounding is reached; the best point is stored.
   } catch (const nlopt::forced_stop&) {
-    // As many as were allowed.
+    // All evaluations are used up.
   }
 }
 
@@ -117,7 +117,7 @@ struct LocalConstraint {
   size_t index;
 };
 
-// At most zero inside.
+// The constraint as NLopt requires it: at most zero for feasible points.
 double constraint_value(const Point& x, Point&, void* data) {
   const auto& constraint = *static_cast<LocalConstraint*>(data);
   const PointValue& value = constraint.problem->at(x);
@@ -139,7 +139,7 @@ void search_box(const SearchBox& box, size_t global, size_t local, double precis
   }
   if (local == 0) return;
   const size_t constraints = problem.constraints();
-  // Quadratic models need two dimensions.
+  // BOBYQA needs at least two dimensions and has no constraints.
   nlopt::opt near(constraints > 0 || dimensions < 2 ? nlopt::LN_COBYLA : nlopt::LN_BOBYQA,
                   dimensions);
   near.set_min_objective(local_merit, &problem);

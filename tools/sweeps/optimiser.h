@@ -25,10 +25,9 @@ struct SearchBox {
 // Optim. 21, 27 (2001)). Then from the better of its best and `start`: quadratic models (M. J. D.
 // Powell, BOBYQA, DAMTP 2009/NA06), with constraints linear ones (Powell, COBYLA, 1994), until
 // steps are below `precision` of the box or the evaluations are used up. No derivatives. Nothing is
-// random: equal answers lead over equal points, so a search that was stopped goes over what it
-// has asked for again.
+// random: equal values lead to equal points, so that an interrupted search repeats its evaluations.
 //
-// `value` is asked for points of the box, in its units.
+// `value` is called with points of the box, in its units.
 void search_box(const SearchBox& box, size_t global, size_t local, double precision,
                 const std::function<PointValue(std::span<const double>)>& value);
 

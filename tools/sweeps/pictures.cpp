@@ -41,7 +41,7 @@ std::vector<double> axis_numbers(const SweepAxis& axis) {
   return all;
 }
 
-// At least three, in equal steps, as a map requires.
+// Whether there are at least three values in equal steps, as a map requires.
 bool is_even(const std::vector<double>& values) {
   if (values.size() < 3) return false;
   const double step = (values.back() - values.front()) / static_cast<double>(values.size() - 1);

@@ -52,7 +52,7 @@ std::vector<Constraint> read_constraints(const Settings& sweep) {
   std::vector<Constraint> all;
   for (const Settings& table : sweep.get(sweep_key::constraint)) {
     Constraint one{read_figure(table, constraint_key::figure, table.get(constraint_key::figure))};
-    // As they stand: a figure's unit is in its name.
+    // The limits are not converted: the unit of a figure is in its name.
     if (!table.has(constraint_key::at_least) && !table.has(constraint_key::at_most)) {
       throw table.error(constraint_key::at_least, "neither at_least nor at_most",
                         "one of them, or both");

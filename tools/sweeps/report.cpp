@@ -18,7 +18,7 @@ namespace {
 using Eigen::ArrayXd, Eigen::MatrixXd;
 
 constexpr const char* error_suffix = "_standard_error";
-// Of `power`: that of the cells that an array was computed with.
+// Figure of `power`: the temperature of the cells.
 constexpr const char* cell_temperature = "cell_temperature_K";
 constexpr const char* above_rated = "cell_temperature_above_rated_K";
 
@@ -63,7 +63,8 @@ const std::vector<Figure>& first_figures(const SweepResult& result) {
   return first->figures;
 }
 
-// With as many digits as a bound of 1e-6 leaves where the error is less.
+// The value with the digits of its error, or with the usual digits if the relative error is below
+// 1e-6.
 std::string shown(Estimate value) {
   constexpr double finest = 1e-6;
   if (value.standard_error < finest * std::abs(value.value)) return show(value.value);
@@ -72,8 +73,8 @@ std::string shown(Estimate value) {
   return text;
 }
 
-// Of the copies of the best and of the experiment as it stands: what the stated fraction reaches,
-// mean and spread; and copy by copy.
+// Adds the results of the copies of the best and the nominal design: the value that the stated
+// fraction reaches, mean and standard deviation, and a table of all copies.
 void append_built(Product& product, const SweepPlan& plan, const SweepResult& result) {
   if (result.built_best.empty()) return;
   Table table = Table::of("built", "Built copies of the best and the nominal design", {"copy"});

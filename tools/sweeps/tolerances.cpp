@@ -70,7 +70,7 @@ Changes Tolerances::built(const Changes& design, size_t copy) const {
 }
 
 std::optional<Estimate> reached_by(double fraction, bool maximise, std::vector<double> values) {
-  // From the worst on; the larger, the better.
+  // Sorted from the worst value; larger is better.
   for (double& v : values) {
     if (!maximise) v = -v;
     if (std::isnan(v)) v = -std::numeric_limits<double>::infinity();

@@ -95,7 +95,7 @@ std::vector<std::string> grid_values(const Settings& axis) {
   return axis.has(axis_key::values) ? listed_values(axis) : stepped_values(axis);
 }
 
-// By bisection, to rounding.
+// Quantile of the standard normal distribution, by bisection to rounding errors.
 double normal_quantile(double fraction) {
   const auto too_low = [&](double x) {
     return 0.5 * std::erfc(-x / std::numbers::sqrt2) < fraction;

@@ -255,7 +255,7 @@ void run(const Options& options, const Program&) {
   } else {
     text += std::string(platform_text).substr(1);
   }
-  // So that names of files beside it can be followed.
+  // The folder must exist, because file names are relative to it.
   if (options.experiment.has_parent_path()) make_folders(options.experiment.parent_path());
   RunOptions checked;
   checked.experiment = options.experiment;

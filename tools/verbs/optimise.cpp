@@ -48,7 +48,7 @@ class Search {
         evaluator_(plan_, engine_) {
     const std::string lacks = lacks_for_search(plan_);
     if (!lacks.empty()) throw file_.settings.error("sweep", "no plan of a search", lacks);
-    // From now on the designs are those that the search asks for.
+    // The further designs are those of the search.
     plan_.grid = false;
     box_ = box_of(plan_);
     for (SweepAxis& axis : plan_.axes) axis.values.clear();

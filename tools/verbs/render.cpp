@@ -46,7 +46,7 @@ float irradiance_at(const OpticalRun& run, const std::vector<std::pair<size_t, F
   return std::numeric_limits<float>::quiet_NaN();
 }
 
-// Those that stand beside the scene.
+// The lamps near the scene, which are drawn.
 std::vector<DrawnLamp> drawn_lamps(const Experiment& experiment) {
   const double radius_m = experiment.scene.radius_m();
   std::vector<DrawnLamp> lamps;

@@ -35,8 +35,8 @@ struct Study {
   SweepResult result;
 };
 
-// Finds the best, builds copies of it and of the experiment as it stands where the plan asks for
-// them (`may_run`), prints and writes everything; `more` is added to the product.
+// Finds the best design, computes copies of it and of the nominal experiment with tolerances, if
+// the plan has them (`may_run`), prints and writes everything; `more` is added to the product.
 void finish_study(Study study, bool may_run, Product more = {});
 
 }  // namespace photorque

@@ -102,7 +102,7 @@ class SweepRun {
     finish_study({options_, console_, file_, plan_, engine, std::move(result)}, !options_.collect);
   }
 
-  // With an objective the experiment as it stands is one more.
+  // With an objective, the nominal experiment is an additional design.
   std::vector<size_t> all_designs() const {
     std::vector<size_t> all(plan_.designs() + (plan_.objectives.empty() ? 0 : 1));
     for (size_t i = 0; i < all.size(); ++i) all[i] = i;

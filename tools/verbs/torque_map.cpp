@@ -83,7 +83,7 @@ void print_torques(const WrenchTable& wrenches, const AttitudeGrid& grid, const 
   for (const Vec3& torque : wrenches.torque_body_N_m) {
     largest_N_m = std::max(largest_N_m, torque.cwiseAbs().maxCoeff());
   }
-  // Where everything cancels, rounding stays.
+  // If all torques cancel, only rounding errors remain; they are printed as zero.
   const auto rounded_N_m = [&](double x) { return std::abs(x) < 1e-13 * largest_N_m ? 0.0 : x; };
   for (size_t h = 0; h < grid.heading_rad.size(); ++h) {
     for (size_t t = 0; t < grid.tilt_rad.size(); ++t) {
@@ -221,7 +221,7 @@ void run(const Options& options, const Program&) {
         torque_map_page(*run.run, run.wrenches, run.result, std::move(stage), page_head(options)));
   }
   write_results(options, console, run.result);
-  // Its work is done and stands in the results.
+  // The results are complete, so that the checkpoint is not needed.
   std::error_code stays;
   if (checkpoint) std::filesystem::remove(checkpoint->path(), stays);
 }

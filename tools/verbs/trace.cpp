@@ -101,7 +101,7 @@ void check_ray_files(const Experiment& experiment) {
   }
 }
 
-// Where the experiment asks for them: the rays that arrive on each flux map.
+// Files of the rays that arrive on each flux map, if the experiment enables them.
 std::vector<RunFile> ray_files(const OpticalRun& run, int threads) {
   const Experiment& experiment = run.experiment();
   const std::optional<uint64_t>& rays = experiment.file.effort.arriving_rays;

@@ -13,8 +13,8 @@ struct TraceRun {
   RunResult result;
 };
 
-// The rays that arrive on each flux map, where the experiment asks for them, are files of the
-// result; without `with_files` they are not traced.
+// If the experiment enables them, the rays that arrive on each flux map are files of the result;
+// without `with_files` they are not traced.
 TraceRun run_trace(const RunOptions& options, const Console& console, bool with_files = true);
 
 }  // namespace photorque

@@ -21,7 +21,7 @@
 namespace photorque {
 namespace {
 
-// Says at most so often that something is due.
+// Limits the rate of an action: due() is true at most once per interval, or with `always`.
 class Pace {
  public:
   explicit Pace(std::chrono::milliseconds least) : least_(least) {}
@@ -134,7 +134,7 @@ class ShortText {
   std::deque<std::string> last_;
 };
 
-// As a shell takes it for one word.
+// A text quoted as one word of a shell.
 std::string shell_word(const std::string& word) {
   static constexpr const char* plain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=:,+-";
@@ -230,7 +230,7 @@ static std::string clean_lines(const std::string& text) {
 Console terminal(const CommandOptions& options) {
   if (options.quiet || options.json) return Console();
   ConsoleSinks sinks;
-  // At once, also into a pipe: a program may wait for the line with the address of a run.
+  // Flushed immediately, also to a pipe: a program may wait for the line with the address of a run.
   const auto print = [](const std::string& text) {
     std::printf("%s\n", clean_lines(text).c_str());
     std::fflush(stdout);

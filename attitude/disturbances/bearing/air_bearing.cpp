@@ -66,7 +66,7 @@ namespace {
 constexpr double gas_constant_J_kg_K = 287.05;  // dry air, as in Environment
 constexpr double heat_ratio = 1.4;
 
-// Where `f`, falling in x, crosses zero between two brackets, to 1e-14 of itself.
+// The zero of `f`, which decreases in x, between two brackets, to a relative error of 1e-14.
 template <class Function>
 double crossing(double low, double high, const Function& f) {
   return bisect(low, high, [&](double x) { return f(x) > 0.0; }, {200, 1e-14}).middle();

@@ -3,7 +3,7 @@
 // The ball is a sphere of radius R in a concentric socket that reaches from the bottom to the polar
 // angle θ_S. Around the bottom, up to θ_r, may lie a recess: full inlet pressure, no shear. The
 // film is thin (h ≪ R), laminar and isothermal. Source: eq. 4–17 of the paper; docs/physics.md
-// says which of them are implemented as printed.
+// lists the corrections to the printed equations.
 #pragma once
 
 namespace photorque {

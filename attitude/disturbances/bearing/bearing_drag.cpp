@@ -13,8 +13,8 @@
 namespace photorque::kinds::bearing_drag {
 namespace {
 
-// Below this sum of coefficients a bearing would drive; a nominal coefficient and a fitted change
-// of it that cancel it round to more than this.
+// A sum of coefficients below this value would drive the platform. It is not zero, because a
+// nominal coefficient and a fitted change may cancel only up to rounding errors.
 constexpr double min_sum_N_m_s = -1e-6;
 
 constexpr auto coefficient =

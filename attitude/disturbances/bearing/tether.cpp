@@ -27,7 +27,7 @@ constexpr FlagKey winds_up(
 // The angle about body z since the start; counts whole turns, so its accuracy hardly matters.
 constexpr StateKey twist{"tether_twist_rad"};
 
-// Of the angle t about body z in attitude = swing · twist, tan(t/2) = q_z/q_w.
+// Derivative of the twist angle t about body z in attitude = swing · twist, tan(t/2) = q_z/q_w.
 template <class T>
 T twist_rate(const QuatOf<T>& q, const Vec3Of<T>& rate) {
   // Upside down there is no such angle.

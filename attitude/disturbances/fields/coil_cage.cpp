@@ -107,7 +107,7 @@ Vec3 CoilCage::field_lab_T(const Vec3& currents_A, const Vec3& at_lab_m) const {
 }
 
 Vec3 CoilCage::currents_A(const Vec3& field_lab_T) const {
-  // At the centre a pair's field is along its own axis by symmetry.
+  // By symmetry, the field of a pair at the centre is along its axis.
   Vec3 currents_A;
   for (int axis = 0; axis < 3; ++axis) {
     currents_A[axis] = field_lab_T[axis] / pair_field_T(pairs[axis], axis, Vec3::Zero())[axis];

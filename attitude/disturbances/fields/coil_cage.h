@@ -82,8 +82,8 @@ struct CircularOrbit {
 };
 inline constexpr double earth_gravitation_m3_s2 = 3.986004418e14;  // EGM2008
 
-// Field along an orbit, in the inertial axes that the lab stands for, sampled every `interval_s`
-// over `duration_s` [T]. The Earth and its field turn under the orbit.
+// Field along an orbit, in inertial axes (the lab frame), sampled every `interval_s` over
+// `duration_s` [T]. The Earth and its field rotate below the orbit.
 TimeSeries orbit_field_T(const CircularOrbit& orbit, double decimal_year, double duration_s,
                          double interval_s);
 

@@ -5,7 +5,7 @@
 // fraction that is sent back (J. R. Wertz, Spacecraft Attitude Determination and Control, 1978,
 // sec. 17.2.2). That takes the projected area for the same from all sides that the Sun comes to.
 //
-// area_moment_m3[3]: a, body axes; where the Sun is [environment.sun] says. table: a CSV file
+// area_moment_m3[3]: a, body axes; the Sun is that of [environment.sun]. table: a CSV file
 // (torque_surface.h), its path relative to the experiment's. A table over tilt and heading holds
 // for light that is the same all round the vertical (a beamer overhead); a table over azimuth and
 // elevation for far light from one direction, sun_direction_lab[3], towards the light. scale:
@@ -66,7 +66,7 @@ constexpr Vec3Key sun_direction_lab(
     {.optional = true});
 }  // namespace key
 
-// With the time's derivatives, where it has any.
+// Converts lanes of values to the type of the time, with its derivatives if it has any.
 Lanes moved(const Lanes&, const Lanes& value, const Lanes&) {
   return value;
 }
@@ -76,7 +76,7 @@ DualLanes moved(const DualLanes& time_s, const Lanes& value, const Lanes& slope)
   return result;
 }
 
-// From the spacecraft to the Sun [au], lab axes.
+// The vector from the spacecraft to the Sun [au], lab axes.
 template <class T>
 Vec3Of<T> towards_sun(const SunPath& sun, const T& time_s) {
   const auto [value, slope] = sun.at(values(time_s));

@@ -146,7 +146,7 @@ TorqueSurface::Sample TorqueSurface::at(const TableAngles& angles) const {
     sample.torque_body_N_m = value + s * sample.torque_body_N_m;
     sample.by_around = slope + s * sample.by_around;
   }
-  // Beyond an edge its value holds.
+  // Beyond an edge, the value at the edge is used.
   sample.by_polar *= polar_rad != angles.polar_rad ? 0.0 : 1.0 / height_rad;
   sample.by_around *= held_around ? 0.0 : 1.0 / width_rad;
   return sample;
@@ -193,7 +193,7 @@ bool TorqueSurface::beyond_is_pole(bool below) const {
 }
 
 // The row beyond the first (last): across a pole lie the angles of the opposite side; elsewhere the
-// edge goes on in a straight line.
+// edge is extended linearly.
 TorqueSurface::Row TorqueSurface::ghost_row(bool below, double around_rad,
                                             double* polar_rad) const {
   const std::vector<double>& nodes = table_.polar_rad;
@@ -230,7 +230,7 @@ TorqueSurface::Sample TorqueSurface::through_nodes(const TableAngles& angles) co
 
 namespace {
 
-// Before room is made for what the file cannot hold.
+// Checks the number of rows before memory for the whole grid is allocated.
 void require_grid(const std::filesystem::path& path, size_t rows,
                   const std::vector<double>& polar_rad, const std::vector<double>& around_rad) {
   const size_t polar = polar_rad.size(), around = different_around(around_rad);

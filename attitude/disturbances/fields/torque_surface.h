@@ -43,8 +43,8 @@ class TorqueSurface {
   struct Row {
     Vec3 value, slope;
   };
-  // Of one cell between nodes: Σ c[4 j + i] s^j t^i, s and t the fractions of its width along the
-  // polar angle and around.
+  // Coefficients of one cell between nodes: Σ c[4 j + i] s^j t^i, with s and t the position within
+  // the cell (0 to 1) along the polar angle and the azimuth.
   using Patch = std::array<Vec3, 16>;
   Patch fit_patch(size_t polar, size_t around) const;
   double width_around_rad(size_t around) const;

@@ -86,8 +86,8 @@ struct MarkerPositions final : LawOf<MarkerPositions> {
     }
   }
 
-  // Of a spot's centre along one axis, from the marker's brightness and where it falls onto its
-  // pixel. Without errors that the camera knows of all weigh the same.
+  // Standard deviation of a spot's centre along one axis, from the marker's brightness and its
+  // position within the pixel. Without known errors, all markers have the same weight.
   template <class T>
   T information(const T& brightness, const T& pixel) const {
     if (in_middle_.constant == 0.0) return T(1.0);
@@ -234,7 +234,7 @@ const TrackingCamera& camera_of(const Settings& settings, const DisturbanceConte
   return *context.camera;
 }
 
-// Of markers that are elsewhere altogether the law is not the pose's.
+// Reads the errors of the markers, which must be small: the law is valid only near the true pose.
 PlacedParameters read_error_m(const Settings& settings, size_t size, int first) {
   constexpr double most_m = 0.1;
   PlacedParameters group = array_parameter(settings, error_key, size, first);

@@ -10,7 +10,7 @@
 
 namespace photorque {
 
-// One lithium ion per electron, M/F: 7.19e-8 kg/C, that is 0.2589 g/Ah. Molar mass 6.94 g/mol
+// Lithium per charge, one ion per electron, M/F: 7.19e-8 kg/C or 0.2589 g/Ah. Molar mass 6.94 g/mol
 // (IUPAC 2021, conventional value; natural sources vary by 0.4 %).
 inline constexpr double lithium_kg_C = 6.94e-3 / faraday_C_mol;
 // Eq. 31: the transport rules' 0.3 g/Ah, which counts all lithium in a cell and is rounded up.
@@ -19,9 +19,10 @@ inline constexpr double lithium_as_published_kg_C = 0.3e-3 / 3600.0;
 // One cell on the platform.
 struct BatteryCell {
   Vec3 position_body_m = Vec3::Zero();  // of its centre
-  // From the mean place of the lithium when charged (anode) to that when empty (cathode), body
-  // axes. The paper takes half the cell's length; wound and stacked cells alternate their
-  // electrodes every 0.1 mm or so, for which that is an upper bound by orders of magnitude.
+  // Vector from the mean position of the lithium in the charged cell (anode) to that in the empty
+  // cell (cathode), body axes. The paper assumes half the length of the cell. In wound and stacked
+  // cells, electrodes alternate about every 0.1 mm, so that this is too large by orders of
+  // magnitude.
   Vec3 electrodes_body_m = Vec3::Zero();
   // Fraction of the battery's charge that passes through this cell: 1 in series, 1/n of n in
   // parallel.

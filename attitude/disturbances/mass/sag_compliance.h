@@ -1,11 +1,10 @@
-// How far the centre of mass sags per unit of gravity.
+// Compliance: displacement of the centre of mass per unit of gravity.
 //
-// A platform whose parts hang on springs has its centre of mass at C g_B beside where it would lie
-// without weight: C [s²] is symmetric, in body axes. Balanced at zero tilt, what remains at any
-// other attitude is the torque m C (g_B − g_B,ref) × g_B (disturbance elastic_sag). Here the two
-// structures of the paper fill C; the beams are slender, clamped at the middle, and bend only
-// across their length. Source: eq. 2 and 3, corrected by Euler–Bernoulli's deflections
-// (docs/physics.md).
+// The weight of an elastic structure displaces its centre of mass by C g_B, with a symmetric C [s²]
+// in body axes. If the platform is balanced at zero tilt, the torque at another attitude is
+// m C (g_B − g_B,ref) × g_B (disturbance elastic_sag). The functions compute C for the two
+// structures of the paper. Their beams are slender, clamped at the middle, and bend only across
+// their length. Source: eq. 2 and 3, corrected by Euler–Bernoulli's deflections (docs/physics.md).
 #pragma once
 
 #include "core/transform.h"

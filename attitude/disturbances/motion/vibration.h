@@ -35,7 +35,7 @@ std::vector<VibrationTone> tones_of_spectrum(std::span<const SpectrumPoint> spec
 
 // A sinusoid of time with parameters, shared by the periodic disturbances.
 
-// One standard deviation of an angle that may be anything.
+// Standard deviation of an unknown phase: π/√3.
 constexpr double phase_scale = 1.8;
 
 // sin(2π f t + φ).

@@ -58,7 +58,7 @@ T saturated(const T& x, double limit) {
 // rate over the largest, positive where the motor drives it further.
 template <class T>
 T headroom(const T& fraction) {
-  // Beyond the bound the exponential would overflow, and the result is 0 anyway.
+  // Limited, because the exponential would overflow; the result is 0 there.
   const T bounded = where_at_least(fraction, 1.2, T(1.2), fraction);
   return 1.0 / (1.0 + exp(1200.0 * (bounded - 0.995)));
 }

@@ -56,8 +56,8 @@ class EmpiricalTorqueLaw final : public TorqueLaw<EmpiricalTorqueLaw> {
 
  private:
   static constexpr size_t most_components = 24;
-  // Below these a direction fades instead of jumping: tilt in radians, rate in rad/s, command in
-  // newton metres.
+  // Below these values, a torque along a direction decreases smoothly to zero: tilt in radians,
+  // rate in rad/s, command in newton metres.
   static constexpr double least_tilt = 1e-6, least_rate = 1e-5, least_command = 1e-9;
 
   template <class T>
@@ -70,7 +70,7 @@ class EmpiricalTorqueLaw final : public TorqueLaw<EmpiricalTorqueLaw> {
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + T(least * least));
   }
 
-  // All but the yaw, which has no value at a whole turn.
+  // The variables except the yaw, which is undefined at a whole turn.
   template <class T>
   static T value_of(const MotionFunction& f, const EvaluationContext<T>& now) {
     T x = now.time_s;

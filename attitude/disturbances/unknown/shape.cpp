@@ -14,7 +14,7 @@ constexpr std::array axes_names = {"body", "lab",          "vertical", "lean",
 constexpr std::array axes_components = {3, 3, 1, 1, 1, 3, 1, 6};
 constexpr std::array variable_names = {"yaw", "tilt", "rate", "time", "charge", "command"};
 constexpr std::array variable_units = {"deg", "deg", "rad_s", "s", "Ah", "N_m"};
-// At which a power of the variable is 1 unless the user says otherwise.
+// Default values of each variable at which its power is 1.
 constexpr std::array usual_reference = {1.0, 0.1, 0.1, 100.0, 3600.0, 1e-4};
 
 template <class Enum>
@@ -289,7 +289,7 @@ SmoothTable::SmoothTable(std::vector<double> knots) : knots_(std::move(knots)) {
   for (size_t i = 0; i < knots_.size(); ++i) slopes_.push_back(slope_at(i));
 }
 
-// Of the parabola through three values (Lagrange), at one of their knots.
+// Slope of the parabola through three values (Lagrange) at one of their knots.
 SmoothTable::Slope SmoothTable::slope_at(size_t knot) const {
   Slope slope;
   slope.first = std::clamp<size_t>(knot, 1, knots_.size() - 2) - 1;

@@ -56,8 +56,8 @@ Facets::Facets(const Scene& scene) {
   find_free(ball_about(facets_).radius_m);
 }
 
-// Of so many pairs of a facet and a corner it is worth looking at all; of more, at those of the
-// largest facets.
+// Finds the facets that nothing can shade. All pairs of a facet and a corner are tested up to a
+// limit; beyond it, only those of the largest facets.
 void Facets::find_free(double scene_radius_m) {
   constexpr size_t most_pairs = 200'000'000;
   constexpr double rounding = 1e-6;  // of the scene: in the plane, to the precision of rays
@@ -85,7 +85,7 @@ void Facets::find_free(double scene_radius_m) {
 
 namespace {
 
-// For every corner of every face a number that corners at the same place have in common.
+// Numbers the corners of all faces; corners at the same position have the same number.
 std::vector<std::array<uint32_t, 3>> welded(std::span<const SurfaceFace> faces) {
   const auto at = [&](uint32_t corner) -> const Vec3& {
     return faces[corner / 3].corner_body_m[corner % 3];
@@ -178,7 +178,7 @@ std::optional<bool> fronts_look_inwards(std::span<const SurfaceFace> faces) {
   for (const auto& [body, size] : sizes) {
     // A fold without area, whose corners are one with nothing else's.
     if (size.area_m2 == 0.0) continue;
-    // Of a volume that is nothing but rounding no side is the inner one.
+    // A volume within rounding errors has no inner side.
     constexpr double rounding = 1e-12;
     if (std::abs(size.volume_m3) <= rounding * size.area_m2 * size.reach_m) return std::nullopt;
     (size.volume_m3 < 0.0 ? inwards : outwards) = true;

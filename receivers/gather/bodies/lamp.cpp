@@ -95,7 +95,7 @@ class FacetQuadrature {
       means[i] = lamp_.misses(quarters[i].ball()) ? WrenchSum::Zero().eval() : mean_of(quarters[i]);
       finer += 0.25 * means[i];
     }
-    // Said of the finer rule, whose own error is smaller.
+    // The difference of the two rules is used as the error of the finer one, which is smaller.
     const double force_N = piece.area_m2 * (finer - mean).head<3>().matrix().norm();
     const double torque_N_m = piece.area_m2 * (finer - mean).tail<3>().matrix().norm();
     const bool good = force_N <= force_tolerance_N_ && torque_N_m <= torque_tolerance_N_m_;
@@ -158,11 +158,11 @@ Exposure BodyLamp::exposure_of(const FacetSide& side) const {
   const Vec3 normal = side.normal();
   const double cosine = -normal.dot(body_from_emitter().direction(Vec3::UnitZ()));
   const double reach_sine = std::sin(std::min(light().reach_rad(), 0.5 * pi));
-  // By the directions of the rays.
+  // Test with the directions of the rays.
   if (cosine <= -reach_sine) return Exposure::none;
   const bool all_directions = cosine > reach_sine && light().reach_rad() < 0.5 * pi;
   if (light().parallel()) return all_directions ? Exposure::whole : Exposure::partly;
-  // By the place of the aperture.
+  // Test with the position of the aperture.
   const Vec3 way = body_from_emitter().translation_m - side.facet->ball.centre_m;
   const double spread_m = light().radius_m() * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
   const double height_m = normal.dot(way);

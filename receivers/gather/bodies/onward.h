@@ -1,5 +1,5 @@
-// Light that goes on from surfaces by mirrors and through thin sheets, ray by ray, until it is
-// spent. For the files of this folder only.
+// Light that is mirrored or transmitted by thin sheets, traced ray by ray until its power is
+// negligible. For the files of this folder only.
 #pragma once
 
 #include <functional>
@@ -18,14 +18,14 @@ struct OnwardRay {
 
 // The actions where it lands. A side is a facet's back (2 · facet) or front (2 · facet + 1).
 struct OnwardSink {
-  // Of a ray of this owner: the momentum that stays with the surface, on the whole.
+  // Receives the mean force and torque that a ray of this owner exerts on a surface.
   std::function<void(uint32_t owner, const WrenchSum& wrench)> push;
   // Receives the light that Lambert's law scatters there.
   std::function<void(uint32_t owner, size_t side, const Vec2& uv, const BandValues& power_W)>
       scatter;
 };
 
-// From a place on a surface straight up, so far.
+// A shadow ray from a point on a surface along its normal, with this length.
 ShadowRay probe(const TraceableScene& scene, const Vec3& at_m, const Vec3& normal, double length_m);
 
 // Whether every surface goes by mirror, Lambert's law and straight passage alone.

@@ -25,11 +25,11 @@ EdgeKey key_of(uint32_t instance, const Vec3& a, const Vec3& b) {
           second.z()};
 }
 
-// Where other facets cut through one.
+// The lines at which other facets cut through a facet.
 std::vector<Line> cuts_through(const Facet& facet, const Facets& facets, double rounding_m) {
   std::vector<Line> lines;
   const auto add = [&](const Line& line) {
-    // Not of neighbours, whose planes meet it at a corner.
+    // Lines of neighbours are omitted: they meet the facet at a corner only.
     Screen screen(facet);
     screen.add(std::span(&line, 1), facet.normal, -facet.normal, rounding_m);
     if (!screen.traces().empty()) lines.push_back(line);

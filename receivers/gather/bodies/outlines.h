@@ -12,8 +12,7 @@ class Outlines {
  public:
   explicit Outlines(const Facets& facets);
 
-  // Where the surface ends, or turns from the light to its dark side: no other edge of a mesh
-  // bounds a shadow.
+  // The edges at which the surface ends or turns away from the light; only these bound shadows.
   void in_light(const Vec3& travel, std::vector<Line>& lines) const;
   // Lines where the view against `travel` changes: outlines and creases in sight.
   void in_sight(const Vec3& travel, std::vector<Line>& lines) const;
@@ -27,7 +26,7 @@ class Outlines {
   std::vector<Edge> edges_;
 };
 
-// Where other facets cut through one, facet by facet.
+// The lines at which other facets cut through each facet.
 std::vector<std::vector<Line>> all_cuts(const Facets& facets, double rounding_m);
 
 // Lines by where light along `travel` carries them, so that those over a facet are found fast.
@@ -37,7 +36,7 @@ class LineGrid {
   LineGrid(std::vector<Line> lines, const Vec3& travel, double radius_m);
 
   const std::vector<Line>& lines() const { return lines_; }
-  // Those that may pass over or under a triangle.
+  // The lines that may pass over or under a triangle.
   void over(const TriangleCorners& corners_m, std::vector<Line>& found);
 
  private:

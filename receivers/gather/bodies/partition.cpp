@@ -9,7 +9,7 @@ namespace {
 constexpr double touching = 1e-9;  // of a cell: as good as outside
 constexpr size_t few = 4;          // lines that a cell is cut by
 
-// Of traces on one line, one.
+// Keeps one of several traces on the same line.
 void thin_out(std::vector<Trace>& traces) {
   const auto on_line = [](const Trace& one, const Trace& other) {
     const Vec2 p(one.from[1], one.from[2]), along = Vec2(one.to[1], one.to[2]) - p;
@@ -55,7 +55,7 @@ class Polygon {
     }
     return halves;
   }
-  // Of the cell.
+  // Area as a fraction of the cell.
   double share() const {
     double sum = 0.0;
     for (size_t i = 1; i + 1 < count_; ++i) sum += twice_area(i);
@@ -111,7 +111,7 @@ bool beside(const Trace& trace, uint32_t which) {
   return both(0, high) || both(1, high) || both(2, high);
 }
 
-// Cuts cells into quarters as far as their traces ask for.
+// Cuts cells into quarters until they are small enough for the traces that cross them.
 class Descent {
  public:
   Descent(std::span<const Trace> traces, const Levels& levels, uint32_t deepest,

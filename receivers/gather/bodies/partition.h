@@ -25,13 +25,13 @@ struct Cell {
   uint64_t path = 0;  // two bits for each cut, the last one lowest
   std::array<Vec2, 3> corner_uv = {Vec2(0.0, 0.0), Vec2(1.0, 0.0), Vec2(0.0, 1.0)};
 
-  // Of the triangle's area.
+  // Area as a fraction of the triangle.
   double share() const { return std::ldexp(1.0, -2 * static_cast<int>(level)); }
   Vec2 at(const CornerWeights& w) const {
     return w[0] * corner_uv[0] + w[1] * corner_uv[1] + w[2] * corner_uv[2];
   }
   Vec2 centre() const { return (corner_uv[0] + corner_uv[1] + corner_uv[2]) / 3.0; }
-  // At the corners 0, 1 and 2, then the one between.
+  // The quarters at the corners 0, 1 and 2, then the one in the middle.
   Cell quarter(uint32_t which) const {
     const auto& [a, b, c] = corner_uv;
     const Vec2 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);

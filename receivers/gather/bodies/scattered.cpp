@@ -40,7 +40,7 @@ Starts starts_of(const Facet& facet, const Cell& cell, const Vec3& normal,
   return starts;
 }
 
-// Which of at most a block of places have something closely above them.
+// Whether another surface is close above each of at most a block of points.
 std::vector<bool> covered_of(const TraceableScene& scene, std::span<const Vec3> at_m,
                              const Vec3& normal, double close_m) {
   std::array<ShadowRay, sobol_block> rays;
@@ -210,7 +210,7 @@ void ScatteredLight::add_starts(const Task& task, const Work& one, uint64_t numb
   for (OnwardRay& ray : rays) ray.power_W[task.band] = 1.0 / static_cast<double>(rays.size());
 }
 
-// Merges the light that one patch throws onto one other into one part.
+// Merges the light from one patch to another into one part.
 void ScatteredLight::merge_places(std::vector<Reached::Part>& parts, size_t from) {
   const auto begin = parts.begin() + static_cast<std::ptrdiff_t>(from);
   std::stable_sort(begin, parts.end(),
@@ -271,7 +271,7 @@ void ScatteredLight::settle(const Task& task, const std::vector<Work>& work,
         next[c * chunk + one.patch] += one.fraction * there.segment<6>(own);
       }
     });
-    // Of forces and of torques.
+    // First element: forces; second: torques.
     Eigen::Array2d change = Eigen::Array2d::Zero(), largest = Eigen::Array2d::Zero();
     const auto sizes = [](const WrenchSum& wrench) {
       return Eigen::Array2d(wrench.head<3>().abs().maxCoeff(), wrench.tail<3>().abs().maxCoeff());
@@ -288,7 +288,7 @@ void ScatteredLight::settle(const Task& task, const std::vector<Work>& work,
   }
 }
 
-// Of cells that are cut: quarters stand behind the cell that they divide.
+// Computes the means of divided cells from their quarters, which follow them in the list.
 void ScatteredLight::find_means(size_t band) {
   for (size_t node = nodes_.size(); node-- > 0;) {
     const uint32_t first = nodes_[node].first_quarter;

@@ -1,13 +1,13 @@
 // Force and torque of light that a surface scatters by Lambert's law.
 //
-// Where light came from does not matter once it is scattered so. The force and torque that a watt
-// of it brings about by all that follows, w(x), is a field on the surfaces, the same for light from
-// anywhere:
+// Scattered light does not depend on the direction of the incident light. The force and torque per
+// watt of scattered light, all later interactions included, are therefore a field w(x) on the
+// surfaces:
 //
 //   w(x) = ∫ cos θ/π [contact(y) + scattered share(y) w(y) + what goes on by mirrors] dω,
 //
-// with y where the direction ω from x leads. It is found once, by rays from every patch of surface,
-// and the linear equations that they make; twice, from independent rays, whose difference is the
+// where y is the point that the direction ω from x meets. Rays from every patch of the surface give
+// linear equations for w. They are solved for two independent sets of rays; the difference is the
 // error. For the files of this folder only.
 #pragma once
 
@@ -20,7 +20,7 @@
 
 namespace photorque {
 
-// Of either set of rays.
+// Force and torque from each of the two sets of rays.
 using TwofoldSum = Eigen::Array<double, 12, 1>;
 
 class ScatteredLight {
@@ -43,8 +43,8 @@ class ScatteredLight {
                  const Effort& effort);
 
   // Force and torque about the point per watt of this band that leaves a piece of a side: the mean
-  // over a whole cell, or that of the patch at its centre. Near lines() it matters whether
-  // something stands closely above, which no piece may be of two minds about.
+  // over a whole cell, or that of the patch at its centre. Near lines(), the value depends on
+  // whether another surface is close above the piece (`covered`).
   const TwofoldSum& per_watt(size_t side, const Piece& piece, bool covered, size_t band) const {
     const size_t node = piece.whole ? node_of(side, piece.cell.level, piece.cell.path)
                                     : node_at(side, piece.centre_uv);
@@ -54,9 +54,10 @@ class ScatteredLight {
   std::span<const Line> lines(size_t side) const { return lines_[side]; }
   // The area of most patches.
   double patch_m2() const { return patch_m2_; }
-  // How close that is.
+  // Largest distance of a surface that is close above a piece.
   double close_m() const { return close_m_; }
-  // For places where the arriving light is not traced: by how much of the patch is covered.
+  // For points at which the arriving light is not traced: weighted by the covered fraction of the
+  // patch.
   TwofoldSum per_watt_at(size_t side, const Vec2& uv, size_t band) const {
     const size_t node = node_at(side, uv);
     return mixed(per_watt_[band][node], nodes_[node].covered);
@@ -65,7 +66,7 @@ class ScatteredLight {
   bool unseen(size_t side) const { return unseen_[side]; }
 
  private:
-  // Of a tree of cells for each side; patches are those that are not cut.
+  // Node of the tree of cells of each side; undivided nodes are the patches.
   struct Node {
     uint32_t first_quarter = 0;  // 0: a patch
     bool crowded = false;        // something begins or ends over it, close by
@@ -75,7 +76,7 @@ class ScatteredLight {
     size_t side, node;
     Cell cell;
   };
-  // Where nothing is closely above, and where something is.
+  // Values for uncovered and for covered pieces.
   using Pair = std::array<TwofoldSum, 2>;
   static TwofoldSum mixed(const Pair& pair, double covered) {
     return (1.0 - covered) * pair[0] + covered * pair[1];
@@ -86,7 +87,7 @@ class ScatteredLight {
             const Facet& facet, double patch_m2);
   void find_covered(const TraceableScene& scene, const Facets& facets, uint64_t seed);
 
-  // One band's field by one set of rays.
+  // Computes the field of one band with one set of rays.
   struct Task {
     const TraceableScene& scene;
     const Facets& facets;

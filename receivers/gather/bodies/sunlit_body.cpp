@@ -12,11 +12,11 @@ namespace photorque {
 namespace {
 
 constexpr size_t most_facets = 20'000;
-constexpr double widest_rad = 1.0 * degree_rad;  // half-angle of a sun that shades as a point
-constexpr double rounding = 1e-7;                // of the scene: in the plane of a facet
-constexpr double least_piece = 1e-6;             // of all area: not cut further
+constexpr double widest_rad = 1.0 * degree_rad;  // largest half-angle treated as a point in shadows
+constexpr double rounding = 1e-7;                // of the scene size: still in the facet's plane
+constexpr double least_piece = 1e-6;             // of the total area: not cut further
 
-// Adds up the effects of each owner's light.
+// Sums the force and torque of the onward light of each owner, the piece that emitted the ray.
 OnwardSink adding_to(std::vector<TwofoldSum>& sums, const ScatteredLight& scattered) {
   return {[&](uint32_t owner, const WrenchSum& wrench) {
             sums[owner].head<6>() += wrench;
@@ -32,7 +32,7 @@ OnwardSink adding_to(std::vector<TwofoldSum>& sums, const ScatteredLight& scatte
 
 }  // namespace
 
-// The work of one direction.
+// The computation for one direction of the light.
 class SunlitBody::Direction {
  public:
   Direction(const SunlitBody& body, const RigidTransform& lab_from_body, double tolerance_N_m)
@@ -66,7 +66,7 @@ class SunlitBody::Direction {
   }
 
  private:
-  // A side of a facet in this light.
+  // A side of a facet that faces this light.
   struct LitSide {
     FacetSide side;
     size_t number;  // 2 · facet + front
@@ -74,13 +74,13 @@ class SunlitBody::Direction {
     ArrivingLight light;
     FirstContact contact;
     const OpticalSurface* surface;
-    bool throws;  // mirrors, or passes light on
+    bool throws;  // mirrors or transmits light
   };
 
   struct LitPiece {
     Piece piece;
-    uint32_t side;         // among the sides
-    bool covered = false;  // something is closely above
+    uint32_t side;         // index in sides_
+    bool covered = false;  // another surface is close above it
   };
 
   void add_side(const FacetSide& side, LineGrid& grid) {
@@ -108,7 +108,8 @@ class SunlitBody::Direction {
                        [](double one) { return one > 0.0; });
   }
 
-  // The outlines of the view in a direction; facets of one plane query one after another.
+  // The outlines that are visible along a direction. The last result is kept, because consecutive
+  // facets often have the same plane and therefore the same direction.
   std::span<const Line> seen_along(const Vec3& direction) {
     if (!(direction - seen_direction_).isZero(1e-12)) {
       seen_.clear();
@@ -119,8 +120,8 @@ class SunlitBody::Direction {
     return seen_;
   }
 
-  // How often a facet is to be cut for cells of the size of mirror cells, by its area, and a small
-  // one, if it is long, by its length.
+  // Number of times that a facet is cut into quarters to get cells of about the size of mirror
+  // cells. mirror_level() follows from its area; long_level(), for small facets, from its length.
   static uint32_t level_of(const Facet& facet, double cell_m2) {
     const double times = 0.5 * std::log2(facet.area_m2 / cell_m2);
     return static_cast<uint32_t>(std::clamp(std::ceil(times), 0.0, 8.0));
@@ -131,7 +132,7 @@ class SunlitBody::Direction {
     return static_cast<uint32_t>(std::clamp(std::ceil(times), 0.0, 2.0));
   }
 
-  // Into pieces, those that may be thrown on into cells.
+  // Cuts a facet into pieces, and those that mirror or transmit light into cells.
   void cut(const Facet& facet, bool free, bool whole, LineGrid& grid) {
     const LitSide& lit = sides_.back();
     Screen screen(facet);
@@ -145,12 +146,12 @@ class SunlitBody::Direction {
       if (whole) {
         grid.over(facet.corner_m, lines_);
         add(lines_, normal, lit.travel);
-      } else {  // light from just behind the facet's edge moves shadows far
+      } else {  // at grazing incidence a small change of direction moves shadows far
         add(grid.lines(), normal, lit.travel);
       }
     }
     const uint32_t cells = lit.throws ? mirror_level(facet) : 0;
-    if (cells > 0) {  // not of a small facet, which is one place
+    if (cells > 0) {  // a small facet is represented by one point
       const Vec3 mirrored = lit.travel - 2.0 * normal.dot(lit.travel) * normal;
       if (!free && any(lit.surface->specular)) add(seen_along(mirrored), normal, -mirrored);
       if (any(lit.surface->transmitted)) {
@@ -174,7 +175,7 @@ class SunlitBody::Direction {
     return origin + uv[0] * (facet.corner_m[1] - origin) + uv[1] * (facet.corner_m[2] - origin);
   }
 
-  // One ray to each piece; leaves the lit ones.
+  // Traces one shadow ray for each piece and keeps the lit pieces.
   void find_lit() {
     const double far_m = 4.0 * scene_diameter_m(body_.scene_);
     std::vector<ShadowRay> rays;
@@ -193,7 +194,7 @@ class SunlitBody::Direction {
     std::swap(pieces_, kept);
   }
 
-  // Of the lit pieces near a line, whether something is closely above.
+  // Finds out for the lit pieces near a line whether another surface is close above them.
   void find_covered() {
     std::vector<ShadowRay> rays;
     std::vector<size_t> whose;
@@ -238,8 +239,9 @@ class SunlitBody::Direction {
     }
   }
 
-  // The centre, but somewhere in a facet that is not cut along what it mirrors, the same place
-  // every time: many such facets side by side are in order.
+  // The starting point of a ray: the centre of a piece. For a facet that is too small to be cut
+  // along mirrored outlines it is a point from a hash, so that the errors of neighbouring facets
+  // are independent.
   Vec2 place_in(const LitPiece& one) const {
     const Facet& facet = *sides_[one.side].side.facet;
     if (!one.piece.whole || mirror_level(facet) > 0) return one.piece.centre_uv;
@@ -272,7 +274,8 @@ class SunlitBody::Direction {
         -(offset_m + body_.scene_.scene().instances[part].sheet_depth_m));
   }
 
-  // Round by round: a cell whose four quarters disagree is cut again.
+  // Follows mirrored and transmitted light in rounds. A cell whose four quarters disagree is cut
+  // again in the next round.
   void follow_thrown() {
     std::vector<LitPiece> now, next;
     for (const LitPiece& one : pieces_) {
@@ -297,12 +300,12 @@ class SunlitBody::Direction {
       }
       std::swap(now, next);
     }
-    // The error of single pieces is taken to be that of the sampled families.
+    // Pieces without four quarters get the mean error of the others.
     if (sampled_area_m2_ > 0.0)
       found_.mirror_error = (mirrored_area_m2_ / sampled_area_m2_ * square_error_).sqrt();
   }
 
-  // The quarters of one cell, if all are there as a whole; else one piece.
+  // One past the end of a family: the four quarters of one cell if all are uncut, else one piece.
   static size_t end_of_family(const std::vector<LitPiece>& all, size_t begin) {
     const auto of_family = [&](size_t i) {
       return i < all.size() && all[i].side == all[begin].side && all[i].piece.whole &&
@@ -316,14 +319,15 @@ class SunlitBody::Direction {
     return begin + 4;
   }
 
-  // Adds the result of a family, or cuts it again.
+  // Adds the result of a family to the total, or cuts its members again.
   void settle(std::span<const LitPiece> family, std::span<const TwofoldSum> sums,
               std::vector<LitPiece>& next) {
     constexpr uint32_t deepest = 14;
-    constexpr size_t most_cells = 200'000;  // of one round
+    constexpr size_t most_cells = 200'000;  // in one round
     TwofoldSum sum = TwofoldSum::Zero();
     for (size_t i = 0; i < family.size(); ++i) sum += sums[i];
-    // A linear function in the middle is its mean at the corners.
+    // The middle quarter of a linear function equals the mean of the others; `bent` is the
+    // deviation from it.
     WrenchSum bent = WrenchSum::Zero();
     if (family.size() == 4) bent = (sum - 4.0 * sums[3]).head<6>().abs() / 3.0;
     const bool fine = !(bent.tail<3>().maxCoeff() > tolerance_N_m_);
@@ -335,8 +339,8 @@ class SunlitBody::Direction {
       }
       mirrored_area_m2_ += area_m2;
       if (family.size() < 4) return;
-      // As if the four were drawn at random: the error of their sum is 2 of their deviations, of
-      // which `bent` is 1.15.
+      // The four values are treated as random samples: the error of their sum is twice their
+      // standard deviation, and `bent` is 1.15 times it.
       square_error_ += 3.0 * bent.square();
       sampled_area_m2_ += area_m2;
       return;
@@ -360,8 +364,8 @@ class SunlitBody::Direction {
   std::vector<Line> seen_;
   Vec3 seen_direction_ = Vec3::Zero();
   std::vector<Piece> parts_;
-  WrenchSum square_error_ = WrenchSum::Zero();             // of families of quarters
-  double mirrored_area_m2_ = 0.0, sampled_area_m2_ = 0.0;  // of all that is thrown on; of families
+  WrenchSum square_error_ = WrenchSum::Zero();             // of the families of four quarters
+  double mirrored_area_m2_ = 0.0, sampled_area_m2_ = 0.0;  // of all cells; of these families
   SunlitWrench found_;
 };
 

@@ -4,16 +4,17 @@
 // Direct light. Parallel light shades along straight lines: every edge of a shadow is the trace of
 // an edge at which a mesh ends or turns away from the light, or of a line at which one surface cuts
 // through another. Each lit facet is cut along these traces into pieces that are lit as a whole or
-// not at all, one shadow ray each; areas and centres of the pieces are exact. The Sun is as wide as
-// it is in what arrives on a facet, and a point in what shades it: half-shadows add and take away
-// alike on either side of an edge, and what remains is of the square of the Sun's half-angle.
+// not at all, one shadow ray each; areas and centres of the pieces are exact. The size of the Sun
+// is included in the light that arrives on a facet, but not in its shadows. The penumbra adds and
+// removes nearly equal light on either side of an edge; the error is of the order of the square of
+// the half-angle of the Sun.
 //
-// Light that goes on. What Lambert's law scatters is a field on the surfaces that does not depend
-// on where light came from (scattered.h). What mirrors throw and thin sheets pass on is followed
-// from small cells of the lit pieces, smaller where neighbours do not agree.
+// Onward light. The light that is scattered by Lambert's law is a field on the surfaces that does
+// not depend on the incident direction (scattered.h). Light from mirrors and through thin sheets is
+// traced from small cells of the lit pieces; the cells are smaller where neighbours disagree.
 //
-// For scenes in which nothing else happens to light. Other surfaces, and lamps that are near, are
-// for rays (raytrace/tracing/tracer.h), which know none of this and are what it is tested against.
+// Only for scenes with these interactions. Other surfaces and near lamps are traced with rays
+// (raytrace/tracing/tracer.h), which are independent and serve as the reference in tests.
 #pragma once
 
 #include <memory>
@@ -40,7 +41,7 @@ struct SunlitWrench {
   WrenchSum total() const { return direct + 0.5 * (bounced.head<6>() + bounced.tail<6>()); }
 };
 
-// A scene made ready for any direction. Immutable; called from many threads at once.
+// A scene prepared for any direction of the light. Immutable and safe to call from many threads.
 class SunlitBody {
  public:
   // Null unless the only beam is a sun of at most 1 deg half-angle, all surfaces are plain and the

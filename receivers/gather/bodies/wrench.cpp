@@ -34,7 +34,7 @@ struct SampledLight {
   Vec3 about_m;
 };
 
-// Where results go: six numbers for each replicate, and the bounds of their errors.
+// The results: six numbers for each replicate, and the bounds of their errors.
 struct WrenchEntries {
   std::span<WrenchSum> replicates;
   WrenchSum& bound;
@@ -189,7 +189,7 @@ class FacetSampler {
 // replicate r come from the stream (seed, hash of `which` and r). Returns the number of rays.
 uint64_t add_sampled(const SampledLight& light, std::vector<SampledSide> sides, uint64_t seed,
                      uint64_t which, const WrenchEntries& entries) {
-  // So that the points of each are a whole interval of their sequence.
+  // Sorted by size, so that the points of each side are a complete interval of the sequence.
   std::ranges::stable_sort(sides, std::greater<>(), &SampledSide::points);
   std::vector<SobolStream> streams;
   for (size_t r = 0; r < entries.replicates.size(); ++r) {

@@ -1,10 +1,9 @@
-// The wrench of direct light on whole bodies, gathered from the surfaces' side.
+// Force and torque of direct light on whole bodies, as an integral over their surfaces.
 //
-// A facet above which nothing of the scene lies takes the momentum that arrives there and leaves at
-// first contact (FirstContact) in closed form, or by quadrature under a lamp that is near.
-// Towards all others go shadow rays, the more the more their light counts; where none is stopped,
-// the facet is as if it were open, so that noise comes from the edges of shadows alone. What
-// bounces is for rays.
+// For a facet that nothing can shade, the momentum at first contact (FirstContact) is computed in
+// closed form, or by quadrature under a near lamp. Other facets get shadow rays, in proportion to
+// their light. If no ray is blocked, the facet is treated as open, so that only the edges of
+// shadows cause noise. Light after the first contact is traced with rays.
 #pragma once
 
 #include <map>
@@ -16,20 +15,20 @@
 
 namespace photorque {
 
-// A scene and its lamps made ready for any attitude. Immutable; called from many threads at once.
+// A scene and its lamps, prepared for any attitude. Immutable and safe to call from many threads.
 class WrenchGather {
  public:
-  // Nothing where a lamp has no uniform aperture, or is near and its beam has an edge (which the
-  // quadrature over facets would have to find). `scene` must outlive this.
+  // Null if a lamp has no uniform aperture, or if a near lamp has a beam with an edge, which the
+  // quadrature over facets does not resolve. `scene` must outlive this.
   static std::unique_ptr<const WrenchGather> make(const TraceableScene& scene,
                                                   std::span<const Beam> beams);
 
   // The direct entries of the receiver, at the attitude `lab_from_body`. Uses seed, replicates,
-  // threads and body_points of the options. The same bits at any number of threads.
+  // threads and body_points of the options. The result is bitwise equal at any number of threads.
   Gathered wrench(const RigidTransform& lab_from_body, const WrenchReceiver& receiver,
                   const GatherOptions& options) const;
 
-  // Of a facet's side and a lamp.
+  // Number of pairs of a facet's side and a lamp.
   size_t pairs() const { return 2 * facets_.count() * beams_.size(); }
 
  private:

@@ -36,7 +36,7 @@ class AccessorReader {
   uint32_t index(size_t element) const;
 
  private:
-  // Where an element starts; null for one that is nowhere stored and therefore zero.
+  // Address of an element; null for an element that is not stored and therefore zero.
   const unsigned char* address(size_t element) const;
 
   ElementLayout layout_;

@@ -1,4 +1,4 @@
-// The bytes that a glTF document refers to, and the only place of the reader that asks for files.
+// The bytes to which a glTF document refers. Only this part of the reader opens files.
 #pragma once
 
 #include <array>

@@ -10,12 +10,12 @@
 namespace photorque::gltf {
 
 // Decodes EXT_meshopt_compression (buffer views) and KHR_draco_mesh_compression (primitives), so
-// that no other part of the reader need know of them: the bytes become further buffers of the
-// document, with their own views and accessors. To be called before the typed model is made.
+// that no other part of the reader handles them: the bytes become additional buffers of the
+// document, with their own views and accessors. Call it before the typed model is made.
 //
 // A primitive with Draco data keeps its plain accessors where they have bytes; else it gets
 // POSITION, TEXCOORD_0 and indices from the data, and no other attribute. Throws InputError for
-// data that cannot be decoded or do not match what the document says of them.
+// data that cannot be decoded or that contradict their description in the document.
 void decompress(Document* document, MemoryBudget* budget);
 
 // The two codecs; `where` points at the extension for messages.

@@ -1,5 +1,5 @@
-// How the parts of the glTF reader say what is wrong, bound what they allocate, and check the shape
-// of a document.
+// Common functions of the glTF reader: error messages, limits of memory, and the check of a
+// document against the schema.
 #pragma once
 
 #include <cstdint>
@@ -60,7 +60,7 @@ class MemoryBudget {
 // index points at something. tinygltf replaces members of the wrong type by their defaults and
 // keeps indices as they are, so this is checked before, on the JSON itself, for everything that
 // geometry and optics depend on. Throws InputError for the first violation, its key a JSON pointer.
-// Members that are not known are passed over, as the specification asks.
+// Unknown members are ignored, as the specification requires.
 void check_schema(const nlohmann::json& document, const std::string& file);
 
 // A short description of a value for messages: "-3", "\"abc\"", "an array of 2".

@@ -63,7 +63,7 @@ Packed read_packed(const Document& document, const json& extension, const std::s
   return packed;
 }
 
-// A view says its own length and stride a second time, for readers without the extension.
+// A view repeats its length and stride for readers without the extension; both must agree.
 void require_equal_extents(const Document& document, const json& view, const Packed& packed,
                            size_t index) {
   const auto compare = [&](const char* key, uint64_t decoded) {

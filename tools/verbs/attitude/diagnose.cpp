@@ -340,7 +340,7 @@ struct Options : CommandOptions {
   bool page = false;
 };
 
-// Of data/run1.csv.gz: "run1".
+// The name of the guessed experiment: "run1" for data/run1.csv.gz.
 std::string name_of_guess(const std::vector<std::filesystem::path>& guess) {
   std::filesystem::path name = guess.front().filename();
   while (name.has_extension()) name = name.stem();

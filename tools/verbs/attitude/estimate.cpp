@@ -41,7 +41,7 @@ RunFile file_of(const std::string& name, const std::vector<AttitudeEstimate>& es
           remark};
 }
 
-// Notes of the reader, a line each; the first says how many rows there are, which is said anyway.
+// Notes of the reader, one per line, without the first: the number of rows is printed elsewhere.
 std::vector<std::string> notes_of(const RecordingReport& report) {
   std::vector<std::string> lines;
   std::istringstream text(report.text());

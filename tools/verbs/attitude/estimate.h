@@ -26,8 +26,9 @@ struct EstimateRun {
   RunResult result;
 };
 
-// Of every recording; without any, of a run simulated as [propagate] says, and of [estimate] runs
-// more whose uncertain parameters are drawn. `truth` belongs to a single recording.
+// Estimates the motion of every recording. Without recordings, it uses a run simulated by
+// [propagate], and `runs` of [estimate] further runs with random values of the uncertain
+// parameters. `truth` belongs to a single recording.
 EstimateRun run_estimate(const RunOptions& options, const Console& console,
                          const std::vector<std::filesystem::path>& recordings,
                          const std::optional<std::filesystem::path>& truth);

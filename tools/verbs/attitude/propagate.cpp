@@ -28,7 +28,7 @@ void run(const Options& options, const Program&) {
   MotionRun run = run_propagate(options, console, {}, {}, checkpoint ? &*checkpoint : nullptr);
   if (options.page) run.result.files.push_back(motion_page(run, options, page_head(options)));
   write_results(options, console, run.result);
-  // Its work is done and stands in the results.
+  // The results are complete, so that the checkpoint is not needed.
   std::error_code stays;
   if (checkpoint) std::filesystem::remove(checkpoint->path(), stays);
 }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double s_to_ns = 1e9;
 
-// Before all programs of ordinary priority, and with memory that is never paged out.
+// Sets a real-time priority and locks the memory, so that it is never paged out.
 void take_priority(const Console& console, int priority) {
   // Ordinary threads may otherwise be woken 50 microseconds late, to save power.
   ::prctl(PR_SET_TIMERSLACK, 1UL);
