@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "attitude/estimation/release.h"
+#include "attitude/estimation/swing.h"
 #include "attitude/recordings/columns.h"
 #include "core/errors.h"
 #include "core/text/format.h"

@@ -5,6 +5,7 @@
 
 #include "attitude/estimation/free_inertia.h"
 #include "attitude/estimation/segments.h"
+#include "attitude/estimation/swing.h"
 #include "attitude/observation/noise_levels.h"
 #include "attitude/recordings/columns.h"
 #include "core/constants.h"
@@ -213,7 +214,15 @@ void see_one_axis(Machine& m) {
   m.why = std::string("there is one ") + (has_angle ? "angle" : "rate") +
           " alone, so it turns about one axis: a wheel, a turntable, one angle of a spacecraft.";
   m.observe_as(Topology::one_axis);
-  if (has_angle && passes_its_mean(m.runs, 2)) {
+  if (!has_angle || !passes_its_mean(m.runs, 2)) return;
+  const bool has_spring = std::ranges::any_of(m.runs, [](const Observation& seen) {
+    return restoring_law(seen, Vec3::UnitZ()) == RestoringLaw::spring;
+  });
+  if (has_spring) {
+    m.why =
+        "one angle that swings about its mean, driven back in proportion to the angle and not to "
+        "its sine: a torsion pendulum, a spring (\"x\" for a weight about a level axis).";
+  } else {
     m.why =
         "one angle that swings about its mean: a pendulum about a horizontal axis (\"z\" where "
         "the axis is vertical and something else drives it back). Angle zero is taken to hang.";

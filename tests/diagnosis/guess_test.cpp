@@ -17,6 +17,7 @@
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/guess/guess.h"
 #include "scenes/experiment/toml.h"
+#include "tests/diagnosis/machine_bench.h"
 
 namespace photorque {
 namespace {
@@ -310,14 +311,46 @@ TEST_F(Guess, AWheelIsDiagnosedByItsGuess) {
   EXPECT_THAT(kinds, testing::UnorderedElementsAre("dry_friction", "air_pressure_drag"));
 }
 
-TEST_F(Guess, APendulumHangsFromAHorizontalAxis) {
-  std::string text = "t_s,angle_deg\n";
-  for (int i = 0; i < 400; ++i) {
-    text += std::to_string(0.05 * i) + "," + std::to_string(20.0 * std::cos(0.15 * i)) + "\n";
+std::string angles_text(const std::vector<double>& angle_rad, double interval_s) {
+  std::string text = "t_s,angle_rad\n";
+  for (size_t i = 0; i < angle_rad.size(); ++i) {
+    text += std::to_string(interval_s * static_cast<double>(i)) + "," +
+            std::to_string(angle_rad[i]) + "\n";
   }
-  const fs::path file = write("pendulum.csv", text);
-  EXPECT_THAT(guess_experiment({file}, "."),
-              AllOf(HasSubstr("axis = \"x\""), HasSubstr("CONFIRM")));
+  return text;
+}
+
+// Of small swings, and of large ones with 60 and with 12 readings a period.
+TEST_F(Guess, APendulumHangsFromAHorizontalAxis) {
+  const Swing pendulum{10.0, 0.0, 0.05, 0.02};
+  for (const auto& [angle_rad, interval_s] : {std::pair(0.2, 0.05), {1.5, 0.035}, {1.5, 0.18}}) {
+    const fs::path file =
+        write("pendulum.csv", angles_text(pendulum.from(angle_rad, interval_s, 400), interval_s));
+    EXPECT_THAT(guess_experiment({file}, "."),
+                AllOf(HasSubstr("axis = \"x\""), HasSubstr("CONFIRM")))
+        << angle_rad << " rad, every " << interval_s << " s";
+  }
+}
+
+// θ'' = −k θ − c θ': a damped cosine, which a hand releases after 0.4 s, with readings of 3 mrad.
+TEST_F(Guess, ATorsionPendulumTurnsAboutAnUprightAxis) {
+  constexpr double k = 10.5, c = 0.3, released_s = 0.4, noise_rad = 0.003;
+  const double omega = std::sqrt(k - 0.25 * c * c);
+  for (const double interval_s : {0.03, 0.1}) {
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> noise(0.0, noise_rad);
+    std::vector<double> angle_rad;
+    for (int i = 0; i < 200; ++i) {
+      const double t = std::max(0.0, interval_s * i - released_s);
+      angle_rad.push_back(2.2 * std::exp(-0.5 * c * t) *
+                              (std::cos(omega * t) + 0.5 * c / omega * std::sin(omega * t)) +
+                          noise(random));
+    }
+    const fs::path file = write("wheel.csv", angles_text(angle_rad, interval_s));
+    EXPECT_THAT(guess_experiment({file}, "."),
+                AllOf(HasSubstr("axis = \"z\""), HasSubstr("in proportion to the angle")))
+        << "every " << interval_s << " s";
+  }
 }
 
 TEST_F(Guess, AThrowHasTheRatiosOfItsMoments) {

@@ -335,41 +335,6 @@ per_recording = true
   EXPECT_NEAR(drag.value[0], 1.2e-4, std::max(5.0 * drag.sigma[0], 0.01 * 1.2e-4));
 }
 
-// θ'' = −k sin θ − d sign θ' − c θ' − q θ' |θ'| by the classical Runge–Kutta rule, at rest for good
-// where the weight no longer overcomes d at a turning point.
-struct Swing {
-  double k, dry, viscous, form;
-
-  std::vector<double> from(double angle_rad, double interval_s, int rows) const {
-    constexpr int parts = 50;
-    const double h = interval_s / parts;
-    double rate = 0.0, sign = angle_rad > 0.0 ? -1.0 : 1.0;
-    bool rests = false;
-    const auto acceleration = [&](double a, double w) {
-      return -k * std::sin(a) - dry * sign - viscous * w - form * w * std::abs(w);
-    };
-    std::vector<double> all;
-    for (int i = 0; i < rows; ++i) {
-      all.push_back(angle_rad);
-      for (int part = 0; part < parts && !rests; ++part) {
-        const double a1 = rate, w1 = acceleration(angle_rad, rate), a2 = rate + 0.5 * h * w1,
-                     w2 = acceleration(angle_rad + 0.5 * h * a1, a2), a3 = rate + 0.5 * h * w2,
-                     w3 = acceleration(angle_rad + 0.5 * h * a2, a3), a4 = rate + h * w3,
-                     w4 = acceleration(angle_rad + h * a3, a4);
-        angle_rad += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
-        rate += h / 6.0 * (w1 + 2.0 * w2 + 2.0 * w3 + w4);
-        if (rate * sign >= 0.0) continue;
-        // Since the turning point its rate grew under the old sign.
-        const double old = acceleration(angle_rad, 0.0);
-        sign = -sign;
-        rests = std::abs(k * std::sin(angle_rad)) <= dry;
-        rate *= rests ? 0.0 : acceleration(angle_rad, 0.0) / old;
-      }
-    }
-    return all;
-  }
-};
-
 // As counts of an encoder, written with seven digits.
 Channel counted(std::vector<double> angle_rad, int counts_a_turn) {
   for (double& a : angle_rad) {

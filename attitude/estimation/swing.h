@@ -1,0 +1,26 @@
+// A body that swings about one axis: the instant of its release, and the law that drives it back.
+#pragma once
+
+#include "attitude/observation/observation.h"
+
+namespace photorque {
+
+// The first of the rows [first, last) from which on the angle about `axis` swings freely: a hand
+// that set it swinging acts before. Local cubics through a quarter of a period, or nine readings
+// where a quarter has fewer, give angle, rate and acceleration; one law of angle and rate (a
+// constant, sin, cos and the angle itself, sign, rate, rate |rate|) is fitted to all accelerations,
+// robustly (Tukey's biweight). It swings freely from where that law holds for a quarter of a
+// period, to three times the usual scatter or a twentieth of the accelerations around. What rests
+// at the end does not count. `first` where it swings less than three times or there are too few
+// rows, and where that would leave out more than a quarter of the rows.
+size_t released_at(const Observation& rows, const Vec3& axis, size_t first, size_t last);
+
+// The restoring torque about `axis`: proportional to the sine of the angle from a rest position (a
+// weight about a level axis), or to the angle (a spring, a twisted line). The law that leaves less
+// than half of the other's scatter of the accelerations far from the middle, beside dry, viscous
+// and quadratic friction; `unclear` for small swings, where both are alike, or where there are too
+// few readings.
+enum class RestoringLaw { unclear, weight, spring };
+RestoringLaw restoring_law(const Observation& rows, const Vec3& axis);
+
+}  // namespace photorque
