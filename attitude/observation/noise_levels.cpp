@@ -130,9 +130,9 @@ std::optional<double> reading_level(const std::vector<Observation>& runs, int ch
   // The median of |x| of a Gaussian is 0.6745 σ.
   const bool moves = 2 * sizes[lowest_order].size() > windows;
   double level = moves ? median(sizes[lowest_order]) / 0.6745 : 0.0;
-  // White noise is alike at every order. Where the next is quieter by half, what this one holds is
-  // motion that the readings follow too coarsely.
-  constexpr double quieter = 0.5;
+  // White noise is alike at every order. Where the next is clearly quieter, what this one holds is
+  // motion that the readings follow too coarsely: with six readings a period the ratio is 0.53.
+  constexpr double quieter = 0.7;
   for (size_t order = lowest_order + 1; order <= highest_order; ++order) {
     if (sizes[order].size() < fewest) break;
     const double next = median(sizes[order]) / 0.6745;

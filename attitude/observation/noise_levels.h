@@ -15,7 +15,7 @@ namespace photorque {
 
 // Standard deviation of one reading of a channel (Observation::rows_of), from divided third
 // differences of neighbouring readings, which smooth motion hardly affects, also with unequal
-// steps. Orders up to six are used if their result is smaller by half. The result is at least that
+// steps. Orders up to six are used if their result is smaller by 0.7. The result is at least that
 // of the digitisation steps. Rough motion counts as noise. Empty if there are fewer than ten
 // differences.
 std::optional<double> reading_level(const std::vector<Observation>& runs, int channel);
