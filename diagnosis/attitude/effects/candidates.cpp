@@ -387,6 +387,25 @@ bool needs_attitude(const Candidate& c, AttitudeModel model) {
   return depends_on_attitude(model);
 }
 
+// Whether the attitudes about one axis lie within a radian.
+bool swings_little(const std::vector<Observation>& runs) {
+  constexpr double little_rad = 1.0;
+  bool sees = false;
+  double least_rad = 0.0, most_rad = 0.0;
+  Quat first = Quat::Identity();
+  for (const Observation& seen : runs) {
+    for (size_t i = 0; i < seen.blocks(); ++i) {
+      if (!(seen.attitude_rows[i] > 0.0)) continue;
+      if (!sees) first = seen.attitude[i];
+      sees = true;
+      const Vec3 turn_rad = rotation_vector(seen.attitude[i] * first.conjugate());
+      least_rad = std::min(least_rad, turn_rad.minCoeff());
+      most_rad = std::max(most_rad, turn_rad.maxCoeff());
+    }
+  }
+  return sees && most_rad - least_rad < little_rad;
+}
+
 }  // namespace
 
 std::optional<double> braking_power(const Candidate& candidate, AttitudeModel model) {
@@ -540,6 +559,21 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     std::erase_if(all.list, [&](const Candidate& c) {
       return has_weight && c.effect.how.needs == Requirement::bearing &&
              pulls_back(c, nominal.model);
+    });
+    // In small swings the weight has a constant torque, and a steady torque is an error of the
+    // angle's zero.
+    if (is_level && has_weight && !context.platform.slides() && swings_little(runs)) {
+      std::erase_if(all.list, [](const Candidate& c) { return c.effect.how.steady; });
+    }
+    // Where the model has no weight yet, the sag of a structure would only stand for one.
+    const bool states_weight =
+        std::ranges::any_of(nominal.model.disturbances, [](const Disturbance& d) {
+          return find_kind(d.kind) != nullptr &&
+                 find_kind(d.kind)->screening.needs == Requirement::gravity;
+        });
+    std::erase_if(all.list, [&](const Candidate& c) {
+      return !states_weight && c.effect.how.needs == Requirement::gravity && !c.lowest.empty() &&
+             c.lowest.front() == 0.0 && pulls_back(c, nominal.model);
     });
   }
   // While the rate keeps its sign, friction equals a steady torque, and its sign is known.
