@@ -29,9 +29,8 @@ double beyond_physics(const Trial& trial, const Candidates& all, size_t which) {
 }
 
 // The next law to remove: the one with the largest violation of its bounds, otherwise the least
-// significant one. Nothing if all are needed.
-std::optional<size_t> superfluous(const Trial& trial, const Candidates& all) {
-  constexpr double needed = 2.0;  // standard errors
+// significant one, below `needed` standard errors. Nothing if all are needed.
+std::optional<size_t> superfluous(const Trial& trial, const Candidates& all, double needed) {
   const size_t count = trial.candidates.size();
   if (count < 2 || !std::isfinite(trial.fit.chi2)) return std::nullopt;
   std::vector<double> beyond(count);
@@ -46,8 +45,8 @@ std::optional<size_t> superfluous(const Trial& trial, const Candidates& all) {
 // In short pieces friction and drag by several powers of the rate are nearly collinear: they fit
 // with opposite signs and diverge in longer pieces. Superfluous laws are therefore removed.
 Trial without_superfluous(Trial trial, const AttitudeDomain& domain, const Candidates& all,
-                          const std::vector<Observation>& runs) {
-  while (const std::optional<size_t> least = superfluous(trial, all)) {
+                          const std::vector<Observation>& runs, double needed = 2.0) {
+  while (const std::optional<size_t> least = superfluous(trial, all, needed)) {
     inference::Members<Start> rest;
     const auto terms = domain.terms_of(trial);
     for (size_t i = 0; i < terms.size(); ++i) {
@@ -77,6 +76,26 @@ Trial lengthened(const Trial& in_pieces, const inference::RunSet<AttitudeDomain>
   return found;
 }
 
+size_t most_readings(const std::vector<Observation>& runs) {
+  size_t most = 0;
+  for (const Observation& seen : runs) most = std::max(most, seen.blocks());
+  return most;
+}
+
+// Pieces in which the nominal model stays near the readings; the shortest that determine their
+// initial conditions if it does in none of the usual ones.
+std::pair<inference::RunSet<AttitudeDomain>, Trial> near_short_pieces(
+    const AttitudeDomain& domain, const Trial& nominal, const std::vector<Observation>& runs,
+    const Thresholds& limits) {
+  auto near = inference::near_pieces(domain, nominal, runs);
+  const size_t count = most_readings(runs) / limits.search.min_readings_of_piece;
+  if (!inference::has_diverged(near.second, limits) || count <= near.first.pieces) return near;
+  inference::RunSet<AttitudeDomain> pieces{domain.cut(runs, count), count};
+  if (pieces.runs.empty()) return near;
+  Trial parted = domain.refit(nominal, pieces.runs, domain.seen_begins(nominal, pieces.runs), {});
+  return {std::move(pieces), std::move(parted)};
+}
+
 }  // namespace
 
 std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates& all,
@@ -103,18 +122,32 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
   const bool sees_angle = std::ranges::all_of(
       data.train, [](const Observation& seen) { return seen.sees_some_attitude(); });
   if (sees_angle) {
-    const auto [pieces, parted] = inference::near_pieces(domain, nominal, data.train);
+    const auto [pieces, parted] = near_short_pieces(domain, nominal, data.train, all.limits);
     const Trial all_laws =
         domain.assemble(parted, members, pieces.runs, inference::patient(all.limits));
     const auto in_the_whole = [&](const Trial& laws) {
       return domain.refit(laws, data.train, domain.seen_begins(laws, data.train), growing);
     };
+    // The whole leaves more than the pieces, but not that much more.
+    constexpr double alike = 100.0;
+    const double near_whole = alike * std::max(1.0, all_laws.fit.chi2_per_sample());
     found = in_the_whole(all_laws);
-    if (!(found.fit.chi2 < nominal_fit.chi2)) {
-      found = in_the_whole(lengthened(all_laws, pieces, domain, all, data.train));
+    if (!(found.fit.chi2 < nominal_fit.chi2 && found.fit.chi2_per_sample() < near_whole)) {
+      Trial longer = in_the_whole(lengthened(all_laws, pieces, domain, all, data.train));
+      if (!(found.fit.chi2 < longer.fit.chi2)) found = std::move(longer);
     }
+    // Collinear laws with opposite signs leave no more of the residual than those within physics.
+    Trial within_physics = without_superfluous(found, domain, all, data.train, 0.0);
+    if (within_physics.fit.chi2 < nominal_fit.chi2) found = std::move(within_physics);
   } else {
-    found = domain.assemble(nominal, members, data.train, growing);
+    // Fewer readings than that hardly determine as many laws.
+    constexpr double fewest_readings = 20.0;
+    const size_t readings = most_readings(data.train);
+    std::erase_if(growing.windows, [&](double part) {
+      return part < 1.0 && part * static_cast<double>(readings) < fewest_readings;
+    });
+    found = without_superfluous(domain.assemble(nominal, members, data.train, growing), domain, all,
+                                data.train);
   }
   if (!(found.fit.chi2 < nominal_fit.chi2)) return std::nullopt;
   return found;
