@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/settings/settings.h"
@@ -12,6 +13,9 @@ namespace photorque {
 
 // All lines of a file, which may be compressed, each with "\n". InputError as by TextLines.
 std::string whole_text(const std::filesystem::path& path);
+
+// A cell of a header as UTF-8: bytes that are none are of Latin-1, as of "Winkel [\xb0]".
+std::string header_cell_text(std::string_view cell);
 
 // InputError for a column that [recording] names and that all of these sets contain: the names that
 // a recording lacks, a set for each. Misspelt, it would be read over.

@@ -204,7 +204,7 @@ class RecordingReader {
     columns_.clear();
     time_column_ = cells_.size();
     for (size_t i = 0; i < cells_.size(); ++i) {
-      columns_.push_back(column_named(std::string(cells_[i]), options_));
+      columns_.push_back(column_named(header_cell_text(cells_[i]), options_));
       if (columns_.back().name == "t_s") time_column_ = i;
     }
     if (time_column_ == cells_.size()) return false;
@@ -423,6 +423,25 @@ void refuse_absent_columns(const Settings& recording,
                           "one of its columns");
     }
   }
+}
+
+std::string header_cell_text(std::string_view cell) {
+  std::string latin;
+  int following = 0;  // bytes of a character of UTF-8
+  bool is_utf8 = true;
+  for (const char c : cell) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool continues = (byte & 0xC0U) == 0x80U;
+    is_utf8 = is_utf8 && continues == (following > 0) && byte < 0xF8;
+    following = continues ? following - 1 : byte < 0xC0 ? 0 : byte < 0xE0 ? 1 : byte < 0xF0 ? 2 : 3;
+    if (byte < 0x80) {
+      latin += c;
+    } else {
+      latin += static_cast<char>(0xC0U | byte >> 6U);
+      latin += static_cast<char>(0x80U | (byte & 0x3FU));
+    }
+  }
+  return is_utf8 && following == 0 ? std::string(cell) : latin;
 }
 
 std::string whole_text(const std::filesystem::path& path) {

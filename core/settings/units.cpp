@@ -35,6 +35,7 @@ constexpr Unit units[] = {
     {"rad_s", "angular rate", 1.0},
     {"deg_s", "angular rate", degree_rad},
     {"rpm", "angular rate", pi / 30},
+    {"rev_s", "angular rate", 2.0 * pi},
     {"A_m2", "magnetic dipole", 1.0},
     {"A_W", "responsivity", 1.0},
     {"A_m2K3", "saturation", 1.0},

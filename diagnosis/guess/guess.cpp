@@ -21,8 +21,8 @@ struct MeasuredCurve {
   double misfit = INFINITY;  // rms relative to the short-circuit current
 };
 
-MeasuredCurve measured_curve(const fs::path& file) {
-  const LightRecording recording = read_light_recording(file, {});
+MeasuredCurve measured_curve(const fs::path& file, const LightColumns& columns) {
+  const LightRecording recording = read_light_recording(file, {}, columns);
   if (recording.kind != LightRecording::Kind::sweep) {
     throw InputError({file.string()}, "header", "another kind of recording than the first",
                      "curves of current over voltage alone");
@@ -64,9 +64,13 @@ int cells_in_series(double open_V) {
 }  // namespace
 
 void guess_module(TomlDocument& document, const std::vector<fs::path>& recordings,
-                  const fs::path& folder) {
+                  const fs::path& folder, const GuessedCurve& named) {
   std::vector<MeasuredCurve> curves;
-  for (const fs::path& file : recordings) curves.push_back(measured_curve(file));
+  for (const fs::path& file : recordings) curves.push_back(measured_curve(file, named.columns));
+  if (!named.because.empty()) document.comment("CONFIRM: " + named.because);
+  for (const auto& [name, in_file] : named.columns) {
+    document.set(document.table("recording"), "columns." + name, {in_file});
+  }
   const MeasuredCurve& clearest = *std::min_element(
       curves.begin(), curves.end(),
       [](const MeasuredCurve& a, const MeasuredCurve& b) { return a.misfit < b.misfit; });
@@ -106,6 +110,13 @@ std::string guess_experiment(const std::vector<std::filesystem::path>& recording
   document.add_to_head("Made by photorque diagnose --guess from " + names +
                        ". Values were read from there; assumptions are marked CONFIRM.");
   if (!is_light_recording(recordings.front())) {
+    if (!has_motion(guess_columns(recordings.front()))) {
+      const GuessedCurve curve = guess_curve(recordings.front());
+      if (!curve.columns.empty()) {
+        guess_module(document, recordings, folder, curve);
+        return document.text();
+      }
+    }
     guess_motion(document, recordings);
     return document.text();
   }
@@ -115,7 +126,7 @@ std::string guess_experiment(const std::vector<std::filesystem::path>& recording
                      "motion, or current over voltage: a scan or a run needs its scene, which "
                      "photorque new --scene MODEL begins");
   }
-  guess_module(document, recordings, folder);
+  guess_module(document, recordings, folder, {});
   return document.text();
 }
 

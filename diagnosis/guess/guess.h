@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -19,20 +20,36 @@ std::string guess_experiment(const std::vector<std::filesystem::path>& recording
 
 // Adds to the experiment the values that the recordings determine.
 void guess_motion(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings);
+
+// Columns of a curve by the names of a curve's columns ("voltage_V", "current_mA").
+struct GuessedCurve {
+  std::map<std::string, std::string> columns;  // empty: there are not one voltage and one current
+  std::string because = {};                    // the assumption, if there is one
+};
 void guess_module(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings,
-                  const std::filesystem::path& folder);
+                  const std::filesystem::path& folder, const GuessedCurve& named);
 
 struct GuessedColumn {
-  std::string in_file;       // as in the header
-  std::string channel;       // "gyro_x_deg_s", with the unit of the file; empty: unknown
-  bool is_sure = true;       // stated by the file: the name of the channel, or its unit
-  std::string because = {};  // the assumption, if not sure
+  std::string in_file;  // as in the header
+  std::string channel;  // "gyro_x_deg_s", with the unit of the file; empty: unknown
+  bool is_sure = true;  // stated by the file: the name of the channel, or its unit
+  // The assumption, if not sure; "... the next column" follows.
+  std::string because = {};
 };
 
 // Columns of a CSV file. Its header is the last line before the first row of numbers that has as
 // many cells. A clock without a unit in its name is recognised by its steps. For a CCSDS AEM: its
 // quaternion. Throws InputError with the remedy for a file without such a header, with decimal
-// commas, or in UTF-16.
+// commas, in UTF-16, or with an angle, a rate, a coordinate or a time in an unknown unit.
 std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path);
+
+// Whether one of them is an angle, a rate, a quaternion or a coordinate.
+bool has_motion(const std::vector<GuessedColumn>& columns);
+
+// The voltage and the current of a file whose header names one of each.
+GuessedCurve guess_curve(const std::filesystem::path& path);
+
+// The names of the columns in quotes, for messages.
+std::string names_in(const std::filesystem::path& path);
 
 }  // namespace photorque

@@ -7,7 +7,9 @@
 #include "attitude/estimation/segments.h"
 #include "attitude/estimation/swing.h"
 #include "attitude/observation/noise_levels.h"
+#include "attitude/recordings/aem.h"
 #include "attitude/recordings/columns.h"
+#include "attitude/recordings/named_columns.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "diagnosis/guess/guess.h"
@@ -16,6 +18,8 @@ namespace photorque {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr size_t fewest_readings = 20;  // as of Observation
 
 std::string digits(double value, int significant = 3) {
   char text[40];
@@ -300,10 +304,108 @@ void add_columns(TomlDocument& document, const std::vector<GuessedColumn>& colum
                  RecordingOptions& options) {
   for (const GuessedColumn& c : columns) {
     if (c.channel.empty() || c.channel == c.in_file) continue;
-    options.columns[c.channel] = c.in_file;
-    if (!c.is_sure) document.comment("CONFIRM: " + c.because + " of the next column.");
-    document.set(document.table("recording"), "columns." + c.channel, {c.in_file});
+    const std::string in_file = header_cell_text(c.in_file);
+    options.columns[c.channel] = in_file;
+    if (!c.is_sure) document.comment("CONFIRM: " + c.because + " the next column.");
+    document.set(document.table("recording"), "columns." + c.channel, {in_file});
   }
+}
+
+// Throws InputError for a file without a time or without anything that moves.
+void require_motion(const fs::path& path, const std::vector<GuessedColumn>& columns) {
+  if (is_aem(path)) return;
+  const bool has_time = std::ranges::any_of(
+      columns, [](const GuessedColumn& c) { return c.channel.starts_with("t_"); });
+  if (has_time && has_motion(columns)) return;
+  const bool are_several = std::ranges::any_of(
+      columns, [](const GuessedColumn& c) { return c.channel.empty() && !c.because.empty(); });
+  std::string found = "no time among ",
+              expected = "a time with its unit, such as t_s or \"Time (ms)\"";
+  if (has_time && are_several) {
+    found = "several angles or rates among ";
+    expected = "a name for the one that is meant, such as angle_deg or rate_rpm";
+  } else if (has_time) {
+    found = "no angle, rate or coordinate among ";
+    expected =
+        "a quantity with its unit, such as \"angle (deg)\", rate_rpm, gyro_x_rad_s, or x_m and y_m";
+  }
+  throw InputError(
+      {path.string()}, "header", found + names_in(path),
+      expected + "; of a curve of a module one voltage and one current (voltage_V, current_A)");
+}
+
+void require_rows(const fs::path& path, const std::vector<GuessedColumn>& columns,
+                  const Recording& recording) {
+  if (recording.rows() >= fewest_readings) return;
+  const auto first =
+      std::ranges::find_if(columns, [](const GuessedColumn& c) { return has_motion({c}); });
+  throw InputError({path.string()}, header_cell_text(first->in_file),
+                   std::to_string(recording.rows()) + " rows with a time",
+                   "at least " + std::to_string(fewest_readings) + " readings");
+}
+
+// A remark on coordinates that stay at one distance from a point and turn back, or go round it.
+std::string circle_of(const Recording& recording) {
+  const Channel &x = *recording.find("x_m"), &y = *recording.find("y_m");
+  std::vector<Eigen::Vector2d> points;
+  for (size_t i = 0; i < recording.rows(); ++i) {
+    const Eigen::Vector2d point(x.values[i], y.values[i]);
+    if (point.allFinite()) points.push_back(point);
+  }
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const auto& p : points) mean += p / static_cast<double>(points.size());
+  // |p − c|² = R² is linear in c and R² − |c|² (I. Kåsa 1976).
+  Mat3 squares = Mat3::Zero();
+  Vec3 right = Vec3::Zero();
+  for (const auto& p : points) {
+    const Eigen::Vector2d d = p - mean;
+    const Vec3 row(2.0 * d.x(), 2.0 * d.y(), 1.0);
+    squares += row * row.transpose();
+    right += row * d.squaredNorm();
+  }
+  const Vec3 solution = squares.ldlt().solve(right);
+  if (!solution.allFinite()) return "";
+  const Eigen::Vector2d offset = solution.head<2>();
+  const double radius_m = std::sqrt(std::max(0.0, solution[2] + offset.squaredNorm()));
+  const Eigen::Vector2d centre = mean + offset;
+  double square = 0.0, at = 0.0, low = 0.0, high = 0.0, before = NAN;
+  std::vector<double> angle_rad;
+  for (const auto& p : points) {
+    const Eigen::Vector2d d = p - centre;
+    square += std::pow(d.norm() - radius_m, 2.0) / static_cast<double>(points.size());
+    const double direction = std::atan2(d.y(), d.x());
+    if (std::isfinite(before)) at += std::remainder(direction - before, 2.0 * pi);
+    before = direction;
+    angle_rad.push_back(at);
+    low = std::min(low, at);
+    high = std::max(high, at);
+  }
+  // Turning points, beyond a fifth of the arc.
+  int turns = 0, sense = 0;
+  double extreme = 0.0;
+  for (const double a : angle_rad) {
+    if (sense * (a - extreme) > 0.0 || sense == 0) {
+      if (sense != 0) extreme = a;
+      if (sense == 0 && std::abs(a) > 0.2 * (high - low)) {
+        sense = a > 0.0 ? 1 : -1;
+        extreme = a;
+      }
+    } else if (std::abs(a - extreme) > 0.2 * (high - low)) {
+      sense = -sense;
+      extreme = a;
+      ++turns;
+    }
+  }
+  constexpr double off = 0.02, round_rad = 2.0;
+  const double relative = std::sqrt(square) / radius_m;
+  const bool is_arc = turns >= 2 || high - low > round_rad;
+  if (!(radius_m > 0.0) || !(relative < off) || !is_arc) return "";
+  const std::string x0 = digits(centre.x(), 4), y0 = digits(centre.y(), 4);
+  return "CONFIRM: the places are on a circle of radius " + digits(radius_m) + " m about (" + x0 +
+         ", " + y0 + ") m, to " + digits(100.0 * relative, 2) +
+         " %, as of a pendulum or a turntable and not of a sliding body. For one, write "
+         "columns t_s and angle_rad = atan2(x_m - (" +
+         x0 + "), (" + y0 + ") - y_m), which is zero where y_m is least, and guess from that file.";
 }
 
 // Adds a drag that slows the rate as recorded, as a start from which other torques are
@@ -352,13 +454,21 @@ void add_sequence(TomlDocument& document, const Machine& m) {
 
 void guess_motion(TomlDocument& document, const std::vector<fs::path>& recordings) {
   RecordingOptions options;
-  add_columns(document, guess_columns(recordings.front()), options);
+  const std::vector<GuessedColumn> columns = guess_columns(recordings.front());
+  require_motion(recordings.front(), columns);
+  add_columns(document, columns, options);
   Machine m;
   for (const fs::path& path : recordings) {
     m.recordings.push_back(read_recording(path, options));
     m.names.push_back(path.string());
+    require_rows(path, columns, m.recordings.back());
   }
   see_machine(m);
+  if (m.platform.slides()) {
+    if (const std::string note = circle_of(m.recordings.front()); !note.empty()) {
+      document.comment(note);
+    }
+  }
   add_sequence(document, m);
   SettingsNode::Table& platform = add_machine(document, m);
   if (m.platform.topology == Topology::free) add_inertia(document, platform, m.runs);

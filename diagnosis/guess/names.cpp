@@ -1,16 +1,17 @@
 #include "diagnosis/guess/guess.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <optional>
 
 #include "attitude/recordings/aem.h"
+#include "attitude/recordings/named_columns.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/errors.h"
 #include "core/settings/settings.h"
 #include "core/text/parse.h"
+#include "diagnosis/guess/header.h"
 
 namespace photorque {
 namespace {
@@ -19,6 +20,8 @@ namespace {
 struct FileHead {
   std::vector<std::string> header;
   std::vector<std::vector<double>> rows;
+  int line = 0, first_row_line = 0;  // of the file
+  size_t names_above = 0;            // cells of the line above the first row
 };
 
 // Accepts a decimal comma if it cannot be the separator.
@@ -47,222 +50,50 @@ std::optional<std::vector<double>> numbers_of(const std::vector<std::string_view
   return numbers;
 }
 
+struct NumberedLine {
+  int64_t number;
+  std::string text;
+};
+
 // The first lines of a file without comments.
-std::vector<std::string> first_lines(const std::filesystem::path& path) {
+std::vector<NumberedLine> first_lines(const std::filesystem::path& path) {
   constexpr size_t most = 400;
   TextLines lines(path);
-  std::vector<std::string> first;
+  std::vector<NumberedLine> first;
   std::string_view line;
   while (first.size() < most && lines.next(line)) {
     if (first.empty()) require_text(line.substr(0, 16), {path.string(), 1});
     if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
     if (trimmed(line).empty() || line.front() == '#') continue;
-    first.emplace_back(line);
+    first.push_back({lines.number(), std::string(line)});
   }
   return first;
 }
 
-std::optional<FileHead> head_with(const std::vector<std::string>& lines, char separator) {
+// The first table between these separators; without names if the line above it has not as many
+// cells.
+std::optional<FileHead> table_in(const std::vector<NumberedLine>& lines, char separator) {
   std::vector<std::string_view> cells, before;
   for (size_t i = 0; i < lines.size(); ++i) {
-    split_cells(lines[i], separator, cells);
+    split_cells(lines[i].text, separator, cells);
     if (!numbers_of(cells, separator)) {
       before = cells;
       continue;
     }
-    if (i == 0 || before.size() != cells.size()) return std::nullopt;
     FileHead head;
-    head.header.assign(before.begin(), before.end());
+    head.first_row_line = static_cast<int>(lines[i].number);
+    head.line = i > 0 ? static_cast<int>(lines[i - 1].number) : 0;
+    head.names_above = i > 0 ? before.size() : 0;
+    const size_t width = cells.size();
+    if (i > 0 && before.size() == width) head.header.assign(before.begin(), before.end());
     for (; i < lines.size(); ++i) {
-      split_cells(lines[i], separator, cells);
+      split_cells(lines[i].text, separator, cells);
       const auto row = numbers_of(cells, separator);
-      if (row && row->size() == head.header.size()) head.rows.push_back(*row);
+      if (row && row->size() == width) head.rows.push_back(*row);
     }
     return head;
   }
   return std::nullopt;
-}
-
-FileHead head_of(const std::filesystem::path& path) {
-  const std::vector<std::string> lines = first_lines(path);
-  for (const char separator : {',', ';', '\t', ' '}) {
-    if (auto head = head_with(lines, separator)) return *std::move(head);
-  }
-  std::vector<std::string_view> cells;
-  for (const char separator : {',', ';', '\t', ' '}) {
-    if (lines.empty()) break;
-    split_cells(lines.front(), separator, cells);
-    if (!numbers_of(cells, separator)) continue;
-    // Names by position: time first, then coordinates or an angle.
-    std::string names = "t_s";
-    const char* const usual[] = {"x_m", "y_m", "angle_rad"};
-    for (size_t k = 1; k < cells.size(); ++k) {
-      names += separator;
-      names += cells.size() == 2 ? "angle_rad"
-               : k < 4           ? usual[k - 1]
-                                 : "other_" + std::to_string(k);
-    }
-    throw InputError({path.string(), 1}, "header", "numbers in the first line",
-                     "a line above them that names the columns (sed -i '1i " + names + "' " +
-                         path.filename().string() + " puts one there; write what they are)");
-  }
-  throw InputError({path.string()}, "header",
-                   "no rows of numbers between commas, semicolons, tabs or blanks",
-                   "a table with a header that names its columns");
-}
-
-struct UnitWord {
-  const char *written, *suffix;
-};
-
-// Units as commonly written; longer ones come before their parts.
-constexpr UnitWord unit_words[] = {
-    {"rad/s", "rad_s"},   {"rad s-1", "rad_s"},
-    {"deg/s", "deg_s"},   {"°/s", "deg_s"},
-    {"dps", "deg_s"},     {"rpm", "rpm"},
-    {"m/s^2", "m_s2"},    {"m/s2", "m_s2"},
-    {"m/s²", "m_s2"},     {"µs", "us"},
-    {"us", "us"},         {"ms", "ms"},
-    {"sec", "s"},         {"s", "s"},
-    {"min", "min"},       {"rad", "rad"},
-    {"deg", "deg"},       {"°", "deg"},
-    {"mrad", "mrad"},     {"µT", "uT"},
-    {"uT", "uT"},         {"nT", "nT"},
-    {"T", "T"},           {"arcsec", "arcsec"},
-    {"mm", "mm"},         {"cm", "cm"},
-    {"m", "m"},           {"seconds", "s"},
-    {"second", "s"},      {"milliseconds", "ms"},
-    {"minutes", "min"},   {"degrees", "deg"},
-    {"degree", "deg"},    {"radians", "rad"},
-    {"radian", "rad"},    {"radians/s", "rad_s"},
-    {"rad/sec", "rad_s"}, {"degrees/s", "deg_s"},
-    {"deg/sec", "deg_s"}, {"degrees/sec", "deg_s"},
-    {"rev/min", "rpm"},   {"r/min", "rpm"},
-    {"RPM", "rpm"},       {"U/min", "rpm"},
-    {"meters", "m"},      {"metres", "m"},
-    {"meter", "m"},       {"metre", "m"},
-};
-
-// The unit in brackets after a name, and the name without it.
-struct NameAndUnit {
-  std::string name, unit;
-};
-
-NameAndUnit without_unit(const std::string& in_file) {
-  const size_t open = in_file.find_first_of("([");
-  if (open != std::string::npos) {
-    const size_t close = in_file.find_first_of(")]", open);
-    const std::string inside = in_file.substr(open + 1, close - open - 1);
-    for (const UnitWord& word : unit_words) {
-      if (inside == word.written) return {in_file.substr(0, open), word.suffix};
-    }
-    return {in_file, ""};
-  }
-  const KeyUnit key = unit_of_key(in_file);
-  return {key.stem, std::string(key.unit)};
-}
-
-// Lower-case groups of letters or of digits: "gyroADC[0]" → "gyro", "adc", "0".
-std::vector<std::string> words_of_name(const std::string& name) {
-  std::vector<std::string> words;
-  char before = ' ';
-  for (const char c : name) {
-    const auto u = static_cast<unsigned char>(c);
-    const bool letter = std::isalpha(u) != 0, digit = std::isdigit(u) != 0;
-    if (letter || digit) {
-      const auto b = static_cast<unsigned char>(before);
-      const bool goes_on =
-          letter ? std::isalpha(b) != 0 && !(std::isupper(u) != 0 && std::islower(b) != 0)
-                 : std::isdigit(b) != 0;
-      if (!goes_on) words.emplace_back();
-      words.back() += static_cast<char>(std::tolower(u));
-    }
-    before = c;
-  }
-  return words;
-}
-
-bool begins(const std::string& word, std::initializer_list<const char*> with) {
-  return std::any_of(with.begin(), with.end(), [&](const char* w) { return word.starts_with(w); });
-}
-
-bool is_one_of(const std::string& word, std::initializer_list<const char*> of) {
-  return std::any_of(of.begin(), of.end(), [&](const char* w) { return word == w; });
-}
-
-// x, y or z: a separate word, a number from 0, or the last letter of another.
-std::string axis_of(const std::vector<std::string>& words) {
-  for (const std::string& word : words) {
-    if (is_one_of(word, {"x", "y", "z"})) return word;
-  }
-  for (const std::string& word : words) {
-    std::string last = word.substr(word.size() - 1);
-    if (is_one_of(last, {"x", "y", "z"}) &&
-        begins(word, {"w", "gyr", "omega", "acc", "mag", "rate"})) {
-      return last;
-    }
-    if (is_one_of(word, {"0", "1", "2"})) return std::string(1, "xyz"[word[0] - '0']);
-  }
-  return "";
-}
-
-// Channel without its unit, and the unit to assume if none is stated; empty: unknown.
-struct MeantQuantity {
-  std::string stem, usual_unit;
-};
-
-MeantQuantity quantity_of(const std::vector<std::string>& words) {
-  const auto any = [&](auto... with) {
-    return std::any_of(words.begin(), words.end(),
-                       [&](const std::string& w) { return begins(w, {with...}); });
-  };
-  const std::string axis = axis_of(words);
-  if (any("wheel", "flywheel", "rotor")) return {"wheel_" + (axis.empty() ? "z" : axis), "rad_s"};
-  // Words in English, German, French, Spanish and Italian, without accented letters.
-  if (any("time", "sec", "elapsed", "clock", "zeit", "temps", "tiempo", "tempo") ||
-      (words.size() == 1 && words[0] == "t")) {
-    return {"t", "s"};
-  }
-  if (any("magnitude", "norm", "modulus") &&
-      any("gyr", "omega", "ang", "rate", "spin", "speed", "w")) {
-    return {"rate_magnitude", "rad_s"};
-  }
-  // A coordinate: x, or "pos_x", "puck x".
-  if (is_one_of(axis, {"x", "y"}) && (words == std::vector<std::string>{axis} ||
-                                      any("pos", "coord", "place", "puck", "cent", "ort"))) {
-    return {axis, "m"};
-  }
-  if (any("acc")) return {axis.empty() ? "" : "accel_" + axis, "m_s2"};
-  if (any("mag") || (words.size() <= 2 && any("b") && !axis.empty())) {
-    return {axis.empty() ? "" : "mag_" + axis, "T"};
-  }
-  if (any("gyr", "omega", "angvel", "angular") ||
-      (!axis.empty() && (any("rate") || is_one_of(words[0], {"w", "wx", "wy", "wz"})))) {
-    return {axis.empty() ? "rate" : "gyro_" + axis, "rad_s"};
-  }
-  for (const char* angle : {"roll", "pitch", "yaw", "tilt"}) {
-    if (any(angle)) return {angle, "rad"};
-  }
-  if (any("heading", "azimuth")) return {"yaw", "rad"};
-  if (any("inclination")) return {"tilt", "rad"};
-  if (any("angle", "theta", "encoder", "phi", "winkel", "angul", "ngulo", "angolo")) {
-    return {"angle", "rad"};
-  }
-  if (any("rate", "speed", "rpm", "veloc", "drehzahl", "vitesse", "winkelgeschw")) {
-    return {"rate", "rad_s"};
-  }
-  return {};
-}
-
-// q0 … q3, qw … qz, "quaternion w".
-std::string quaternion_of(const std::vector<std::string>& words) {
-  if (words.empty() || words[0][0] != 'q') return "";
-  const std::string part = words[0].size() == 2 ? words[0].substr(1)
-                           : words.size() > 1   ? words.back()
-                                                : "";
-  if (is_one_of(part, {"w", "x", "y", "z"})) return "q_" + part;
-  if (is_one_of(part, {"0", "1", "2", "3"})) return std::string("q_") + "wxyz"[part[0] - '0'];
-  return "";
 }
 
 // A clock with large integer steps does not count seconds.
@@ -280,28 +111,487 @@ std::string clock_unit(const FileHead& head, size_t column) {
   return whole && *middle >= 200.0 ? "us" : whole && *middle >= 2.0 ? "ms" : "s";
 }
 
-GuessedColumn guessed(const FileHead& head, size_t column) {
-  const std::string& in_file = head.header[column];
-  const auto [name, unit] = without_unit(in_file);
-  const std::vector<std::string> words = words_of_name(name);
-  GuessedColumn guess{in_file, ""};
-  if (words.empty()) return guess;
-  if (const std::string q = quaternion_of(words); !q.empty()) {
-    guess.channel = q;
-    return guess;
+// Names for a table without a header: the column that rises is the time, one beside it an angle,
+// two are coordinates; of more nothing is known.
+std::string proposed_names(const FileHead& table, char separator) {
+  const size_t width = table.rows.front().size();
+  size_t time = 0;
+  for (size_t k = width; k-- > 0;) {
+    bool rises = true;
+    for (size_t i = 1; i < table.rows.size(); ++i) {
+      rises = rises && table.rows[i][k] > table.rows[i - 1][k];
+    }
+    if (rises) time = k;
   }
-  MeantQuantity quantity = quantity_of(words);
-  if (quantity.stem.empty()) return guess;
-  // "|omega|"
-  if (quantity.stem == "rate" && name.starts_with("|")) quantity.stem = "rate_magnitude";
-  const std::string usual = quantity.stem == "t" ? clock_unit(head, column) : quantity.usual_unit;
-  guess.channel = quantity.stem + "_" + (unit.empty() ? usual : unit);
-  const bool fits = unit_of_key(guess.channel).dimension ==
-                    unit_of_key(quantity.stem + "_" + quantity.usual_unit).dimension;
-  if (!fits) return {in_file, ""};
-  guess.is_sure = !unit.empty();
-  if (unit.empty()) guess.because = "the header states no unit";
-  return guess;
+  const std::string clock = clock_unit(table, time) == "us" ? "t_us" : "t_s";
+  std::vector<const char*> others;
+  if (width == 2) others = {"angle_rad"};
+  if (width == 3) others = {"x_m", "y_m"};
+  std::string names;
+  size_t next = 0;
+  for (size_t k = 0; k < width; ++k) {
+    if (k > 0) names += separator == '\t' ? "\\t" : std::string(1, separator);
+    if (k == time) {
+      names += clock;
+    } else {
+      names += next < others.size() ? others[next++] : "column_" + std::to_string(k + 1);
+    }
+  }
+  return names;
+}
+
+// A name that a shell reads as one word.
+std::string shell_word(const std::string& name) {
+  const bool is_plain = std::ranges::all_of(name, [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_' || c == '-' ||
+           c == '/' || c == '+';
+  });
+  if (is_plain) return name;
+  std::string word = "'";
+  for (const char c : name) word += c == '\'' ? "'\\''" : std::string(1, c);
+  return word + "'";
+}
+
+InputError without_header(const std::filesystem::path& path, const FileHead& table,
+                          char separator) {
+  const std::string names = proposed_names(table, separator);
+  const int line = table.first_row_line;
+  const bool replaces = table.names_above > 1;
+  const std::string command = "sed -i '" + std::to_string(replaces ? table.line : line) +
+                              (replaces ? "c " : "i ") + names + "' " +
+                              shell_word(path.filename().string());
+  const size_t width = table.rows.front().size();
+  if (replaces) {
+    return {{path.string(), table.line},
+            "header",
+            std::to_string(table.names_above) + " cells above rows of " + std::to_string(width) +
+                " numbers",
+            "a line above them that names the columns (" + command +
+                " replaces it; write what they are)"};
+  }
+  return {{path.string(), line},
+          "header",
+          line == 1 ? "numbers in the first line"
+                    : "rows of " + std::to_string(width) + " numbers without names",
+          "a line above them that names the columns (" + command +
+              " puts one there; write what they are)"};
+}
+
+FileHead head_of(const std::filesystem::path& path) {
+  const std::vector<NumberedLine> lines = first_lines(path);
+  std::optional<FileHead> unnamed;
+  char unnamed_separator = ',';
+  for (const char separator : {',', ';', '\t', ' '}) {
+    auto table = table_in(lines, separator);
+    if (!table) continue;
+    if (!table->header.empty()) return *std::move(table);
+    if (!unnamed || table->rows.size() > unnamed->rows.size()) {
+      unnamed = std::move(table);
+      unnamed_separator = separator;
+    }
+  }
+  if (unnamed) throw without_header(path, *unnamed, unnamed_separator);
+  throw InputError({path.string()}, "header",
+                   "no rows of numbers between commas, semicolons, tabs or blanks",
+                   "a table with a header that names its columns");
+}
+
+bool begins(const std::string& word, std::initializer_list<const char*> with) {
+  return std::any_of(with.begin(), with.end(), [&](const char* w) { return word.starts_with(w); });
+}
+
+bool is_one_of(const std::string& word, std::initializer_list<const char*> of) {
+  return std::any_of(of.begin(), of.end(), [&](const char* w) { return word == w; });
+}
+
+// The words of a name, for questions about them.
+struct Words {
+  std::vector<std::string> all;
+
+  bool any_begins(std::initializer_list<const char*> with) const {
+    return std::ranges::any_of(all, [&](const std::string& word) { return begins(word, with); });
+  }
+  bool any_is(std::initializer_list<const char*> of) const {
+    return std::ranges::any_of(all, [&](const std::string& word) { return is_one_of(word, of); });
+  }
+  // Part of a word: "winkel" of "Auslenkwinkel".
+  bool any_has(std::initializer_list<const char*> parts) const {
+    return std::ranges::any_of(all, [&](const std::string& word) {
+      return std::any_of(parts.begin(), parts.end(),
+                         [&](const char* part) { return word.find(part) != std::string::npos; });
+    });
+  }
+};
+
+// x, y or z: a separate word, the last letter of another, or a number of three.
+std::string axis_of(const Words& words, const std::vector<Words>& siblings) {
+  for (const std::string& word : words.all) {
+    if (is_one_of(word, {"x", "y", "z"})) return word;
+  }
+  for (const std::string& word : words.all) {
+    std::string last = word.substr(word.size() - 1);
+    if (is_one_of(last, {"x", "y", "z"}) &&
+        begins(word, {"w", "gyr", "omega", "acc", "mag", "rate", "angvel"})) {
+      return last;
+    }
+  }
+  // Numbers are axes if all three are there, from 0 or from 1.
+  for (size_t place = 0; place < words.all.size(); ++place) {
+    if (!is_one_of(words.all[place], {"0", "1", "2", "3"})) continue;
+    const auto has = [&](const char* number) {
+      Words other = words;
+      other.all[place] = number;
+      return std::ranges::any_of(siblings, [&](const Words& w) { return w.all == other.all; });
+    };
+    const int number = words.all[place][0] - '0';
+    if (!has("1") || !has("2") || !(has("0") || has("3"))) continue;
+    const int index = has("0") ? number : number - 1;
+    if (index < 3) return std::string(1, "xyz"[index]);
+  }
+  return "";
+}
+
+// A channel without its unit, the unit to assume if none is stated, and its assumption if there is
+// one besides.
+struct Meaning {
+  std::string stem, usual_unit;
+  std::string because = {};
+};
+
+// Whether a name says that it is no reading of a motion: an error, a target, an increment.
+bool is_of_another_kind(const Words& words) {
+  return words.any_is({"err",     "error",  "errors",    "fehler", "errore",      "erreur",
+                       "std",     "stdev",  "stddev",    "unc",    "incertitude", "variance",
+                       "cov",     "target", "setpoint",  "soll",   "cmd",         "command",
+                       "desired", "ref",    "reference", "goal",   "consigne",    "fft",
+                       "delta",   "ddot",   "lat",       "lon",    "fps"}) ||
+         words.any_begins({"sigma", "uncert", "unsicher", "incert", "sollw", "latitud", "longitud",
+                           "temper", "sampl", "frame", "spectr"}) ||
+         words.any_has({"moment", "torque", "impuls"});
+}
+
+bool is_rate(const Words& words) {
+  if (words.any_begins({"gyr", "omega", "rate", "speed", "veloc", "vitesse", "rpm", "rps", "dps",
+                        "spin", "angvel"}) ||
+      words.any_is({"w", "wx", "wy", "wz", "vel", "giri", "giros", "tours", "thetadot", "phidot",
+                    "dtheta", "dphi"}) ||
+      words.any_has({"geschw", "drehzahl", "umdrehung", "kreisfreq", "drehfreq", "winkelfreq",
+                     "speed", "angvel", "velocity"})) {
+    return true;
+  }
+  if (std::ranges::any_of(
+          words.all, [](const std::string& w) { return w.size() > 4 && w.ends_with("rate"); })) {
+    return true;
+  }
+  // A derivative: "theta dot", "d phi / dt"; a frequency of rotation.
+  if (words.any_is({"dot", "dt", "ableitung", "derivative"}) && words.all.size() > 1) return true;
+  return words.any_begins({"freq", "frec", "frequ"}) &&
+         words.any_begins({"rot", "spin", "giro", "angul"});
+}
+
+bool is_angle(const Words& words) {
+  return words.any_has({"angle", "angul", "angol", "winkel", "theta"}) ||
+         words.any_begins({"phi", "varphi", "encod"});
+}
+
+// Possible meanings, the first the most likely, by words in English, German, French, Spanish,
+// Italian and Portuguese. Words of a derivative are stronger than those of what is derived:
+// "Winkelgeschwindigkeit", "velocidad angular".
+std::vector<Meaning> meanings(const Words& words, const std::string& axis, const HeaderCell& cell) {
+  std::vector<Meaning> all;
+  if (is_of_another_kind(words)) return all;
+  const bool rate = is_rate(words), angle = is_angle(words);
+  if (words.any_has({"wheel", "schwungrad"}) || words.any_begins({"rotor"})) {
+    if (!angle || rate) all.push_back({"wheel_" + (axis.empty() ? "z" : axis), "rad_s"});
+  }
+  if (!rate && (words.any_begins({"time", "elapsed", "clock", "temps", "tiempo", "tempo"}) ||
+                words.any_has({"zeit", "timestamp"}) ||
+                words.any_is({"t", "sec", "secs", "second", "seconds", "millis", "micros"}))) {
+    const bool alone = words.all.size() == 1 || !words.any_is({"t"}) || cell.unit;
+    if (alone || words.any_begins({"time", "zeit", "temps", "tiempo", "tempo"})) {
+      all.push_back({"t", "s"});
+    }
+  }
+  const bool magnitude =
+      cell.is_between_bars ||
+      words.any_is({"magnitude", "norm", "absolute", "abs", "betrag", "total", "resultant"}) ||
+      words.any_begins({"modul"});
+  const bool has_rate_unit = cell.unit && cell.unit->dimension == "angular rate";
+  if (magnitude && (rate || has_rate_unit)) all.push_back({"rate_magnitude", "rad_s"});
+  if (words.any_begins({"acc", "acel", "beschl"}) && !angle && !axis.empty()) {
+    all.push_back({"accel_" + axis, "m_s2"});
+  }
+  if (!axis.empty() && !magnitude &&
+      (words.any_begins({"mag"}) || (words.all.size() <= 2 && words.any_is({"b"})))) {
+    all.push_back({"mag_" + axis, "T"});
+  }
+  // A coordinate: x, or "pos_x", "puck x".
+  if (!rate && is_one_of(axis, {"x", "y"}) &&
+      (words.all == std::vector<std::string>{axis} ||
+       words.any_begins({"pos", "coord", "koord", "place", "puck", "cent", "ort"}))) {
+    all.push_back({axis, "m"});
+  }
+  const struct {
+    bool is_there;
+    const char *stem, *axis;
+  } turns[] = {
+      {words.any_is({"roll", "rollio", "roulis", "alabeo", "rolagem"}) ||
+           words.any_has({"rollw", "rollr", "rollg"}),
+       "roll", "x"},
+      {words.any_begins({"pitch", "nick", "tangage", "beccheggio", "cabeceo", "arfagem"}), "pitch",
+       "y"},
+      {words.any_begins({"yaw", "gier", "lacet", "imbardata", "guinada", "heading", "azimut"}),
+       "yaw", "z"},
+      {words.any_begins({"tilt", "inclin", "neigung", "kipp"}), "tilt", ""}};
+  for (const auto& turn : turns) {
+    if (!turn.is_there) continue;
+    if (rate || has_rate_unit) {
+      all.push_back({*turn.axis != 0 ? std::string("gyro_") + turn.axis : "rate", "rad_s",
+                     std::string("the rate of ") + turn.stem + " counts as that about body " +
+                         (*turn.axis != 0 ? turn.axis : "axis") + " in"});
+    } else {
+      all.push_back({turn.stem, "rad"});
+    }
+  }
+  // Rates about body x, y and z of aircraft, and a speed in revolutions.
+  const auto all_are = [&](const char* word) {
+    return words.all == std::vector<std::string>{word};
+  };
+  for (const size_t k : {0, 1, 2}) {
+    const char* const letters[] = {"p", "q", "r"};
+    if (has_rate_unit && all_are(letters[k])) {
+      all.push_back({std::string("gyro_") + "xyz"[k], "rad_s",
+                     "p, q and r count as rates about body x, y and z in"});
+    }
+  }
+  const bool may_be_revolutions =
+      has_rate_unit ||
+      (cell.unit && (cell.unit->dimension == "frequency" || cell.unit->dimension == "per second"));
+  if (words.any_is({"n"}) && axis.empty() && may_be_revolutions) all.push_back({"rate", "rad_s"});
+  if (rate) {
+    const bool is_linear_elsewhere =
+        words.any_begins({"speed", "veloc", "vel", "vitesse"}) && !angle && !cell.unit;
+    if (axis.empty()) {
+      all.push_back({"rate", "rad_s"});
+    } else if (!is_linear_elsewhere || words.any_begins({"gyr", "omega", "ang"})) {
+      all.push_back({"gyro_" + axis, "rad_s"});
+    }
+  } else if (angle) {
+    all.push_back({"angle", "rad"});
+  }
+  return all;
+}
+
+// q0 … q3, qw … qz, "quaternion w".
+std::string quaternion_of(const std::vector<std::string>& words) {
+  if (words.empty() || words[0][0] != 'q') return "";
+  const std::string part = words[0].size() == 2 ? words[0].substr(1)
+                           : words.size() > 1   ? words.back()
+                                                : "";
+  if (is_one_of(part, {"w", "x", "y", "z"})) return "q_" + part;
+  if (is_one_of(part, {"0", "1", "2", "3"})) return std::string("q_") + "wxyz"[part[0] - '0'];
+  return "";
+}
+
+// The units of a quantity as messages list them.
+std::string units_for(const std::string& dimension) {
+  return dimension == "time"           ? "s, ms, µs, min or h"
+         : dimension == "angle"        ? "rad, mrad, deg (°), arcmin or arcsec"
+         : dimension == "angular rate" ? "rad/s, deg/s (°/s), rpm (1/min, U/min, tr/min) or rev/s"
+         : dimension == "length"       ? "m, cm or mm"
+         : dimension == "acceleration" ? "m/s²"
+                                       : "T, µT or nT";
+}
+
+std::string dimension_of(const Meaning& meaning) {
+  return unit_of_key(meaning.stem + "_" + meaning.usual_unit).dimension;
+}
+
+// The suffix of a unit for a quantity; empty if none fits.
+std::string fitting_unit(const HeaderCell& cell, const std::string& dimension, const Words& words) {
+  const HeaderUnit& unit = *cell.unit;
+  if (unit.dimension == dimension) return unit.suffix;
+  if (dimension != "angular rate") return "";
+  // "omega_rads"
+  if (cell.unit_text == "rads" || cell.unit_text == "degs") return unit.suffix + "_s";
+  if (unit.dimension == "frequency") return unit.suffix;
+  if (unit.dimension != "per second") return "";
+  // 1/s is of radians for ω, of revolutions for n.
+  if (words.any_begins({"omega", "w", "gyr", "angul", "winkel"}) || words.any_has({"kreisfreq"})) {
+    return "rad_s";
+  }
+  return words.any_has({"drehzahl", "umdreh", "drehfreq", "giri", "giros", "tours", "frequ"}) ||
+                 words.any_is({"n"})
+             ? "rev_s"
+             : "";
+}
+
+// A column with its guess, or the reason why a column that seems to be of a motion is none.
+struct ReadColumn {
+  GuessedColumn guess;
+  std::string stem, dimension, wrong_unit;  // where the unit is wrong
+  bool by_unit = false;
+};
+
+// A quantity whose unit is rad or rad/s is an angle or a rate, whatever its name.
+ReadColumn by_unit(const std::string& in_file, const HeaderCell& cell, const Words& words) {
+  ReadColumn column{{in_file, ""}, "", "", "", true};
+  if (!cell.unit || cell.unit->suffix.empty() || is_of_another_kind(words)) return column;
+  const std::string& dimension = cell.unit->dimension;
+  if (dimension == "time" && cell.is_bare_unit) {
+    column.stem = "t";
+  } else if (dimension == "angle" && !cell.may_be_subscript) {
+    column.stem = "angle";
+  } else if (dimension == "angular rate") {
+    column.stem = "rate";
+  } else {
+    return column;
+  }
+  column.guess.channel = column.stem + "_" + cell.unit->suffix;
+  column.guess.is_sure = cell.is_bare_unit;
+  if (!cell.is_bare_unit) column.guess.because = "the unit alone says what is in";
+  return column;
+}
+
+ReadColumn read_column(const FileHead& head, size_t place, HeaderCell cell,
+                       const std::vector<Words>& siblings) {
+  const std::string& in_file = head.header[place];
+  const Words words = siblings[place];
+  ReadColumn column{{in_file, ""}, "", "", ""};
+  if (const std::string q = quaternion_of(words.all); !q.empty()) {
+    column.guess.channel = q;
+    return column;
+  }
+  const std::string axis = axis_of(words, siblings);
+  const std::vector<Meaning> all = meanings(words, axis, cell);
+  // A unit within the name: "rpm_left", "timeMs".
+  if (!cell.unit && cell.unit_text.empty() && !all.empty()) {
+    for (const std::string& word : words.all) {
+      const auto unit = word.size() > 1 && word != "min" ? unit_written(word) : std::nullopt;
+      if (unit && unit->dimension == dimension_of(all.front())) cell.unit = unit;
+    }
+  }
+  const auto as = [&](const Meaning& meaning, const std::string& unit, bool is_stated) {
+    column.stem = meaning.stem;
+    column.guess.channel = meaning.stem + "_" + unit;
+    column.guess.is_sure = is_stated && meaning.because.empty();
+    column.guess.because = !is_stated ? "the header states no unit of" : meaning.because;
+    return column;
+  };
+  if (cell.unit) {
+    for (const Meaning& meaning : all) {
+      const std::string unit = fitting_unit(cell, dimension_of(meaning), words);
+      if (!unit.empty()) return as(meaning, unit, true);
+    }
+    // An angle in rad/s or a rate in 1/s has no unit that can be meant.
+    const auto is_of_turns = [](const std::string& dimension) {
+      return dimension == "angle" || dimension == "angular rate" || dimension == "per second";
+    };
+    for (const Meaning& meaning : all) {
+      const std::string dimension = dimension_of(meaning);
+      const bool contradicts = is_of_turns(dimension) && is_of_turns(cell.unit->dimension);
+      if (cell.unit->dimension != dimension && !contradicts) continue;
+      column.stem = meaning.stem;
+      column.dimension = dimension;
+      column.wrong_unit = cell.unit_text;
+      return column;
+    }
+    if (!cell.may_be_subscript) return by_unit(in_file, cell, words);
+  } else if (!cell.unit_text.empty()) {
+    if (all.empty()) return column;
+    column.stem = all.front().stem;
+    column.dimension = dimension_of(all.front());
+    column.wrong_unit = cell.unit_text;
+    return column;
+  }
+  if (all.empty()) return by_unit(in_file, cell, words);
+  const Meaning& meaning = all.front();
+  const std::string usual = meaning.stem == "t"
+                                ? (words.any_is({"millis"})   ? "ms"
+                                   : words.any_is({"micros"}) ? "us"
+                                                              : clock_unit(head, place))
+                                : meaning.usual_unit;
+  return as(meaning, usual, false);
+}
+
+bool is_taken(const std::vector<ReadColumn>& columns, const std::string& stem) {
+  return std::ranges::any_of(columns, [&](const ReadColumn& c) {
+    return !c.guess.channel.empty() && unit_of_key(c.guess.channel).stem == stem;
+  });
+}
+
+// Every channel occurs once: the first column with its name. A unit alone is a name if one column
+// has it and no other is named.
+void take_each_once(std::vector<ReadColumn>& columns) {
+  for (size_t i = 0; i < columns.size(); ++i) {
+    std::string& channel = columns[i].guess.channel;
+    if (channel.empty()) continue;
+    const std::string stem = unit_of_key(channel).stem;
+    bool other = false;
+    for (size_t k = 0; k < columns.size(); ++k) {
+      if (k == i || columns[k].guess.channel.empty()) continue;
+      const bool same = unit_of_key(columns[k].guess.channel).stem == stem;
+      other = other || (same && (columns[i].by_unit ? true : k < i && !columns[k].by_unit));
+    }
+    if (other && !columns[i].by_unit) channel.clear();
+    if (other && columns[i].by_unit) columns[i].wrong_unit = "several";
+  }
+  for (ReadColumn& column : columns) {
+    if (column.wrong_unit != "several") continue;
+    column.guess.channel.clear();
+    column.wrong_unit.clear();
+  }
+}
+
+bool is_motion(const std::string& channel) {
+  return !channel.empty() && !begins(channel, {"t_", "accel_", "mag_"});
+}
+
+// The only speed of a wheel is the motion of a machine that turns about one axis.
+void read_lone_wheel(std::vector<ReadColumn>& columns) {
+  ReadColumn* wheel = nullptr;
+  for (ReadColumn& column : columns) {
+    if (!is_motion(column.guess.channel)) continue;
+    if (wheel != nullptr || !column.guess.channel.starts_with("wheel_")) return;
+    wheel = &column;
+  }
+  if (wheel == nullptr) return;
+  wheel->guess.channel = "rate_" + unit_of_key(wheel->guess.channel).unit;
+  if (!wheel->guess.is_sure) return;
+  wheel->guess.is_sure = false;
+  wheel->guess.because = "no other motion is recorded, so the machine turns as the wheel of";
+}
+
+std::vector<ReadColumn> read_columns(const FileHead& head) {
+  std::vector<HeaderCell> cells;
+  std::vector<Words> words;
+  for (const std::string& in_file : head.header) {
+    cells.push_back(read_header_cell(in_file));
+    words.push_back({cells.back().words});
+  }
+  std::vector<ReadColumn> columns;
+  for (size_t place = 0; place < cells.size(); ++place) {
+    columns.push_back(read_column(head, place, cells[place], words));
+  }
+  take_each_once(columns);
+  read_lone_wheel(columns);
+  return columns;
+}
+
+// A reading in an unknown unit would be of a wrong size, and the motion without it another.
+void refuse_wrong_units(const std::vector<ReadColumn>& columns, const InputLocation& where) {
+  const bool turns = std::ranges::any_of(columns, [](const ReadColumn& c) {
+    return is_motion(c.guess.channel) && !begins(c.guess.channel, {"x_", "y_"});
+  });
+  for (const ReadColumn& c : columns) {
+    if (c.wrong_unit.empty() || is_taken(columns, c.stem)) continue;
+    if (begins(c.stem, {"accel_", "mag_"}) || (turns && is_one_of(c.stem, {"x", "y"}))) continue;
+    throw InputError(where, header_cell_text(c.guess.in_file),
+                     "the unit " + in_quotes(c.wrong_unit),
+                     units_for(c.dimension) +
+                         ": convert the column, or rename it if it is another "
+                         "quantity");
+  }
 }
 
 }  // namespace
@@ -309,18 +599,78 @@ GuessedColumn guessed(const FileHead& head, size_t column) {
 std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path) {
   if (is_aem(path)) return {{"q_w", "q_w"}, {"q_x", "q_x"}, {"q_y", "q_y"}, {"q_z", "q_z"}};
   const FileHead head = head_of(path);
+  const std::vector<ReadColumn> columns = read_columns(head);
+  refuse_wrong_units(columns, {path.string(), head.line});
   std::vector<GuessedColumn> all;
-  for (size_t column = 0; column < head.header.size(); ++column) {
-    GuessedColumn guess = guessed(head, column);
-    // Every channel occurs once: the first column with its name.
-    const bool taken = std::any_of(all.begin(), all.end(), [&](const GuessedColumn& other) {
-      return !guess.channel.empty() &&
-             unit_of_key(other.channel).stem == unit_of_key(guess.channel).stem;
-    });
-    if (taken) guess.channel.clear();
-    all.push_back(std::move(guess));
-  }
+  for (const ReadColumn& column : columns) all.push_back(column.guess);
   return all;
+}
+
+bool has_motion(const std::vector<GuessedColumn>& columns) {
+  return std::ranges::any_of(columns, [](const GuessedColumn& c) { return is_motion(c.channel); });
+}
+
+GuessedCurve guess_curve(const std::filesystem::path& path) {
+  GuessedCurve curve;
+  std::vector<size_t> voltages, currents;
+  if (is_aem(path)) return curve;
+  const FileHead head = head_of(path);
+  std::vector<HeaderCell> cells;
+  for (size_t place = 0; place < head.header.size(); ++place) {
+    cells.push_back(read_header_cell(head.header[place]));
+    const HeaderCell& cell = cells.back();
+    const Words words{cell.words.empty() ? words_of_header(head.header[place]) : cell.words};
+    if (is_of_another_kind(words)) continue;
+    const std::string dimension = cell.unit ? cell.unit->dimension : "";
+    const bool no_unit = !cell.unit && cell.unit_text.empty();
+    const auto symbol = [&](const char* letter) {
+      return words.any_is({letter}) && !words.all.empty();
+    };
+    const bool is_voltage =
+        words.any_has({"voltage", "spannung", "voltaje", "tension", "tensao"}) ||
+        words.any_is({"volt", "volts"}) || symbol("u") || symbol("v") ||
+        words.any_is({"vpv", "upv", "vmod", "umod"});
+    const bool is_current =
+        words.any_has({"current", "strom", "courant", "corriente", "corrente"}) ||
+        words.any_is({"amp", "amps", "ampere", "ipv", "imod"}) || symbol("i") || symbol("j");
+    if (dimension == "voltage" || (is_voltage && !is_current && no_unit)) voltages.push_back(place);
+    if (dimension == "current" || dimension == "current density" ||
+        (is_current && !is_voltage && no_unit)) {
+      currents.push_back(place);
+    }
+  }
+  if (voltages.size() != 1 || currents.size() != 1) return curve;
+  const HeaderCell &voltage = cells[voltages[0]], &current = cells[currents[0]];
+  curve.columns["voltage_" + (voltage.unit ? voltage.unit->suffix : "V")] =
+      header_cell_text(head.header[voltages[0]]);
+  const bool is_density = current.unit ? current.unit->dimension == "current density"
+                                       : Words{current.words}.any_is({"j"});
+  std::string unit = current.unit ? current.unit->suffix : "A";
+  if (is_density && !current.unit) {
+    double most = 0.0;
+    for (const auto& row : head.rows) {
+      if (std::isfinite(row[currents[0]])) most = std::max(most, std::abs(row[currents[0]]));
+    }
+    // Sunlight frees at most 0.07 A/cm² in one junction.
+    unit = most > 0.5 ? "mA" : "A";
+  }
+  curve.columns["current_" + unit] = header_cell_text(head.header[currents[0]]);
+  if (is_density) {
+    curve.because =
+        "a current density is read as the current of a unit of area (1 cm², or 1 m² "
+        "if the header says so)";
+    if (!current.unit) curve.because += ", in " + unit + "/cm² by its size";
+    curve.because += ": multiply currents by the area of the cell.";
+  }
+  return curve;
+}
+
+std::string names_in(const std::filesystem::path& path) {
+  std::string names;
+  for (const std::string& name : head_of(path).header) {
+    names += (names.empty() ? "" : ", ") + in_quotes(header_cell_text(name));
+  }
+  return names;
 }
 
 }  // namespace photorque

@@ -133,8 +133,13 @@ Named named_without_brackets(const std::string& cell) {
       std::string text = cell;
       std::ranges::replace(text, '_', ' ');
       if (text == name) return {column, {}, {}};
-      if (!text.starts_with(std::string(name) + " ")) continue;
-      std::string_view rest = trimmed(std::string_view(cell).substr(name.size() + 1));
+      // "U / V", "U/V", "voltage mV"
+      if (!text.starts_with(std::string(name) + " ") &&
+          !text.starts_with(std::string(name) + "/")) {
+        continue;
+      }
+      std::string_view rest = trimmed(std::string_view(cell).substr(name.size()));
+      if (rest.starts_with('_')) rest = trimmed(rest.substr(1));
       while (rest.starts_with('/') || rest.starts_with("in ")) {
         rest = trimmed(rest.substr(rest.find_first_of("/ ") + 1));
       }
@@ -231,14 +236,14 @@ std::optional<Header> header_of(std::string_view line, const InputLocation& wher
 // Whether all that a header names belongs to a curve; a log of a motor has more than that.
 bool is_of_curve(std::string_view line, const Header& header) {
   static constexpr std::string_view beside[] = {
-      "power", "p",     "leistung", "puissance", "potencia", "potenza", "time",
-      "zeit",  "temps", "tiempo",   "tempo",     "date",     "index",   "point",
-      "no",    "nr",    "number",   "id",        "rep",      "/",       "in"};
+      "power",  "p",      "leistung", "puissance", "potencia", "potenza", "time", "zeit",
+      "temps",  "tiempo", "tempo",    "date",      "index",    "point",   "no",   "nr",
+      "number", "id",     "rep",      "/",         "in",       "#"};
   for (const std::string_view cell : split(line, header.separator)) {
     std::string text = lower(unquoted(cell));
     if (text.empty() || named(text).column != columns) continue;
     std::ranges::replace(text, '_', ' ');
-    text = text.substr(0, text.find_first_of(" ([/", 1));
+    text = text.substr(0, text.find_first_of(" ([/.", 1));
     if (text.starts_with('[') || text.starts_with('(')) continue;
     if (std::ranges::find(beside, text) == std::end(beside)) return false;
   }

@@ -1,0 +1,437 @@
+#include "diagnosis/guess/header.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdint>
+
+#include "attitude/recordings/named_columns.h"
+#include "core/settings/settings.h"
+#include "core/text/parse.h"
+
+namespace photorque {
+namespace {
+
+constexpr const char* greek[] = {"alpha",   "beta", "gamma", "delta",  "epsilon", "zeta", "eta",
+                                 "theta",   "iota", "kappa", "lambda", "mu",      "nu",   "xi",
+                                 "omicron", "pi",   "rho",   "sigma",  "sigma",   "tau",  "upsilon",
+                                 "phi",     "chi",  "psi",   "omega"};
+// U+00C0 to U+00FF without accents.
+constexpr std::string_view latin =
+    "AAAAAAACEEEEIIIIDNOOOOO OUUUUYTsaaaaaaaceeeeiiiidnooooo/ouuuuyty";
+
+// ASCII for one other character. Greek letters become words.
+std::string in_ascii(uint32_t code, bool of_unit) {
+  switch (code) {
+    case 0xB0:
+    case 0xBA:   // ordinal indicator
+    case 0x2DA:  // ring above
+      return "deg";
+    case 0xB5:
+    case 0x3BC:
+      if (of_unit) return "u";
+      break;
+    case 0xB9:
+      return "1";
+    case 0xB2:
+      return "2";
+    case 0xB3:
+      return "3";
+    case 0x207B:  // superscript minus, minus, dashes
+    case 0x2212:
+    case 0x2010:
+    case 0x2011:
+    case 0x2013:
+    case 0x2014:
+      return "-";
+    case 0x2044:
+    case 0x2215:
+      return "/";
+    case 0x3D1:
+      return " theta ";
+    case 0x3D5:
+      return " phi ";
+    case 0x2126:  // ohm sign
+      return " omega ";
+    case 0x307:  // combining dots: derivatives
+      return " dot ";
+    default:
+      break;
+  }
+  if (code >= 0xC0 && code <= 0xFF) return std::string(1, latin[code - 0xC0]);
+  if (code >= 0x391 && code <= 0x3A9) return std::string(" ") + greek[code - 0x391] + " ";
+  if (code >= 0x3B1 && code <= 0x3C9) return std::string(" ") + greek[code - 0x3B1] + " ";
+  if (code >= 0x300 && code <= 0x36F) return "";
+  return " ";
+}
+
+std::string ascii_of(std::string_view text, bool of_unit) {
+  std::string ascii;
+  bool after_greek = false;
+  for (size_t i = 0; i < text.size();) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const size_t length = byte < 0x80 ? 1 : byte < 0xE0 ? 2 : byte < 0xF0 ? 3 : 4;
+    uint32_t code = length == 1 ? byte : byte & (0xFFU >> (length + 1));
+    for (size_t k = 1; k < length && i + k < text.size(); ++k) {
+      code = code << 6U | (static_cast<unsigned char>(text[i + k]) & 0x3FU);
+    }
+    i += length;
+    if (code < 0x80) {
+      ascii += static_cast<char>(code);
+    } else if (code == 0x308 && after_greek) {
+      ascii += " ddot ";
+    } else {
+      ascii += in_ascii(code, of_unit);
+    }
+    after_greek = code >= 0x391 && code <= 0x3D5;
+  }
+  return ascii;
+}
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+struct Spelling {
+  const char *suffix, *words;  // words between blanks
+};
+
+std::string spelled(const std::string& word, const std::vector<Spelling>& table) {
+  for (const Spelling& one : table) {
+    if ((" " + std::string(one.words) + " ").find(" " + word + " ") != std::string::npos) {
+      return one.suffix;
+    }
+  }
+  return "";
+}
+
+std::string time_unit(const std::string& word) {
+  static const std::vector<Spelling> table = {
+      {"s",
+       "s sec secs second seconds sek sekunde sekunden seconde secondes seg segs segundo "
+       "segundos secondo secondi"},
+      {"ms",
+       "ms msec msecs millis millisecond milliseconds millisekunde millisekunden milliseconde "
+       "millisecondes milisegundo milisegundos millisecondo millisecondi milissegundo "
+       "milissegundos"},
+      {"us",
+       "us usec usecs micros microsecond microseconds mikrosekunde mikrosekunden microseconde "
+       "microsecondes microsegundo microsegundos microsecondo microsecondi microssegundos"},
+      {"min", "min mins mn minute minutes minuten minuto minutos minuti"},
+      {"h", "h hr hrs hour hours std stunde stunden heure heures hora horas ora ore"}};
+  return spelled(word, table);
+}
+
+std::string angle_unit(const std::string& word) {
+  static const std::vector<Spelling> table = {
+      {"rad",
+       "rad rads radian radians radiant radianten radianes radianti radiano radianos "
+       "bogenmass"},
+      {"mrad", "mrad milliradian milliradians"},
+      {"deg", "deg degs degree degrees grad grados grado gradi graus grau degre degres"},
+      {"arcsec", "arcsec arcsecs arcsecond arcseconds bogensekunde bogensekunden"},
+      {"arcmin", "arcmin arcmins arcminute arcminutes bogenminute bogenminuten"}};
+  return spelled(word, table);
+}
+
+std::string length_unit(const std::string& word) {
+  static const std::vector<Spelling> table = {
+      {"m", "m meter meters metre metres metro metros metri"},
+      {"cm", "cm centimeter centimeters centimetre centimetres zentimeter centimetros centimetri"},
+      {"mm", "mm millimeter millimeters millimetre millimetres milimetros millimetri"},
+      {"um", "um micron microns"},
+      {"km", "km kilometer kilometers kilometre kilometres kilometros chilometri"}};
+  return spelled(word, table);
+}
+
+bool is_turn(const std::string& word) {
+  static const std::vector<Spelling> table = {
+      {"rev",
+       "r u rev revs revolution revolutions rot rotation rotations turn turns umdr umd "
+       "umdrehung umdrehungen tr trs tour tours giro giri giros vuelta vueltas volta voltas "
+       "revolucion revoluciones rotacoes rotacao rotazioni cycle cycles"}};
+  return !spelled(word, table).empty();
+}
+
+// Of "rad", "s": radians per second.
+std::optional<HeaderUnit> ratio(const std::string& above, const std::string& below) {
+  const std::string time = time_unit(below), angle = angle_unit(above);
+  if (time.empty()) return std::nullopt;
+  if (!angle.empty()) {
+    const bool is_usual = time == "s" && (angle == "rad" || angle == "deg");
+    return HeaderUnit{is_usual ? angle + "_s" : "", "angular rate"};
+  }
+  if (is_turn(above) || above == "1") {
+    if (time == "min") return HeaderUnit{"rpm", "angular rate"};
+    if (time == "s" && above == "1") return HeaderUnit{"", "per second"};
+    return HeaderUnit{time == "s" ? "rev_s" : "", "angular rate"};
+  }
+  const std::string length = length_unit(above);
+  if (!length.empty()) return HeaderUnit{length == "m" && time == "s" ? "m_s" : "", "speed"};
+  return std::nullopt;
+}
+
+// "rad/s" of "Rad pro Sekunde": small letters, one blank between words, none about a slash.
+std::string plain_unit(std::string_view text) {
+  std::string kept;
+  for (const char c : lower(ascii_of(text, true))) {
+    if (c == '.' || c == '^' || c == '{' || c == '}' || c == '$' || c == '\\' || c == '(' ||
+        c == ')' || c == '[' || c == ']' || c == '"' || c == '\'') {
+      continue;
+    }
+    kept += c == '*' || c == '_' ? ' ' : c;
+  }
+  std::string plain;
+  for (const std::string_view word : words_of(kept)) {
+    const bool is_per = word == "per" || word == "pro" || word == "par" || word == "por" ||
+                        word == "al" || word == "a" || word == "je";
+    const std::string_view one = is_per && !plain.empty() ? "/" : word;
+    if (!plain.empty() && !plain.ends_with('/') && !one.starts_with('/')) plain += ' ';
+    plain += one;
+  }
+  return plain;
+}
+
+std::optional<HeaderUnit> with_exponent(std::string plain) {
+  if (!plain.ends_with("-1")) return std::nullopt;
+  plain = trimmed(std::string_view(plain).substr(0, plain.size() - 2));
+  const size_t blank = plain.rfind(' ');
+  if (blank != std::string::npos) return ratio(plain.substr(0, blank), plain.substr(blank + 1));
+  if (const auto unit = ratio("1", plain)) return unit;
+  // "rads-1"
+  for (size_t k = plain.size(); k-- > 1;) {
+    if (const auto unit = ratio(plain.substr(0, k), plain.substr(k))) return unit;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<HeaderUnit> unit_written(std::string_view text) {
+  // One letter has two meanings, by its size.
+  static const std::vector<std::pair<const char*, HeaderUnit>> cased = {
+      {"T", {"T", "magnetic field"}},    {"uT", {"uT", "magnetic field"}},
+      {"nT", {"nT", "magnetic field"}},  {"mT", {"", "magnetic field"}},
+      {"G", {"", "magnetic field"}},     {"gauss", {"", "magnetic field"}},
+      {"Gauss", {"", "magnetic field"}}, {"V", {"V", "voltage"}},
+      {"mV", {"mV", "voltage"}},         {"A", {"A", "current"}},
+      {"mA", {"mA", "current"}}};
+  static const std::vector<std::pair<const char*, HeaderUnit>> whole = {
+      {"rpm", {"rpm", "angular rate"}},
+      {"upm", {"rpm", "angular rate"}},
+      {"rps", {"rev_s", "angular rate"}},
+      {"dps", {"deg_s", "angular rate"}},
+      {"hz", {"rev_s", "frequency"}},
+      {"hertz", {"rev_s", "frequency"}},
+      {"rad s", {"rad_s", "angular rate"}},
+      {"deg s", {"deg_s", "angular rate"}},
+      {"m/s2", {"m_s2", "acceleration"}},
+      {"m/s/s", {"m_s2", "acceleration"}},
+      {"m s-2", {"m_s2", "acceleration"}},
+      {"ms-2", {"m_s2", "acceleration"}},
+      {"g", {"", "acceleration"}},
+      {"mg", {"", "acceleration"}},
+      {"rad/s2", {"", "angular acceleration"}},
+      {"rad/s/s", {"", "angular acceleration"}},
+      {"deg/s2", {"", "angular acceleration"}},
+      {"deg/s/s", {"", "angular acceleration"}},
+      {"rad s-2", {"", "angular acceleration"}},
+      {"deg s-2", {"", "angular acceleration"}},
+      {"mph", {"", "speed"}},
+      {"kmh", {"", "speed"}},
+      {"km h", {"", "speed"}},
+      {"knots", {"", "speed"}},
+      {"volt", {"V", "voltage"}},
+      {"volts", {"V", "voltage"}},
+      {"voltios", {"V", "voltage"}},
+      {"millivolt", {"mV", "voltage"}},
+      {"millivolts", {"mV", "voltage"}},
+      {"amp", {"A", "current"}},
+      {"amps", {"A", "current"}},
+      {"ampere", {"A", "current"}},
+      {"amperes", {"A", "current"}},
+      {"amperios", {"A", "current"}},
+      {"milliampere", {"mA", "current"}},
+      {"milliamps", {"mA", "current"}},
+      {"ma/cm2", {"mA", "current density"}},
+      {"ma cm-2", {"mA", "current density"}},
+      {"macm-2", {"mA", "current density"}},
+      {"a/cm2", {"A", "current density"}},
+      {"a cm-2", {"A", "current density"}},
+      {"acm-2", {"A", "current density"}},
+      {"a/m2", {"A", "current density"}},
+      {"a m-2", {"A", "current density"}}};
+  const std::string as_written(trimmed(ascii_of(text, true)));
+  for (const auto& [word, unit] : cased) {
+    if (as_written == word) return unit;
+  }
+  const std::string plain = plain_unit(text);
+  for (const auto& [word, unit] : whole) {
+    if (plain == word) return unit;
+  }
+  if (const std::string time = time_unit(plain); !time.empty()) return HeaderUnit{time, "time"};
+  if (const std::string angle = angle_unit(plain); !angle.empty()) {
+    return HeaderUnit{angle, "angle"};
+  }
+  if (const std::string length = length_unit(plain); !length.empty()) {
+    return HeaderUnit{length, "length"};
+  }
+  const size_t slash = plain.find('/');
+  if (slash != std::string::npos && plain.find('/', slash + 1) == std::string::npos) {
+    return ratio(plain.substr(0, slash), plain.substr(slash + 1));
+  }
+  return with_exponent(plain);
+}
+
+std::vector<std::string> words_of_header(std::string_view text) {
+  std::vector<std::string> words;
+  char before = ' ';
+  for (const char c : ascii_of(text, false)) {
+    const auto u = static_cast<unsigned char>(c);
+    const bool letter = std::isalpha(u) != 0, digit = std::isdigit(u) != 0;
+    if (letter || digit) {
+      const auto b = static_cast<unsigned char>(before);
+      const bool goes_on =
+          letter ? std::isalpha(b) != 0 && !(std::isupper(u) != 0 && std::islower(b) != 0)
+                 : std::isdigit(b) != 0;
+      if (!goes_on) words.emplace_back();
+      words.back() += static_cast<char>(std::tolower(u));
+    }
+    before = c;
+  }
+  return words;
+}
+
+namespace {
+
+// Without a slash or "in" at the end, which stood before the unit.
+std::string_view before_unit(std::string_view name) {
+  name = trimmed(name);
+  while (name.ends_with('/') || name.ends_with(',') || name.ends_with(':')) {
+    name = trimmed(name.substr(0, name.size() - 1));
+  }
+  for (const std::string_view in : {" in", " en", " em", "_in"}) {
+    if (name.ends_with(in)) return trimmed(name.substr(0, name.size() - in.size()));
+  }
+  return name;
+}
+
+// What brackets contain, and the text without them.
+struct Brackets {
+  std::string name, inside;
+};
+
+Brackets brackets_in(std::string_view text) {
+  Brackets result;
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '(' && text[i] != '[' && text[i] != '{') {
+      result.name += text[i];
+      continue;
+    }
+    size_t end = i + 1;
+    for (int depth = 1; end < text.size(); ++end) {
+      if (text[end] == '(' || text[end] == '[' || text[end] == '{') ++depth;
+      if ((text[end] == ')' || text[end] == ']' || text[end] == '}') && --depth == 0) break;
+    }
+    const std::string inside(trimmed(text.substr(i + 1, end - i - 1)));
+    const bool is_index = inside.size() == 1 &&
+                          (std::isdigit(static_cast<unsigned char>(inside[0])) != 0 ||
+                           std::string_view("xyzwXYZW").find(inside[0]) != std::string_view::npos);
+    result.name += is_index ? " " + inside + " " : " ";
+    if (!is_index && inside != "t") result.inside = inside;
+    i = end;
+  }
+  return result;
+}
+
+// The unit at the end of a name: the longest piece after a blank or a mark that is one.
+bool take_last_words(std::string_view text, HeaderCell& cell, std::string& name) {
+  constexpr std::string_view marks = " _,:;-|=";
+  for (size_t i = 1; i < text.size(); ++i) {
+    if (marks.find(text[i]) == std::string_view::npos) continue;
+    const std::string_view rest = trimmed(text.substr(i + 1));
+    if (rest.empty() || rest.front() == '/') continue;
+    const auto unit = unit_written(rest);
+    if (!unit) continue;
+    const std::string_view before = trimmed(text.substr(0, i));
+    cell.unit = unit;
+    cell.unit_text = rest;
+    cell.may_be_subscript = rest.size() == 1 && rest != "V" && !before.ends_with('/');
+    name = before_unit(before);
+    return true;
+  }
+  return false;
+}
+
+bool take_after_slash(std::string_view text, HeaderCell& cell, std::string& name) {
+  for (size_t i = text.find('/'); i != std::string_view::npos; i = text.find('/', i + 1)) {
+    const std::string_view rest = trimmed(text.substr(i + 1));
+    const auto unit = unit_written(rest);
+    if (!unit && i != text.find('/')) continue;
+    const bool is_derivative = rest.starts_with("dt") && text.find('/', i + 1) == text.npos;
+    if (!unit && is_derivative) return false;
+    // The first piece stands for an unknown unit until a later one is known.
+    if (!unit) {
+      cell.unit_text = rest;
+      name = before_unit(text.substr(0, i));
+      continue;
+    }
+    cell.unit = unit;
+    cell.unit_text = rest;
+    name = before_unit(text.substr(0, i));
+    return true;
+  }
+  return !cell.unit_text.empty();
+}
+
+bool is_bare_unit(std::string_view text) {
+  if (text.empty() || !unit_written(text)) return false;
+  constexpr std::string_view brackets = "([{";
+  // Single letters are names of quantities, but for seconds.
+  return text.size() > 1 ? brackets.find(text.front()) != std::string_view::npos ||
+                               text.find(" / ") == std::string_view::npos
+                         : text == "s";
+}
+
+}  // namespace
+
+HeaderCell read_header_cell(const std::string& in_file) {
+  const std::string whole = header_cell_text(in_file);
+  const std::string_view text = trimmed(whole);
+  HeaderCell cell;
+  cell.is_between_bars = text.starts_with('|') && text.find('|', 1) != std::string_view::npos;
+  if (is_bare_unit(text)) {
+    cell.unit = unit_written(text);
+    cell.unit_text = text;
+    cell.is_bare_unit = true;
+    return cell;
+  }
+  std::string name(text);
+  const Brackets brackets = brackets_in(text);
+  if (!brackets.inside.empty()) {
+    name = before_unit(brackets.name);
+    cell.unit_text = brackets.inside;
+    cell.unit = unit_written(brackets.inside);
+    const size_t comma = brackets.inside.find_last_of(",;");
+    if (!cell.unit && comma != std::string::npos) {
+      // "Gyroscope (x, rad/s)"
+      cell.unit = unit_written(std::string_view(brackets.inside).substr(comma + 1));
+      name += " " + brackets.inside.substr(0, comma);
+    }
+  } else if (const KeyUnit key = unit_of_key(trimmed(brackets.name));
+             !key.unit.empty() && unit_written(key.unit)) {
+    cell.unit = HeaderUnit{key.unit, key.dimension};
+    cell.unit_text = key.unit;
+    cell.may_be_subscript = key.unit.size() == 1 && key.unit != "V";
+    name = key.stem;
+  } else {
+    const std::string plain(trimmed(brackets.name));
+    name = plain;
+    if (!take_last_words(plain, cell, name)) take_after_slash(plain, cell, name);
+  }
+  cell.words = words_of_header(name);
+  return cell;
+}
+
+}  // namespace photorque
