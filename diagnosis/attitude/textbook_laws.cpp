@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ranges>
 
+#include "diagnosis/attitude/beside_the_rest.h"
 #include "diagnosis/attitude/domain.h"
 #include "inference/trials.h"
 
@@ -129,16 +130,17 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
       return domain.refit(laws, data.train, domain.seen_begins(laws, data.train), growing);
     };
     // The whole leaves more than the pieces, but not that much more.
-    constexpr double alike = 100.0;
+    constexpr double alike = 100.0, useless = 0.01;
     const double near_whole = alike * std::max(1.0, all_laws.fit.chi2_per_sample());
+    const auto is_near = [&] {
+      return found.fit.chi2 < nominal_fit.chi2 && found.fit.chi2_per_sample() < near_whole;
+    };
     found = in_the_whole(all_laws);
-    if (!(found.fit.chi2 < nominal_fit.chi2 && found.fit.chi2_per_sample() < near_whole)) {
+    if (!is_near()) {
       Trial longer = in_the_whole(lengthened(all_laws, pieces, domain, all, data.train));
       if (!(found.fit.chi2 < longer.fit.chi2)) found = std::move(longer);
+      if (!is_near() && !(found.fit.chi2 < useless * nominal_fit.chi2)) return std::nullopt;
     }
-    // Collinear laws with opposite signs leave no more of the residual than those within physics.
-    Trial within_physics = without_superfluous(found, domain, all, data.train, 0.0);
-    if (within_physics.fit.chi2 < nominal_fit.chi2) found = std::move(within_physics);
   } else {
     // Fewer readings than that hardly determine as many laws.
     constexpr double fewest_readings = 20.0;
@@ -146,8 +148,15 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
     std::erase_if(growing.windows, [&](double part) {
       return part < 1.0 && part * static_cast<double>(readings) < fewest_readings;
     });
-    found = without_superfluous(domain.assemble(nominal, members, data.train, growing), domain, all,
-                                data.train);
+    found = domain.assemble(nominal, members, data.train, growing);
+  }
+  // Collinear laws with opposite signs explain hardly more than those within physics. With rates
+  // alone they also follow any slow change, so no law below two standard errors is kept.
+  if (!leaves_only_noise(found.fit, data)) {
+    constexpr double hardly = 2.0;
+    Trial fewer = without_superfluous(found, domain, all, data.train, sees_angle ? 0.0 : 2.0);
+    const double most = sees_angle ? hardly * found.fit.chi2 : nominal_fit.chi2;
+    if (fewer.fit.chi2 < most) found = std::move(fewer);
   }
   if (!(found.fit.chi2 < nominal_fit.chi2)) return std::nullopt;
   return found;

@@ -340,7 +340,7 @@ TEST_F(Guess, ATorsionPendulumTurnsAboutAnUprightAxis) {
     std::mt19937_64 random(5);
     std::normal_distribution<double> noise(0.0, noise_rad);
     std::vector<double> angle_rad;
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < 300; ++i) {
       const double t = std::max(0.0, interval_s * i - released_s);
       angle_rad.push_back(2.2 * std::exp(-0.5 * c * t) *
                               (std::cos(omega * t) + 0.5 * c / omega * std::sin(omega * t)) +
