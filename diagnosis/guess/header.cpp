@@ -317,7 +317,7 @@ std::string_view before_unit(std::string_view name) {
   return name;
 }
 
-// What brackets contain, and the text without them.
+// The content of the last brackets, and the text without brackets.
 struct Brackets {
   std::string name, inside;
 };

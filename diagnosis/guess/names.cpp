@@ -657,8 +657,8 @@ GuessedCurve guess_curve(const std::filesystem::path& path) {
   curve.columns["current_" + unit] = header_cell_text(head.header[currents[0]]);
   if (is_density) {
     curve.because =
-        "a current density is read as the current of a unit of area (1 cm², or 1 m² "
-        "if the header says so)";
+        "a current density is read as the current of a unit of area (1 cm², "
+        "or 1 m² if that is its unit)";
     if (!current.unit) curve.because += ", in " + unit + "/cm² by its size";
     curve.because += ": multiply currents by the area of the cell.";
   }

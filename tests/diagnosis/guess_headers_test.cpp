@@ -171,7 +171,7 @@ TEST_F(Headers, OfUnknownUnitsAreRefused) {
         << header;
   }
   EXPECT_THAT(refusal([&] { channels("time (days);rate_rpm"); }), HasSubstr("s, ms, µs, min or h"));
-  // The same quantity in a known unit is enough.
+  // One column of the quantity in a known unit is enough.
   EXPECT_EQ(channels("t_s;angle (raw);angle (deg)").at(2), "angle_deg");
 }
 
