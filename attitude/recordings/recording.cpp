@@ -115,7 +115,7 @@ class RecordingReader {
       : path_(path), options_(options), lines_(path) {}
 
   Recording read() {
-    if (is_aem(path_)) {
+    if (is_message(path_, "AEM")) {
       take_attitudes();
       finish();
       return std::move(recording_);

@@ -307,7 +307,8 @@ GuessedColumn guessed(const FileHead& head, size_t column) {
 }  // namespace
 
 std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path) {
-  if (is_aem(path)) return {{"q_w", "q_w"}, {"q_x", "q_x"}, {"q_y", "q_y"}, {"q_z", "q_z"}};
+  if (is_message(path, "AEM"))
+    return {{"q_w", "q_w"}, {"q_x", "q_x"}, {"q_y", "q_y"}, {"q_z", "q_z"}};
   const FileHead head = head_of(path);
   std::vector<GuessedColumn> all;
   for (size_t column = 0; column < head.header.size(); ++column) {
