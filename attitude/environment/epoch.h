@@ -23,7 +23,7 @@ std::optional<Epoch> parse_epoch(std::string_view text);
 // "2000-01-01T11:59:28.000000", rounded to the microsecond.
 std::string epoch_text(const Epoch& epoch);
 
-// The same instant in UTC, of a calendar time in `system`: UTC, UT1 (taken for UTC: within 0.9 s),
+// A calendar time in `system`, converted to UTC: UTC, UT1 (taken for UTC: within 0.9 s),
 // TAI, TT (also TDT) or GPS. Nothing for other systems. Leap seconds as of 2017; before 1972 TAI −
 // UTC is 10 s. Source: IERS Bulletin C.
 std::optional<Epoch> to_utc(const Epoch& epoch, std::string_view system);

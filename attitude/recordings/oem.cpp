@@ -31,7 +31,7 @@ struct State {
   int line;
 };
 
-// How a segment wants to be interpolated.
+// The interpolation that a segment states.
 struct Method {
   bool uses_velocity = true;
   size_t states = 4;

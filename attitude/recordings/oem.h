@@ -12,7 +12,7 @@
 
 namespace photorque {
 
-// What the axes of a reference frame of CCSDS are near the Earth. Source: SANA registry of
+// Axes of a reference frame of CCSDS near the Earth. Source: SANA registry of
 // celestial body reference frames.
 enum class FrameAxes {
   J2000,    // inertial, equator of J2000: EME2000, J2000, GCRF, ICRF…

@@ -283,6 +283,24 @@ TEST(Orbit, OfStatesOnACircleIsTheCircle) {
   }
 }
 
+// Behind the Earth no sunlight presses, by the Sun of the environment where the orbit has none.
+TEST(Orbit, TakesTheSunOfTheEnvironment) {
+  const auto pressure = [](const Vec3& sun,
+                           std::vector<std::pair<std::string, SettingsNode>> orbit) {
+    AttitudeModel model = bench_model();
+    model.environment.sun = SunPath::fixed(sun);
+    orbit.emplace_back("altitude_m", node(500e3));
+    orbit.emplace_back("inclination_deg", node(0));
+    model = with(with(model, "orbit", orbit), "radiation_pressure",
+                 {{"area_moment_m3", numbers({0, 0, 1})}});
+    return torque_body_N_m(model, state_of(model, Quat::Identity())).norm();
+  };
+  const double lit_N_m = pressure(Vec3::UnitX(), {});  // the satellite is on +x
+  EXPECT_NEAR(lit_N_m, 1361.0 / 299792458.0, 0.01 * lit_N_m);
+  EXPECT_EQ(pressure(-Vec3::UnitX(), {}), 0.0);
+  EXPECT_EQ(pressure(Vec3::UnitX(), {{"sun_direction", numbers({-1, 0, 0})}}), 0.0);
+}
+
 TEST(Orbit, KeysOfCircleAndEphemerisExcludeEachOther) {
   const MessageFile file(oem_text(ellipse, 600.0, 60.0));
   const SettingsNode states = node(file.path().c_str());

@@ -85,7 +85,7 @@ initial_apm = "attitude.apm"
   EXPECT_THAT(refusal("propagate.initial_time_s=-20"), HasSubstr("a start 10 s before"));
   EXPECT_THAT(refusal("propagate.initial_apm=states.oem"), HasSubstr("CCSDS_APM_VERS"));
   EXPECT_THAT(refusal("disturbance[0].ephemeris=absent.oem"), HasSubstr("absent.oem"));
-  // What the experiment states counts, and a budget stands in the same orbit.
+  // Stated keys take precedence, and a budget stands in the same orbit.
   const Outcome stated = run("propagate " + experiment +
                              " --set propagate.initial_attitude=[1,0,0,0] --out " + at("p"));
   EXPECT_THAT(files("p").at("time_history.csv"), HasSubstr("\n0,1,0,0,0,")) << stated.err;

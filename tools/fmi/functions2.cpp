@@ -37,7 +37,7 @@ struct fmi2CallbackFunctions {
 
 namespace {
 
-// What FMI 2.0 states or asks for apart from a step.
+// An instance, and the data that FMI 2.0 exchanges apart from a step.
 struct Unit2 {
   std::unique_ptr<Instance> instance;
   double start_s = 0.0;

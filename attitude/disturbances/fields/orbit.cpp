@@ -7,8 +7,8 @@
 // epoch, the calendar time of t = 0 (default: the first usable state).
 // date_year: the field is IGRF along the orbit (none without it), of a circle known for duration_s
 //   (default 86400);
-// sun_direction[3] (any length): full light and shadow of the Earth with its penumbra; without it
-//   there is light all the time.
+// sun_direction[3] (any length; default: that of [environment.sun]): full light and shadow of the
+//   Earth with its penumbra; without either there is light all the time.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -48,7 +48,7 @@ constexpr NumberKey duration(
     "of a circle with `date_year`: duration of the field; its end is held");
 constexpr Vec3Key sun_direction("sun_direction",
                                 "towards the Sun, any length: shadow with penumbra",
-                                {.usually = "always light"});
+                                {.usually = "that of `[environment.sun]`, else always light"});
 }  // namespace key
 
 constexpr double mean_radius_m = 6371.2e3;
@@ -99,40 +99,40 @@ class Ephemeris {
 template <class Path>
 class Orbit final : public LawOf<Orbit<Path>> {
  public:
-  Orbit(Path path, std::optional<TimeSeries> field_T, std::optional<Vec3> sun_direction)
-      : path_(std::move(path)), field_T_(std::move(field_T)), sun_direction_(sun_direction) {}
+  Orbit(Path path, std::optional<TimeSeries> field_T, std::optional<SunPath> sun)
+      : path_(std::move(path)), field_T_(std::move(field_T)), sun_(std::move(sun)) {}
 
   template <class T>
   void apply(const ParametersAndStates<T>&, EvaluationContext<T>& now) const {
     path_.apply(now);
     now.gravity_lab_m_s2 = Vec3Of<T>::Constant(T(0.0));
     if (field_T_) now.magnetic_field_lab_T = field_T_->sample(now.time_s);
-    if (sun_direction_) now.illumination *= T(light(values(now.time_s)));
+    if (sun_) now.illumination *= T(light(values(now.time_s)));
   }
 
  private:
   Lanes light(const Lanes& time_s) const {
     return each_lane(time_s, [this](double t_s) {
-      return sunlit_fraction(path_.position_m(t_s), astronomical_unit_m * *sun_direction_,
+      return sunlit_fraction(path_.position_m(t_s), astronomical_unit_m * sun_->at(t_s)[0],
                              mean_radius_m);
     });
   }
 
   Path path_;
   std::optional<TimeSeries> field_T_;
-  std::optional<Vec3> sun_direction_;
+  std::optional<SunPath> sun_;
 };
 
-std::optional<Vec3> read_sun_direction(const Settings& settings) {
-  if (!settings.has(key::sun_direction)) return std::nullopt;
+std::optional<SunPath> read_sun_path(const Settings& settings, const DisturbanceContext& context) {
+  if (!settings.has(key::sun_direction)) return context.environment.sun;
   const Vec3 direction = settings.get(key::sun_direction);
   if (!(direction.norm() > 0.0)) {
     throw settings.error(key::sun_direction, "a zero vector", "a direction");
   }
-  return direction.normalized();
+  return SunPath::fixed(direction.normalized());
 }
 
-Disturbance read_circle(const Settings& settings) {
+Disturbance read_circle(const Settings& settings, const DisturbanceContext& context) {
   if (settings.has(key::epoch)) {
     throw settings.error(key::epoch, "a calendar time of a circle",
                          "`ephemeris` beside it, or `phase_deg`");
@@ -146,11 +146,11 @@ Disturbance read_circle(const Settings& settings) {
         orbit_field_T(orbit, settings.get(key::date_year), settings.get(key::duration), interval_s);
   }
   return make_disturbance<Orbit<Circle>>({}, Stage::conditions, {}, Circle(orbit), field_T,
-                                         read_sun_direction(settings));
+                                         read_sun_path(settings, context));
 }
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  if (!settings.has(key::ephemeris)) return read_circle(settings);
+Disturbance read(const Settings& settings, const DisturbanceContext& context) {
+  if (!settings.has(key::ephemeris)) return read_circle(settings, context);
   for (const std::string_view of_circle :
        {std::string_view(key::altitude), std::string_view(key::inclination),
         std::string_view(key::ascending_node), std::string_view(key::phase),
@@ -185,7 +185,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
                             std::max(interval_s, duration_s / most_instants));
   }
   return make_disturbance<Orbit<Ephemeris>>({}, Stage::conditions, {}, path, field_T,
-                                            read_sun_direction(settings));
+                                            read_sun_path(settings, context));
 }
 
 }  // namespace
