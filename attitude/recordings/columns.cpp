@@ -256,10 +256,9 @@ MotionColumns::MotionColumns(const Recording& recording, const Platform& platfor
                    platform.turns_about_one_axis()
                        ? "angle_rad, rate_rad_s, a gyro axis, or [recording.columns] that says "
                          "which column is one (photorque diagnose --guess writes it)"
-                       : "the attitude q_w, q_x, q_y, q_z or roll_rad, pitch_rad, yaw_rad; or "
-                         "gyro_x_rad_s, gyro_y_rad_s, gyro_z_rad_s; or any of tilt_rad, "
-                         "yaw_rad, rate_magnitude_rad_s; or [recording.columns] that says which "
-                         "columns are these (photorque diagnose --guess writes it)");
+                       : "q_w, q_x, q_y, q_z or roll_rad, pitch_rad, yaw_rad; gyro_x_rad_s …; "
+                         "tilt_rad, rate_magnitude_rad_s; or [recording.columns], which photorque "
+                         "diagnose --guess writes");
 }
 
 // A single number beside a whole attitude or three rates contains nothing new.

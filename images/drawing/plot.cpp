@@ -112,7 +112,8 @@ std::optional<TextStyle> style_of_words(const std::vector<Plot::Curve>& curves, 
     std::istringstream words(curve.label);
     for (std::string word; words >> word;) widest = std::max(widest, text_width(word, style));
   }
-  if (widest > room) style.size *= room / widest;
+  constexpr double rounding = 0.99;
+  if (widest > rounding * room) style.size *= rounding * room / widest;
   return style.size >= smallest_name ? std::optional(style) : std::nullopt;
 }
 

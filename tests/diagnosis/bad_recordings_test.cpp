@@ -36,10 +36,9 @@ TEST(BadRecording, WithoutAttitudeNamesTheMissingChannel) {
   const Recording currents = repeated_row("t_s,battery_current_A", "0.1", 100);
   EXPECT_EQ(refusal_of(currents),
             "run.csv: header: found neither an angle nor a rate (the columns battery_current_A), "
-            "expected the attitude q_w, q_x, q_y, q_z or roll_rad, pitch_rad, yaw_rad; or "
-            "gyro_x_rad_s, gyro_y_rad_s, gyro_z_rad_s; or any of tilt_rad, yaw_rad, "
-            "rate_magnitude_rad_s; or [recording.columns] that says which columns are these "
-            "(photorque diagnose --guess writes it)");
+            "expected q_w, q_x, q_y, q_z or roll_rad, pitch_rad, yaw_rad; gyro_x_rad_s …; "
+            "tilt_rad, rate_magnitude_rad_s; or [recording.columns], which photorque diagnose "
+            "--guess writes");
   // A name without its unit.
   EXPECT_NE(refusal_of(repeated_row("t_s,yaw", "0.1", 100)).find("yaw_deg or yaw_rad"),
             std::string::npos);
