@@ -1,9 +1,13 @@
 #include "attitude/environment/epoch.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+
+#include "core/constants.h"
 
 namespace photorque {
 namespace {
@@ -90,6 +94,66 @@ std::string epoch_text(const Epoch& epoch) {
                 static_cast<unsigned>(date.day()), seconds / 3600, seconds / 60 % 60, seconds % 60,
                 microseconds % 1000000);
   return text;
+}
+
+namespace {
+
+// First days on which TAI − UTC is 10 s, 11 s, and so on.
+constexpr std::array leap_days = {
+    "1972-01-01", "1972-07-01", "1973-01-01", "1974-01-01", "1975-01-01", "1976-01-01",
+    "1977-01-01", "1978-01-01", "1979-01-01", "1980-01-01", "1981-07-01", "1982-07-01",
+    "1983-07-01", "1985-07-01", "1988-01-01", "1990-01-01", "1991-01-01", "1992-07-01",
+    "1993-07-01", "1994-07-01", "1996-01-01", "1997-07-01", "1999-01-01", "2006-01-01",
+    "2009-01-01", "2012-07-01", "2015-07-01", "2017-01-01"};
+
+double tai_minus_utc_s(const Epoch& tai) {
+  constexpr double first_s = 10.0;
+  double difference_s = first_s;
+  for (size_t i = 1; i < leap_days.size(); ++i) {
+    const Epoch midnight = *parse_epoch(std::string(leap_days[i]) + "T00:00:00");
+    // The second before the new difference is the leap second.
+    const double next_s = first_s + static_cast<double>(i);
+    if (tai.seconds_since(midnight) >= next_s) difference_s = next_s;
+  }
+  return difference_s;
+}
+
+double days_since_J2000(const Epoch& epoch) {
+  return epoch.seconds_since(*parse_epoch("2000-01-01T12:00:00")) / day_s;
+}
+
+double within_one_turn(double turns) {
+  return 2.0 * pi * (turns - std::floor(turns));
+}
+
+}  // namespace
+
+std::optional<Epoch> to_utc(const Epoch& epoch, std::string_view system) {
+  constexpr double tt_minus_tai_s = 32.184, tai_minus_gps_s = 19.0;
+  double to_tai_s = 0.0;
+  if (system == "UTC" || system == "UT1") return epoch;
+  if (system == "TT" || system == "TDT") {
+    to_tai_s = -tt_minus_tai_s;
+  } else if (system == "GPS") {
+    to_tai_s = tai_minus_gps_s;
+  } else if (system != "TAI") {
+    return std::nullopt;
+  }
+  const Epoch tai = epoch.after(to_tai_s);
+  return tai.after(-tai_minus_utc_s(tai));
+}
+
+double earth_rotation_angle_rad(const Epoch& ut1) {
+  const double days = days_since_J2000(ut1), whole = std::floor(days);
+  return within_one_turn(0.7790572732640 + (days - whole) + 0.00273781191135448 * days);
+}
+
+double greenwich_sidereal_time_rad(const Epoch& ut1) {
+  const double centuries = days_since_J2000(ut1) / 36525.0;
+  const double precession_arcsec =
+      0.014506 + centuries * (4612.156534 + centuries * (1.3915817 - 4.4e-7 * centuries));
+  return within_one_turn(earth_rotation_angle_rad(ut1) / (2.0 * pi) +
+                         precession_arcsec / (360.0 * 3600.0));
 }
 
 }  // namespace photorque

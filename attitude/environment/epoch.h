@@ -23,4 +23,16 @@ std::optional<Epoch> parse_epoch(std::string_view text);
 // "2000-01-01T11:59:28.000000", rounded to the microsecond.
 std::string epoch_text(const Epoch& epoch);
 
+// A calendar time in `system`, converted to UTC: UTC, UT1 (taken for UTC: within 0.9 s),
+// TAI, TT (also TDT) or GPS. Nothing for other systems. Leap seconds as of 2017; before 1972 TAI −
+// UTC is 10 s. Source: IERS Bulletin C.
+std::optional<Epoch> to_utc(const Epoch& epoch, std::string_view system);
+
+// Angle of the Earth's zero meridian from the celestial intermediate origin, within [0, 2π), at
+// `ut1`. Source: IERS Conventions 2010, eq. 5.15.
+double earth_rotation_angle_rad(const Epoch& ut1);
+// Likewise from the mean equinox of date: Greenwich mean sidereal time, with UT1 for TT in the
+// precession (1e-9 rad). Source: IERS Conventions 2010, eq. 5.32.
+double greenwich_sidereal_time_rad(const Epoch& ut1);
+
 }  // namespace photorque

@@ -6,7 +6,10 @@
 
 #include "attitude/disturbances/kind.h"
 #include "attitude/environment/epoch.h"
+#include "attitude/recordings/apm.h"
+#include "attitude/recordings/oem.h"
 #include "core/settings/typed_keys.h"
+#include "core/text/parse.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -68,17 +71,68 @@ constexpr NumberKey battery_current("battery_current_A", 0.0, {}, "drawn");
 constexpr NumberKey led_current("led_current_A", Range::not_negative(),
                                 "of lamps; not given: constant light", {.optional = true});
 constexpr TablesKey command("command", "each held until the next");
-constexpr TextKey epoch(
-    "epoch", "2000-01-01T00:00:00",
-    "calendar time of t = 0, for `attitude.aem`; does not move `igrf` or `orbit`");
+constexpr TextKey initial_apm("initial_apm",
+                              "CCSDS APM (KVN or XML): attitude and rate at the start, where the "
+                              "keys above do not state them",
+                              {.optional = true});
+constexpr TextKey epoch("epoch",
+                        "calendar time of t = 0, UTC, for `attitude.aem` and the `ephemeris` of an "
+                        "`orbit`; does not move `igrf` or a circular `orbit`",
+                        {.usually = "that of `initial_apm`, else the start of an `ephemeris`, else "
+                                    "\"2000-01-01T00:00:00\""});
 constexpr TableKey propagate("propagate", "a run of the motion");
 }  // namespace propagate_key
 
-// [[disturbance]] alone: who reads the rest of the file complains about its keys.
+Settings of_propagate(const Settings& root) {
+  return own_table(root, std::string(propagate_key::propagate.name), false);
+}
+
+// Calendar time of t = 0, as stated.
+std::optional<std::string> stated_epoch(const Settings& root) {
+  const Settings settings = of_propagate(root);
+  if (settings.has(propagate_key::epoch)) return settings.get(propagate_key::epoch);
+  if (!settings.has(propagate_key::initial_apm)) return std::nullopt;
+  return epoch_text(read_apm(file_of(settings, propagate_key::initial_apm)).epoch);
+}
+
+// [[disturbance]] alone: who reads the rest of the file complains about its keys. What counts from
+// the calendar time of t = 0 has it stated.
 Settings disturbances_of(const Settings& root) {
+  SettingsNode list = root.raw("disturbance");
+  if (auto* all = std::get_if<SettingsNode::Array>(&list.value)) {
+    for (SettingsNode& one : *all) {
+      auto* keys = std::get_if<SettingsNode::Table>(&one.value);
+      if (keys == nullptr || !keys->contains("ephemeris") || keys->contains("epoch")) continue;
+      const std::optional<std::string> epoch = stated_epoch(root);
+      if (epoch) (*keys)["epoch"] = {*epoch, one.where};
+    }
+  }
   SettingsNode holder;
-  holder.value = SettingsNode::Table{{"disturbance", root.raw("disturbance")}};
+  holder.value = SettingsNode::Table{{"disturbance", std::move(list)}};
   return Settings(std::make_shared<const SettingsNode>(std::move(holder)));
+}
+
+// The calendar time of t = 0, and whether an ephemeris covers the run.
+void take_ephemeris(const Settings& root, bool is_stated, PropagationRun& run) {
+  if (!root.has("disturbance")) return;
+  for (const Settings& one : disturbances_of(root).tables("disturbance")) {
+    if (!one.has("ephemeris")) continue;
+    const OrbitEphemeris states(file_of(one, "ephemeris"));
+    if (!is_stated) run.epoch = one.has("epoch") ? one.text("epoch") : epoch_text(states.start());
+    const std::optional<Epoch> zero = parse_epoch(one.text_or("epoch", run.epoch));
+    if (!zero) return;  // the orbit's reader reports it
+    const double begin_s = zero->seconds_since(states.start()) + run.initial.time_s;
+    const double end_s = begin_s + run.duration_s;
+    if (begin_s >= 0.0 && end_s <= states.duration_s()) return;
+    const Settings settings = of_propagate(root);
+    const bool is_late = begin_s >= 0.0;
+    throw settings.error(
+        is_late ? propagate_key::duration.name : propagate_key::initial_time.name,
+        is_late ? "an end " + shortest(end_s - states.duration_s()) + " s after the ephemeris"
+                : "a start " + shortest(-begin_s) + " s before the ephemeris",
+        "a run between " + epoch_text(states.start()) + " and " +
+            epoch_text(states.start().after(states.duration_s())) + " UTC");
+  }
 }
 
 bool names_effect_of_bearing(const Settings& root) {
@@ -166,7 +220,15 @@ Quat with_initial_yaw(const Settings& settings, const Quat& lean) {
   return Quat(axes);
 }
 
-Quat read_initial_attitude(const Settings& settings) {
+std::optional<AttitudeParameters> read_initial_apm(const Settings& settings) {
+  if (!settings.has(propagate_key::initial_apm)) return std::nullopt;
+  return read_apm(file_of(settings, propagate_key::initial_apm));
+}
+
+Quat read_initial_attitude(const Settings& settings, const std::optional<AttitudeParameters>& apm) {
+  const bool tilts =
+      settings.has(propagate_key::initial_tilt) || settings.has(propagate_key::initial_yaw);
+  if (apm && !tilts && !settings.has(propagate_key::initial_attitude)) return apm->lab_from_body;
   if (!settings.has(propagate_key::initial_attitude)) {
     const double tilt_rad = settings.get(propagate_key::initial_tilt);
     const double heading_rad = settings.get(propagate_key::initial_heading);
@@ -334,7 +396,9 @@ PropagationRun read_propagation(const Settings& root) {
   }
   run.options.tick_rate_Hz = settings.get(propagate_key::tick_rate);
   run.model.schedule = read_schedule(settings);
-  run.epoch = settings.get(propagate_key::epoch);
+  run.epoch = settings.has(propagate_key::epoch)
+                  ? settings.get(propagate_key::epoch)
+                  : stated_epoch(root).value_or("2000-01-01T00:00:00");
   if (!parse_epoch(run.epoch)) {
     throw settings.error(propagate_key::epoch, "\"" + run.epoch + "\"",
                          "a time as 2000-01-01T12:00:00");
@@ -343,8 +407,13 @@ PropagationRun read_propagation(const Settings& root) {
   if (run.epoch.find(":60") != std::string::npos) {
     throw settings.error(propagate_key::epoch, "\"" + run.epoch + "\"", "no leap second");
   }
-  run.initial = Dynamics(run.model).initial_state(settings.get(propagate_key::initial_rate));
-  run.initial.lab_from_body = read_initial_attitude(settings);
+  const std::optional<AttitudeParameters> apm = read_initial_apm(settings);
+  Vec3 rate_body_rad_s = settings.get(propagate_key::initial_rate);
+  if (apm && apm->rate_body_rad_s && !settings.has(propagate_key::initial_rate)) {
+    rate_body_rad_s = *apm->rate_body_rad_s;
+  }
+  run.initial = Dynamics(run.model).initial_state(rate_body_rad_s);
+  run.initial.lab_from_body = read_initial_attitude(settings, apm);
   check_begins_about_axis(settings, run.model.platform, run.initial.lab_from_body,
                           run.initial.rate_body_rad_s);
   read_initial_place(settings, run.model, run.initial);
@@ -367,6 +436,7 @@ PropagationRun read_propagation(const Settings& root) {
         "at most the " + std::to_string(*capacity_C / 3600.0) + " of platform.battery_capacity_Ah");
   }
   run.initial.time_s = settings.get(propagate_key::initial_time);
+  take_ephemeris(root, stated_epoch(root).has_value(), run);
   // A calendar time has four digits of the year in attitude.aem.
   const double left_s = parse_epoch("9999-12-31T23:59:59")->seconds_since(*parse_epoch(run.epoch));
   if (run.initial.time_s + run.duration_s > left_s) {
@@ -402,10 +472,26 @@ std::optional<std::array<double, 4>> place_of(const Dynamics& dynamics,
 Key propagate_table() {
   using namespace propagate_key;
   return propagate_key::propagate.of(
-      {duration, output_rate, history_rows, tolerance, longest_step, tick_rate, seed, initial_tilt,
-       initial_heading, initial_yaw, initial_attitude, initial_rate, initial_position,
-       initial_velocity, initial_charge, initial_time, commands,
-       command.of({time, torque, force, force_body, battery_current, led_current}), epoch});
+      {duration,
+       output_rate,
+       history_rows,
+       tolerance,
+       longest_step,
+       tick_rate,
+       seed,
+       initial_tilt,
+       initial_heading,
+       initial_yaw,
+       initial_attitude,
+       initial_rate,
+       initial_apm,
+       initial_position,
+       initial_velocity,
+       initial_charge,
+       initial_time,
+       commands,
+       command.of({time, torque, force, force_body, battery_current, led_current}),
+       epoch});
 }
 
 }  // namespace photorque

@@ -1,8 +1,5 @@
-// CCSDS attitude ephemeris messages (AEM), and the keyword-value notation (KVN) that they are
-// written in: blocks of assignments, comments and data lines.
-//
-// Everything is stored as text in its order, so that a message that is written again has the same
-// digits. AttitudeEphemeris interprets it. Source: CCSDS 504.0-B-2 (2024), section 7.
+// CCSDS attitude ephemeris messages (AEM). A message that is written back says the same in every
+// digit.
 #pragma once
 
 #include <filesystem>
@@ -12,41 +9,9 @@
 #include <vector>
 
 #include "attitude/model/platform.h"
+#include "attitude/recordings/kvn.h"
 
 namespace photorque {
-
-struct KvnItem {
-  enum class Kind { comment, assignment, data, block };
-  Kind kind = Kind::block;
-  std::string key;             // of an assignment; name of a block: "META"
-  std::string value;           // of an assignment; text of a comment; a data line
-  std::string unit;            // of an assignment, without brackets; empty: none
-  std::vector<KvnItem> items;  // of a block
-  int line = 0;                // in the file; not compared
-
-  bool operator==(const KvnItem& other) const;
-
-  // The value of the first assignment of `name` in this block, or null.
-  const std::string* find(std::string_view name) const;
-};
-
-KvnItem kvn_comment(const std::string& text);
-KvnItem kvn_assignment(const std::string& key, const std::string& value,
-                       const std::string& unit = "");
-KvnItem kvn_data(const std::string& line);
-KvnItem kvn_block(const std::string& name);
-
-// The message as one nameless block. InputError for blocks that do not close and lines that are
-// none of the kinds.
-KvnItem read_kvn(const std::filesystem::path& path);
-// An AEM in XML as the same blocks, with the scalar of its quaternions last.
-KvnItem read_aem_xml(const std::filesystem::path& path);
-std::string kvn_text(const KvnItem& message);
-void write_kvn(const std::filesystem::path& path, const KvnItem& message);
-
-// All words from index `first` on as numbers; InputError (at `path`, `line`) when one is none.
-std::vector<double> kvn_numbers(const std::vector<std::string_view>& words, size_t first,
-                                const std::filesystem::path& path, int line);
 
 // An attitude ephemeris message, version 1 or 2. Source: CCSDS 504.0-B-1 (2008) and 504.0-B-2
 // (2024), section 4. Version 2 has neither ATTITUDE_DIR nor QUATERNION_TYPE: from A to B, scalar
@@ -97,9 +62,8 @@ struct AttitudeEphemeris {
   bool operator==(const AttitudeEphemeris&) const = default;
 };
 
-// Whether the first line that is not empty is that of an AEM in KVN, or XML contains its element.
-// False for a file that cannot be read.
-bool is_aem(const std::filesystem::path& path);
+// Whether a frame is one of the body or of what is fixed to it.
+bool is_body_frame(const std::string& frame);
 
 // The attitude of the body of a message over the time since its first row.
 struct AemAttitude {
@@ -111,6 +75,8 @@ struct AemAttitude {
 // The rows of all segments in their order. InputError as of read_aem() and Segment::attitudes(),
 // and for segments of several objects.
 std::vector<AemAttitude> aem_attitudes(const std::filesystem::path& path);
+std::vector<AemAttitude> aem_attitudes(const AttitudeEphemeris& aem,
+                                       const std::filesystem::path& path);
 
 // InputError for files that are no AEM, lack a keyword that the book requires, or hold rows of the
 // wrong length.

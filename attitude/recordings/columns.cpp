@@ -174,6 +174,32 @@ double cell(const Channel* channel, size_t row) {
 
 }  // namespace
 
+namespace {
+
+// The columns of a recording in words, and which of them lack no more than a unit.
+std::string columns_in_words(const Recording& recording) {
+  constexpr size_t most = 6;
+  std::string names, bare;
+  for (size_t i = 0; i < std::min(most, recording.channels.size()); ++i) {
+    const std::string& name = recording.channels[i].name;
+    names += (i > 0 ? ", " : "") + name;
+    const auto lacks_unit = [&name](const char* known) { return unit_of_key(known).stem == name; };
+    if (bare.empty() && (std::ranges::any_of(angle_names, lacks_unit) ||
+                         std::ranges::any_of(gyro_names, lacks_unit) || lacks_unit("rate_rad_s") ||
+                         lacks_unit("tilt_rad") || lacks_unit("rate_magnitude_rad_s"))) {
+      bare = name;
+    }
+  }
+  if (recording.channels.size() > most) names += ", …";
+  if (names.empty()) return "no column beside t_s";
+  const bool is_rate = bare.starts_with("gyro") || bare.starts_with("rate");
+  const std::string unit = is_rate ? "_deg_s or " : "_deg or ", SI = is_rate ? "_rad_s" : "_rad";
+  return "the columns " + names +
+         (bare.empty() ? "" : "; " + bare + " has no unit: " + bare + unit + bare + SI);
+}
+
+}  // namespace
+
 const Channel* MotionColumns::take(const std::string& name) {
   const Channel* channel = recording_.find(name);
   if (channel != nullptr) used_.push_back(channel);
@@ -226,14 +252,13 @@ MotionColumns::MotionColumns(const Recording& recording, const Platform& platfor
   }
   if (has_attitude() || has_gyro() || has_scalars()) return;
   throw InputError({name, 0}, "header",
-                   platform.turns_about_one_axis() ? "no channel of an angle or a rate"
-                                                   : "no channel q_w and no gyro",
+                   "neither an angle nor a rate (" + columns_in_words(recording) + ")",
                    platform.turns_about_one_axis()
                        ? "angle_rad, rate_rad_s, a gyro axis, or [recording.columns] that says "
-                         "which column is one"
-                       : "the attitude q_w, q_x, q_y, q_z or roll_rad, pitch_rad, yaw_rad; or "
-                         "gyro_x_rad_s, gyro_y_rad_s, gyro_z_rad_s; or any of tilt_rad, "
-                         "yaw_rad, rate_magnitude_rad_s");
+                         "which column is one (photorque diagnose --guess writes it)"
+                       : "q_w, q_x, q_y, q_z or roll_rad, pitch_rad, yaw_rad; gyro_x_rad_s …; "
+                         "tilt_rad, rate_magnitude_rad_s; or [recording.columns], which photorque "
+                         "diagnose --guess writes");
 }
 
 // A single number beside a whole attitude or three rates contains nothing new.

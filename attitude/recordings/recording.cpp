@@ -115,7 +115,7 @@ class RecordingReader {
       : path_(path), options_(options), lines_(path) {}
 
   Recording read() {
-    if (is_aem(path_)) {
+    if (is_message(path_, "AEM")) {
       take_attitudes();
       finish();
       return std::move(recording_);
@@ -188,15 +188,20 @@ class RecordingReader {
   void read_header() {
     constexpr int max_preamble_lines = 10000;
     std::string_view line;
+    std::string first_line;
     for (int i = 0; i < max_preamble_lines && lines_.next(line); ++i) {
       if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
+      if (first_line.empty() && !line.starts_with("#")) first_line = trimmed(line);
       for (const char separator : {',', ';', '\t', ' '}) {
         if (take_header(line, separator)) return;
       }
       ++recording_.report.preamble_lines;
     }
-    throw InputError({path_.string(), 1}, "header", "no line that names t_s",
-                     "a header with t_s and the channels");
+    throw InputError({path_.string(), 1}, "header",
+                     "no line that names t_s (the first is " + in_quotes(first_line) + ")",
+                     "a header with t_s [s] and the channels, or [recording.columns] that says "
+                     "which column is which; photorque diagnose --guess " +
+                         path_.filename().string() + " writes one");
   }
 
   bool take_header(std::string_view line, char separator) {

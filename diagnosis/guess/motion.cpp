@@ -7,7 +7,7 @@
 #include "attitude/estimation/segments.h"
 #include "attitude/estimation/swing.h"
 #include "attitude/observation/noise_levels.h"
-#include "attitude/recordings/aem.h"
+#include "attitude/recordings/kvn.h"
 #include "attitude/recordings/columns.h"
 #include "attitude/recordings/named_columns.h"
 #include "core/constants.h"
@@ -313,7 +313,7 @@ void add_columns(TomlDocument& document, const std::vector<GuessedColumn>& colum
 
 // Throws InputError for a file without a time or without anything that moves.
 void require_motion(const fs::path& path, const std::vector<GuessedColumn>& columns) {
-  if (is_aem(path)) return;
+  if (is_message(path, "AEM")) return;
   const bool has_time = std::ranges::any_of(
       columns, [](const GuessedColumn& c) { return c.channel.starts_with("t_"); });
   if (has_time && has_motion(columns)) return;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "attitude/recordings/aem.h"
+#include "attitude/recordings/kvn.h"
 #include "attitude/recordings/named_columns.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/errors.h"
@@ -597,7 +597,8 @@ void refuse_wrong_units(const std::vector<ReadColumn>& columns, const InputLocat
 }  // namespace
 
 std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path) {
-  if (is_aem(path)) return {{"q_w", "q_w"}, {"q_x", "q_x"}, {"q_y", "q_y"}, {"q_z", "q_z"}};
+  if (is_message(path, "AEM"))
+    return {{"q_w", "q_w"}, {"q_x", "q_x"}, {"q_y", "q_y"}, {"q_z", "q_z"}};
   const FileHead head = head_of(path);
   const std::vector<ReadColumn> columns = read_columns(head);
   refuse_wrong_units(columns, {path.string(), head.line});
@@ -613,7 +614,7 @@ bool has_motion(const std::vector<GuessedColumn>& columns) {
 GuessedCurve guess_curve(const std::filesystem::path& path) {
   GuessedCurve curve;
   std::vector<size_t> voltages, currents;
-  if (is_aem(path)) return curve;
+  if (is_message(path, "AEM")) return curve;
   const FileHead head = head_of(path);
   std::vector<HeaderCell> cells;
   for (size_t place = 0; place < head.header.size(); ++place) {

@@ -311,8 +311,20 @@ Legend legend_of(const std::vector<Plot::Curve>& curves, double widest) {
   }
   if (legend.curves.empty()) return {};
   legend.width = std::min(widest, legend.width + legend_sample + 3.0 * legend_padding);
-  legend.height = legend_row * static_cast<double>(legend.curves.size()) + 1.2 * legend_padding;
+  legend.rows = legend.curves.size();
+  legend.height = legend_row * static_cast<double>(legend.rows) + 1.2 * legend_padding;
   return legend;
+}
+
+Legend in_columns(const Legend& legend, double room) {
+  if (legend.curves.empty()) return legend;
+  Legend wide = legend;
+  const size_t count = legend.curves.size();
+  const auto most = std::clamp<size_t>(static_cast<size_t>(room / legend.width), 1, count);
+  wide.rows = (count + most - 1) / most;
+  wide.width = legend.width * static_cast<double>((count + wide.rows - 1) / wide.rows);
+  wide.height = legend_row * static_cast<double>(wide.rows) + 1.2 * legend_padding;
+  return wide;
 }
 
 std::optional<PagePoint> free_corner(const ChartPanel& panel, const Legend& legend) {
@@ -332,8 +344,10 @@ std::optional<PagePoint> free_corner(const ChartPanel& panel, const Legend& lege
 void draw_legend(Canvas& canvas, const ChartPanel& panel, const Legend& legend,
                  const PagePoint& top_left) {
   canvas.fill(PageBox{top_left.x, top_left.y, legend.width, legend.height}, {1.0, 1.0, 1.0}, 0.85);
-  const double text_x = top_left.x + legend_sample + 2.0 * legend_padding;
-  const double room = top_left.x + legend.width - 0.5 * legend_padding - text_x;
+  const auto columns = static_cast<double>((legend.curves.size() + legend.rows - 1) / legend.rows);
+  const double column_width = legend.width / columns;
+  const double before_text = legend_sample + 2.0 * legend_padding;
+  const double room = column_width - 0.5 * legend_padding - before_text;
   TextStyle style = tick_style;
   style.level = TextLevel::middle;
   // All as small as the longest must be.
@@ -341,13 +355,15 @@ void draw_legend(Canvas& canvas, const ChartPanel& panel, const Legend& legend,
     style.size = std::min(style.size,
                           fitted_text(panel.curves[index].label, room, style, 8.0, 1).style.size);
   }
-  double y = top_left.y + 0.6 * legend_padding + 0.5 * legend_row;
-  for (const size_t index : legend.curves) {
+  for (size_t i = 0; i < legend.curves.size(); ++i) {
+    const size_t index = legend.curves[i];
+    const double x = top_left.x + column_width * static_cast<double>(i / legend.rows);
+    const double y = top_left.y + 0.6 * legend_padding +
+                     legend_row * (static_cast<double>(i % legend.rows) + 0.5);
     const Plot::Curve& curve = panel.curves[index];
-    draw_sample(canvas, curve, curve_stroke(curve, index), {top_left.x + legend_padding, y});
+    draw_sample(canvas, curve, curve_stroke(curve, index), {x + legend_padding, y});
     const TextBlock label = fitted_text(curve.label, room, style, 8.0, 1);
-    canvas.text(label.lines.front(), {text_x, y}, label.style);
-    y += legend_row;
+    canvas.text(label.lines.front(), {x + before_text, y}, label.style);
   }
 }
 

@@ -51,8 +51,11 @@ struct Legend {
   std::vector<size_t> curves;  // those with labels and points
   double width = 0.0;
   double height = 0.0;
+  size_t rows = 0;  // in one column, or more beside each other
 };
 Legend legend_of(const std::vector<Plot::Curve>& curves, double widest);
+// In as many columns as have room beside each other.
+Legend in_columns(const Legend& legend, double room);
 
 // A corner of the frame where the legend covers no curve: the top left of the legend there, or
 // nothing if every corner is taken.

@@ -160,6 +160,36 @@ std::vector<uint32_t> plain_pixels(const Map& map, const ColourScale& scale, int
   return pixels;
 }
 
+// Where a value is within two standard errors of zero.
+class UnsureArea {
+ public:
+  explicit UnsureArea(const Map& map) : map_(map), errors_(map) {
+    errors_.value = map.standard_error;
+  }
+  bool at(int column, int row, int columns, int rows) const {
+    const double error = value(errors_, column, row, columns, rows);
+    return error > 0.0 && std::abs(value(map_, column, row, columns, rows)) < 2.0 * error;
+  }
+
+ private:
+  static double value(const Map& of, int column, int row, int columns, int rows) {
+    if (!of.smooth) {
+      return mean_of(of, cells_under(column, columns, of.width),
+                     cells_under(rows - 1 - row, rows, of.height));
+    }
+    return smooth_value(of, (column + 0.5) * (of.width - 1) / columns,
+                        (rows - row - 0.5) * (of.height - 1) / rows);
+  }
+
+  const Map& map_;
+  Map errors_;
+};
+
+std::optional<UnsureArea> unsure_area(const Map& map) {
+  if (!map.signed_values || map.standard_error.empty()) return std::nullopt;
+  return UnsureArea(map);
+}
+
 }  // namespace
 
 std::vector<ContourLabel> contour_labels(const Map& map, const ColourScale& scale, int columns,
@@ -168,6 +198,7 @@ std::vector<ContourLabel> contour_labels(const Map& map, const ColourScale& scal
   const Ticks levels = contour_levels(scale);
   if (!map.smooth || levels.values.size() < 3) return labels;
   const SmoothField field(map, scale, columns, rows);
+  const std::optional<UnsureArea> unsure = unsure_area(map);
   const auto edge = static_cast<int>(0.6 * room);
   // Where a whole label has values around it.
   const auto is_inside = [&](int column, int row) {
@@ -205,6 +236,7 @@ std::vector<ContourLabel> contour_labels(const Map& map, const ColourScale& scal
         const double slope = std::hypot(right, down);
         if (!(std::abs(here - level) < 1.5 * slope) || slope >= least_slope) continue;
         if (distance_to_others(column, row) < 2.0 * room) continue;
+        if (unsure && unsure->at(column, row, columns, rows)) continue;
         least_slope = slope;
         // Along the line, the letters upright.
         double turn = std::atan2(right, down);
@@ -228,22 +260,12 @@ bool is_unsure(const Map& map, size_t bin) {
 std::vector<uint32_t> map_pixels(const Map& map, const ColourScale& scale, int columns, int rows) {
   std::vector<uint32_t> pixels = map.smooth ? smooth_pixels(map, scale, columns, rows)
                                             : plain_pixels(map, scale, columns, rows);
-  if (!map.signed_values || map.standard_error.empty()) return pixels;
-  Map errors = map;
-  errors.value = map.standard_error;
+  const std::optional<UnsureArea> unsure = unsure_area(map);
+  if (!unsure) return pixels;
   for (int row = 0; row < rows; ++row) {
-    const Cells map_rows = cells_under(rows - 1 - row, rows, map.height);
     for (int column = 0; column < columns; ++column) {
-      const auto at = [&](const Map& of) {
-        if (!of.smooth) return mean_of(of, cells_under(column, columns, of.width), map_rows);
-        return smooth_value(of, (column + 0.5) * (of.width - 1) / columns,
-                            (rows - row - 0.5) * (of.height - 1) / rows);
-      };
       uint32_t& pixel = pixels[static_cast<size_t>(row) * columns + column];
-      const double error = at(errors);
-      if (pixel != 0u && error > 0.0 && std::abs(at(map)) < 2.0 * error) {
-        pixel = opaque(unsure_grey);
-      }
+      if (pixel != 0u && unsure->at(column, row, columns, rows)) pixel = opaque(unsure_grey);
     }
   }
   return pixels;

@@ -104,16 +104,17 @@ double usual_height(const std::vector<Plot::Panel>& panels, double scale) {
 
 constexpr double smallest_name = 7.5;  // points
 
-// Whether every word of the names fits under its bar.
-bool words_fit(const std::vector<Plot::Curve>& curves, double room, TextStyle style) {
-  style.size = smallest_name;
-  return std::ranges::all_of(curves, [&](const Plot::Curve& curve) {
+// The largest style in which every word of the names fits under its bar; nothing: none does.
+std::optional<TextStyle> style_of_words(const std::vector<Plot::Curve>& curves, double room,
+                                        TextStyle style) {
+  double widest = 0.0;
+  for (const Plot::Curve& curve : curves) {
     std::istringstream words(curve.label);
-    for (std::string word; words >> word;) {
-      if (text_width(word, style) > room) return false;
-    }
-    return true;
-  });
+    for (std::string word; words >> word;) widest = std::max(widest, text_width(word, style));
+  }
+  constexpr double rounding = 0.99;
+  if (widest > rounding * room) style.size *= rounding * room / widest;
+  return style.size >= smallest_name ? std::optional(style) : std::nullopt;
 }
 
 // The names under bars, each in the room of its bar; upright where words are wider than that.
@@ -121,7 +122,9 @@ std::vector<TextBlock> names_of(const ChartPanel& panel) {
   if (!names_stand_under_bars(panel.curves)) return {};
   TextStyle style = tick_style;
   const double room = panel.frame.width / (panel.x.range.high - panel.x.range.low) - 6.0;
-  const bool fits = words_fit(panel.curves, room, style);
+  const std::optional<TextStyle> of_words = style_of_words(panel.curves, room, style);
+  const bool fits = of_words.has_value();
+  if (fits) style = *of_words;
   style.align = fits ? TextAlign::centre : TextAlign::right;
   style.turn_rad = fits ? 0.0 : quarter_turn_rad;
   constexpr double longest = 130.0;
@@ -313,7 +316,15 @@ PlotLayout plot_layout(const Plot& plot, const PlotRoom& room) {
       legend_width = std::max(legend_width, layout.legends[i].width);
     }
   }
-  if (legend_width > 0.0) place(legend_width);
+  constexpr double most_beside = 0.36;  // of the room, so that curves keep their width
+  if (layout.panels.size() == 1 && legend_width > most_beside * (room.right - room.left)) {
+    Legend& legend = layout.legends.front();
+    legend = in_columns(legend, room.right - room.left);
+    layout.below = PagePoint{room.left, layout.bottom + 6.0};
+    layout.bottom = layout.below->y + legend.height;
+  } else if (legend_width > 0.0) {
+    place(legend_width);
+  }
   return layout;
 }
 
@@ -331,6 +342,10 @@ void draw_plot(Canvas& canvas, const Plot& plot, const PlotLayout& layout) {
     if (i + 1 == layout.panels.size()) draw_horizontal_axis(canvas, panel.frame, panel.x);
     draw_names(canvas, panel);
     if (layout.legends[i].curves.empty()) continue;
+    if (layout.below) {
+      draw_legend(canvas, panel, layout.legends[i], *layout.below);
+      continue;
+    }
     const PagePoint outside{panel.frame.right() + 6.0, panel.frame.y};
     draw_legend(canvas, panel, layout.legends[i],
                 free_corner(panel, layout.legends[i]).value_or(outside));

@@ -1,6 +1,7 @@
 // Line charts and bar charts.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/product.h"
@@ -26,9 +27,10 @@ struct PlotRoom {
 
 struct PlotLayout {
   std::vector<ChartPanel> panels;
-  std::vector<Legend> legends;  // of every panel
-  double axis_width = 0.0;      // left of the frames
-  double bottom = 0.0;          // of the x axis and its label
+  std::vector<Legend> legends;     // of every panel
+  double axis_width = 0.0;         // left of the frames
+  double bottom = 0.0;             // of the x axis and its label, or of a legend below them
+  std::optional<PagePoint> below;  // top left of such a legend
 };
 
 // All pairs of axes of a plot, from the top.

@@ -194,7 +194,7 @@ TEST(Aem, XmlSaysTheSameAsKeywords) {
       "<quaternionRate><QC_DOT units=\"1/s\">0</QC_DOT><Q1_DOT>0</Q1_DOT><Q2_DOT>0</Q2_DOT>"
       "<Q3_DOT>0</Q3_DOT></quaternionRate></quaternionDerivative></attitudeState>\n"
       "</data></segment></body></aem>\n");
-  EXPECT_TRUE(is_aem(xml.path()));
+  EXPECT_TRUE(is_message(xml.path(), "AEM"));
   const auto attitudes = aem_attitudes(xml.path());
   ASSERT_EQ(attitudes.size(), 1u);
   EXPECT_LT(attitudes[0].lab_from_body.angularDistance(Quat(0.8, 0, 0.6, 0)), 1e-15);
@@ -202,7 +202,7 @@ TEST(Aem, XmlSaysTheSameAsKeywords) {
   const TemporaryFile torn("<?xml version=\"1.0\"?>\n<aem version=\"1.0\">\n<header>\n");
   EXPECT_THROW(read_aem(torn.path()), InputError);
   const TemporaryFile other("<?xml version=\"1.0\"?>\n<opm version=\"1.0\"/>\n");
-  EXPECT_FALSE(is_aem(other.path()));
+  EXPECT_FALSE(is_message(other.path(), "AEM"));
 }
 
 TEST(Aem, ScalarFirstAndDirectionAreHeeded) {

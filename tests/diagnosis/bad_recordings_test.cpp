@@ -35,9 +35,15 @@ std::string refusal_of(const Recording& recording) {
 TEST(BadRecording, WithoutAttitudeNamesTheMissingChannel) {
   const Recording currents = repeated_row("t_s,battery_current_A", "0.1", 100);
   EXPECT_EQ(refusal_of(currents),
-            "run.csv: header: found no channel q_w and no gyro, expected the attitude q_w, q_x, "
-            "q_y, q_z or roll_rad, pitch_rad, yaw_rad; or gyro_x_rad_s, gyro_y_rad_s, "
-            "gyro_z_rad_s; or any of tilt_rad, yaw_rad, rate_magnitude_rad_s");
+            "run.csv: header: found neither an angle nor a rate (the columns battery_current_A), "
+            "expected q_w, q_x, q_y, q_z or roll_rad, pitch_rad, yaw_rad; gyro_x_rad_s …; "
+            "tilt_rad, rate_magnitude_rad_s; or [recording.columns], which photorque diagnose "
+            "--guess writes");
+  // A name without its unit.
+  EXPECT_NE(refusal_of(repeated_row("t_s,yaw", "0.1", 100)).find("yaw_deg or yaw_rad"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(repeated_row("t_s,gyro_x", "0.1", 100)).find("gyro_x_deg_s"),
+            std::string::npos);
   const Recording three = repeated_row("t_s,q_w,q_x,q_y", "1,0,0", 100);
   EXPECT_NE(refusal_of(three).find("no channel q_z"), std::string::npos);
 }

@@ -1,11 +1,11 @@
 """A co-simulation unit as an importer meets it: unpacked with Python's zipfile, its description
-compared with the rules of FMI 3.0, its library driven through ctypes by the signatures of the
+compared with the rules of FMI 3.0 (and 2.0), its library driven through ctypes by the signatures of the
 standard. What it gives is what `propagate` writes for the same commands, to the bit.
 
     check.py PROGRAM
 
 Source of the rules: Functional Mock-up Interface Specification 3.0 (10 May 2022), of the
-Modelica Association: its chapters 2 (common) and 4 (co-simulation).
+Modelica Association: its chapters 2 (common) and 4 (co-simulation); likewise version 2.0.4 (1 December 2022).
 """
 
 import csv
@@ -102,6 +102,17 @@ GetNumberOfEventIndicators GetNumberOfContinuousStates EnterStepMode GetOutputDe
 """.split()}
 
 
+# The functions of FMI 2.0: its sections 2.1 (common), 3.2 (model exchange) and 4.2 (co-simulation).
+FUNCTIONS |= {f"fmi2{verb}{kind}" for verb in ("Get", "Set") for kind in ("Real", "Integer", "Boolean", "String")}
+FUNCTIONS |= {"fmi2" + name for name in """
+GetTypesPlatform GetVersion SetDebugLogging Instantiate FreeInstance SetupExperiment EnterInitializationMode
+ExitInitializationMode Terminate Reset GetFMUstate SetFMUstate FreeFMUstate SerializedFMUstateSize SerializeFMUstate
+DeSerializeFMUstate GetDirectionalDerivative EnterEventMode NewDiscreteStates EnterContinuousTimeMode CompletedIntegratorStep
+SetTime SetContinuousStates GetDerivatives GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates
+SetRealInputDerivatives GetRealOutputDerivatives DoStep CancelStep GetStatus GetRealStatus GetIntegerStatus GetBooleanStatus
+GetStringStatus""".split()}
+
+
 def check_exports(library):
     """The library exports the standard's functions and nothing else, and holds no further symbols."""
     listed = subprocess.run(["nm", "-D", "--defined-only", library], capture_output=True, text=True, check=True).stdout
@@ -172,7 +183,55 @@ def check_description(text):
     return root, variables
 
 
+def check_description2(text):
+    """modelDescription.xml by the rules of FMI 2.0 (its section 2.2 and the schemas that it prints)."""
+    root = ElementTree.fromstring(text)
+    expect(root.tag == "fmiModelDescription" and root.get("fmiVersion") == "2.0", "the root of FMI 2.0")
+    expect(root.get("modelName") and root.get("guid"), "modelName and guid")
+    expect(set(root.keys()) <= {"fmiVersion", "modelName", "guid", "description", "author", "version", "copyright", "license",
+                                "generationTool", "generationDateAndTime", "variableNamingConvention",
+                                "numberOfEventIndicators"}, f"attributes {root.keys()}")
+    order = ["ModelExchange", "CoSimulation", "UnitDefinitions", "TypeDefinitions", "LogCategories", "DefaultExperiment",
+             "VendorAnnotations", "ModelVariables", "ModelStructure"]
+    tags = [child.tag for child in root]
+    expect(tags == sorted(set(tags), key=order.index), f"elements {tags}")
+    kind = root.find("CoSimulation")
+    expect(kind.get("modelIdentifier", "").isidentifier(), "modelIdentifier")
+    expect(set(kind.keys()) <= {"modelIdentifier", "needsExecutionTool", "canHandleVariableCommunicationStepSize",
+                                "canInterpolateInputs", "maxOutputDerivativeOrder", "canRunAsynchronuously",
+                                "canBeInstantiatedOnlyOncePerProcess", "canNotUseMemoryManagementFunctions",
+                                "canGetAndSetFMUstate", "canSerializeFMUstate", "providesDirectionalDerivative"},
+           f"attributes {kind.keys()}")
+    units = {unit.get("name") for unit in root.find("UnitDefinitions")}
+    outputs, names = [], set()
+    for index, one in enumerate(root.find("ModelVariables"), 1):
+        expect(one.tag == "ScalarVariable" and len(one) == 1 and one[0].tag in ("Real", "Boolean"), one.get("name"))
+        expect(set(one.keys()) <= {"name", "valueReference", "description", "causality", "variability", "initial"},
+               f"attributes {one.keys()}")
+        expect(one.get("name") not in names, f"two variables {one.get('name')}")
+        names.add(one.get("name"))
+        causality, has_start = one.get("causality"), one[0].get("start") is not None
+        expect(has_start == (causality == "input"), f"start of {one.get('name')}")  # table of section 2.2.7
+        expect(one.get("initial") == ("calculated" if causality == "output" else None), f"initial of {one.get('name')}")
+        expect(one[0].tag == "Real" or one.get("variability") == "discrete", f"{one.get('name')} cannot be continuous")
+        expect(one[0].get("unit") is None or one[0].get("unit") in units, f"unit of {one.get('name')}")
+        if causality == "output":
+            outputs.append(str(index))
+    for name in ("Outputs", "InitialUnknowns"):
+        listed = root.find("ModelStructure").find(name)
+        expect([one.get("index") for one in listed] == outputs, f"{name} of the structure")
+    return root
+
+
 Log = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_char_p)
+Log2 = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_char_p)
+
+
+class Callbacks2(ctypes.Structure):
+    _fields_ = [("logger", Log2), ("allocate", ctypes.c_void_p), ("free", ctypes.c_void_p), ("finished", ctypes.c_void_p),
+                ("environment", ctypes.c_void_p)]
+
+
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 
 
@@ -225,6 +284,94 @@ class Unit:
         status = self.call("fmi3DoStep", ctypes.c_double(time), ctypes.c_double(length), ctypes.c_bool(False),
                            *(ctypes.byref(flag) for flag in flags), ctypes.byref(reached))
         return status, flags[1].value, reached.value
+
+
+class Unit2:
+    """An unpacked unit of FMI 2.0, by the signatures of its standard; used as Unit is."""
+
+    def __init__(self, folder, guid=None, kind=1, location=None):
+        self.root = ElementTree.parse(folder / "modelDescription.xml").getroot()
+        self.reference = {one.get("name"): int(one.get("valueReference")) for one in self.root.find("ModelVariables")}
+        self.shared_object = ctypes.CDLL(str(folder / "binaries" / "linux64" / "photorque.so"))
+        for name, result in (("GetVersion", ctypes.c_char_p), ("GetTypesPlatform", ctypes.c_char_p), ("Instantiate", ctypes.c_void_p)):
+            getattr(self.shared_object, "fmi2" + name).restype = result
+        self.said = []
+        self.callbacks = Callbacks2(logger=Log2(
+            lambda _, name, status, category, message: self.said.append((status, category.decode(), message.decode()))))
+        self.handle = self.shared_object.fmi2Instantiate(
+            b"one", kind, (guid or self.root.get("guid")).encode(), (location or (folder / "resources").as_uri()).encode(),
+            ctypes.byref(self.callbacks), 0, 1)
+
+    call = Unit.call
+
+    def initialise(self, start=0.5, stop=2.0):
+        status = self.call("fmi2SetupExperiment", 0, ctypes.c_double(0), ctypes.c_double(start), 1, ctypes.c_double(stop))
+        expect(status == OK and self.call("fmi2EnterInitializationMode") == OK, f"initialisation: {self.said}")
+        expect(self.call("fmi2ExitInitializationMode") == OK, "end of initialisation")
+
+    def references(self, names):
+        return (ctypes.c_uint * len(names))(*(self.reference[name] for name in names)), ctypes.c_size_t(len(names))
+
+    def get(self, names):
+        values = (ctypes.c_double * len(names))()
+        expect(self.call("fmi2GetReal", *self.references(names), values) == OK, f"fmi2GetReal {names}")
+        return list(values)
+
+    def flag(self, name):
+        values = (ctypes.c_int * 1)()
+        expect(self.call("fmi2GetBoolean", *self.references([name]), values) == OK, name)
+        return bool(values[0])
+
+    def command(self, torque):
+        names = [f"command_{axis}_N_m" for axis in "xyz"]
+        return self.call("fmi2SetReal", *self.references(names), (ctypes.c_double * 3)(*torque))
+
+    def step(self, time, length):
+        status = self.call("fmi2DoStep", ctypes.c_double(time), ctypes.c_double(length), 1)
+        ended, reached = ctypes.c_int(), ctypes.c_double()
+        self.call("fmi2GetBooleanStatus", 3, ctypes.byref(ended))  # fmi2Terminated
+        self.call("fmi2GetRealStatus", 2, ctypes.byref(reached))  # fmi2LastSuccessfulTime
+        return status, bool(ended.value), reached.value
+
+
+def check_version2(folder, rows):
+    check_description2((folder / "modelDescription.xml").read_text(encoding="utf-8"))
+    check_exports(folder / "binaries" / "linux64" / "photorque.so")
+    unit = Unit2(folder)
+    expect(unit.handle, f"instantiation of FMI 2.0: {unit.said}")
+    expect(unit.shared_object.fmi2GetVersion() == b"2.0" and unit.shared_object.fmi2GetTypesPlatform() == b"default", "versions")
+    expect(unit.step(0.5, 0.1)[0] == ERROR, "a step before initialisation")
+    unit.initialise()
+    expect(drive(unit, 60) == rows[:60] + [(*rows[60][:2], None, rows[60][3])], "FMI 2.0 gives what FMI 3.0 gives")
+    state, size, again = ctypes.c_void_p(), ctypes.c_size_t(), ctypes.c_void_p()
+    expect(unit.call("fmi2GetFMUstate", ctypes.byref(state)) == OK, "fmi2GetFMUstate")
+    on = drive(unit, 15, first=60)
+    expect(unit.call("fmi2SerializedFMUstateSize", state, ctypes.byref(size)) == OK, "size of a state")
+    stored = (ctypes.c_char * size.value)()
+    expect(unit.call("fmi2SerializeFMUstate", state, stored, size) == OK, "fmi2SerializeFMUstate")
+    expect(unit.call("fmi2DeSerializeFMUstate", stored, size, ctypes.byref(again)) == OK, "fmi2DeSerializeFMUstate")
+    expect(unit.call("fmi2SetFMUstate", again) == OK and drive(unit, 15, first=60) == on, "the run after a state was set")
+    for held in (state, again):
+        expect(unit.call("fmi2FreeFMUstate", ctypes.byref(held)) == OK and held.value is None, "fmi2FreeFMUstate")
+    expect(unit.command([0.06, 0, 0]) == DISCARD, "a torque too large")
+    for name in ("fmi2GetInteger", "fmi2SetTime", "fmi2GetDerivatives", "fmi2CancelStep"):
+        expect(unit.call(name) == ERROR and name in unit.said[-1][2], f"{name} is not offered")
+    expect(unit.call("fmi2Terminate") == OK and unit.call("fmi2Reset") == OK, "fmi2Reset")
+    unit.initialise()
+    unit.command([0.05, 0.0, 0.0])
+    status, ended, reached = unit.step(0.5, 1.5)  # the stop of the bearing
+    expect(status == DISCARD and ended and 0.5 < reached < 2.0, f"the stop at 6 deg: {status} {ended} {reached}")
+    unit.call("fmi2FreeInstance")
+    spaced = folder.parent / "a folder with 100% spaces"
+    spaced.symlink_to(folder)
+    unit = Unit2(spaced)
+    expect(unit.handle, f"a location with escapes: {unit.said}")
+    unit.call("fmi2FreeInstance")
+    expect(Unit2(folder, location="file:" + str(folder / "resources")).handle, "a location with one slash")
+    for stranger in (Unit2(folder, guid="{of 100% another}"), Unit2(folder, kind=0), Unit2(folder, location="file:///nowhere")):
+        expect(stranger.handle is None and stranger.said and stranger.said[0][0] == ERROR, "what cannot be instantiated")
+    # Messages are formats of printf.
+    expect("100%% another" in Unit2(folder, guid="{of 100% another}").said[0][2], "the percent sign of a message")
 
 
 READINGS = ["q_w", "q_x", "q_y", "q_z", "gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"]
@@ -376,6 +523,10 @@ with tempfile.TemporaryDirectory() as name:
             expect(len(slower) == 81 and slower[0] == rows[0] and slower[-1][1] != rows[-1][1], "steps of three ticks")
             check_states(folder)
             check_refusals(folder)
+            run("fmu", experiment, "--fmi", "2", "--out", place / "version2", "--quiet")
+            with zipfile.ZipFile(place / "version2" / "platform.fmu") as archive:
+                archive.extractall(place / "version2_unpacked")
+            check_version2(place / "version2_unpacked", rows)
 
 for failure in failures[:20]:
     print("wrong:", failure)

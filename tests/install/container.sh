@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The steps of Containerfile as far as they go without a builder of containers: its RUN lines are those of
-# tools/container, and the package that they make holds the program with all that it needs.
+# The Debian package holds the program with all that it needs, and Containerfile installs it by the step of
+# tools/container. The image itself: image.sh.
 #   container.sh BUILD_FOLDER SOURCE_FOLDER
 set -euo pipefail
 build="$1"
@@ -10,10 +10,10 @@ trap 'rm -rf "$place"' EXIT
 
 echo "== Containerfile"
 grep '^RUN ' "$source/Containerfile" | tee "$place/steps"
-[[ "$(grep -cE '^RUN /(source/tools|package)/container (build|install) ' "$place/steps")" -eq "$(wc -l <"$place/steps")" ]]
+[[ "$(grep -cE '^RUN /package/container install ' "$place/steps")" -eq "$(wc -l <"$place/steps")" ]]
 bash -n "$source/tools/container"
 if "$source/tools/container" nothing 2>"$place/said"; then exit 1; fi
-for step in build pack install; do grep -q "tools/container $step " "$place/said"; done
+for step in pack install image; do grep -q "tools/container $step " "$place/said"; done
 
 echo "== Package"
 ln -s "$build"/* "$place/" # packed beside the build, not in it

@@ -48,6 +48,50 @@ double value(const json& summary, const std::string& name) {
   return summary.at(name).at("value").get<double>();
 }
 
+// A satellite at rest above a place on the equator, from ten seconds after the first state of its
+// orbit on: by the epoch of the attitude.
+TEST_F(AttitudeCommands, PropagatesInAnOrbitFromMessages) {
+  for (const char* name : {"states.oem", "attitude.apm"}) {
+    fs::copy_file(source / "tests/data/keys" / name, at(name));
+  }
+  const std::string experiment = write("sat.toml", R"([platform]
+topology = "free"
+mass_kg = 8.0
+inertia_kg_m2 = [[0.11, 0, 0], [0, 0.12, 0], [0, 0, 0.19]]
+[[disturbance]]
+kind = "orbit"
+ephemeris = "states.oem"
+[[disturbance]]
+kind = "gravity_gradient"
+[propagate]
+duration_s = 60
+initial_apm = "attitude.apm"
+)");
+  const Outcome got = run("propagate " + experiment + " --out " + at("o"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  const auto all = files("o");
+  EXPECT_THAT(all.at("attitude.aem"), HasSubstr("START_TIME      = 2026-01-01T00:00:10"));
+  EXPECT_THAT(all.at("time_history.csv"), HasSubstr("\n0,0.8,0.6,0,0,"));
+  EXPECT_THAT(all.at("summary.json"), HasSubstr("states.oem"));
+  const auto refusal = [&](const std::string& setting) {
+    const Outcome refused = run("propagate " + experiment + " --set " + setting);
+    EXPECT_EQ(refused.status, 2) << refused.out;
+    return refused.err;
+  };
+  EXPECT_THAT(refusal("propagate.duration_s=400"),
+              HasSubstr("an end 110 s after the ephemeris, expected a run between "
+                        "2026-01-01T00:00:00.000000 and 2026-01-01T00:05:00.000000 UTC"));
+  EXPECT_THAT(refusal("propagate.epoch=\\\"2026-01-01T00:04:30\\\""), HasSubstr("an end 30 s"));
+  EXPECT_THAT(refusal("propagate.initial_time_s=-20"), HasSubstr("a start 10 s before"));
+  EXPECT_THAT(refusal("propagate.initial_apm=states.oem"), HasSubstr("CCSDS_APM_VERS"));
+  EXPECT_THAT(refusal("disturbance[0].ephemeris=absent.oem"), HasSubstr("absent.oem"));
+  // Stated keys take precedence, and a budget stands in the same orbit.
+  const Outcome stated = run("propagate " + experiment +
+                             " --set propagate.initial_attitude=[1,0,0,0] --out " + at("p"));
+  EXPECT_THAT(files("p").at("time_history.csv"), HasSubstr("\n0,1,0,0,0,")) << stated.err;
+  EXPECT_EQ(run("budget " + experiment + " --out " + at("b")).status, 0);
+}
+
 TEST_F(AttitudeCommands, PropagateWritesWhatTheContractNames) {
   const Outcome got =
       run("propagate " + stasis + " --set propagate.duration_s=30 --out " + at("o"));

@@ -179,11 +179,32 @@ TEST_F(CheckCommand, NewWritesWhatRuns) {
   EXPECT_EQ(file_text(free), before);
 }
 
-TEST_F(CheckCommand, NewOfAPlatformTakesNoKeys) {
-  const Outcome got = run("new " + at("lab.toml") + " --set platform.mass_kg=20");
-  EXPECT_EQ(got.status, 2);
-  EXPECT_THAT(got.err, HasSubstr("platform.mass_kg=20"));
-  EXPECT_FALSE(std::filesystem::exists(at("lab.toml")));
+// Any key, in place and beside its comment; a misspelt one is refused and nothing is written.
+TEST_F(CheckCommand, NewTakesKeys) {
+  const Outcome got = run("new " + at("lab.toml") +
+                          " --set platform.mass_g=20000 --set propagate.output_rate_Hz=5");
+  ASSERT_EQ(got.status, 0) << got.err;
+  const std::string text = file_text(at("lab.toml"));
+  EXPECT_THAT(text, HasSubstr("mass_g = 20000"));
+  EXPECT_THAT(text, Not(HasSubstr("mass_kg")));
+  EXPECT_THAT(text, HasSubstr("# dumbbell | tabletop | hollow | free (a spacecraft)"));
+  EXPECT_LT(text.find("[platform]"), text.find("mass_g"));
+  EXPECT_LT(text.find("mass_g"), text.find("[environment]"));
+  EXPECT_LT(text.find("[propagate]"), text.find("output_rate_Hz = 5"));
+  const Outcome wrong = run("new " + at("other.toml") + " --set platform.mas_kg=20");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("perhaps \"mass_kg\""));
+  EXPECT_FALSE(std::filesystem::exists(at("other.toml")));
+}
+
+// The size of the model shows a wrong unit.
+TEST_F(CheckCommand, NewStatesTheSizeOfTheModel) {
+  write("plate.obj", "v 0 0 0\nv 200 0 0\nv 200 100 0\nv 0 100 0\nf 1 2 3 4\n");
+  const Outcome got = run("new " + at("plate.toml") + " --scene " + at("plate.obj") +
+                          " --set scene.unit=cm --set trace.rays=4096");
+  ASSERT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, HasSubstr("Size of plate.obj: 2 × 1 × 0 m"));
+  EXPECT_THAT(file_text(at("plate.toml")), HasSubstr("rays = 4096"));
 }
 
 // A narrow lamp over the origin would miss a part that stands aside.

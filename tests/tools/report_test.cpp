@@ -77,6 +77,22 @@ std::string unbalanced(const std::string& whole_page) {
 }
 
 // In the order of the places, v upwards.
+// The part that was held out belongs to its recording, which is called by the name of its file.
+TEST(Report, NamesEveryRecordingOnceByItsFile) {
+  Diagnosis d = sample_diagnosis();
+  RecordingSeries fitted = d.series.front(), held = d.series.front();
+  fitted.recording = held.recording = "/home/someone/lab/run7.csv";
+  fitted.held_out_s.clear();
+  held.is_held_out = true;
+  for (ChannelSeries& channel : held.channels) {
+    for (double& time_s : channel.time_s) time_s += 1e4;
+  }
+  d.series = {fitted, held};
+  const std::string page = report(d);
+  EXPECT_EQ(occurrences(page, "<h3>run7.csv</h3>"), 1u);
+  EXPECT_THAT(page, Not(HasSubstr("/home/someone")));
+}
+
 TEST(Report, ShowsScansBesideTheirModels) {
   const Diagnosis d = diagnosis_of_light();
   const std::string page = report(d);

@@ -1,9 +1,12 @@
-// An instance of the unit, as an importer holds it.
+// An instance of the unit, as an importer holds it: what the functions of FMI 2.0 and 3.0 do.
 #pragma once
 
 #include <exception>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "tools/fmi/standard.h"
 #include "tools/fmi/unit.h"
@@ -15,48 +18,77 @@ namespace photorque::fmi {
 
 enum class Mode { instantiated, initialization, step, terminated };
 
-struct Instance {
-  fmi3InstanceEnvironment environment = nullptr;
-  fmi3LogMessageCallback log = nullptr;
-  bool tells_events = false;
-  Mode mode = Mode::instantiated;
-  UnitDescription description;
-  std::unique_ptr<CoSimulation> run;
-  Vec3 command_body_N_m = Vec3::Zero();
-  double now_s = 0.0, start_s = 0.0, stop_s = 0.0;
+using LogSink = std::function<void(fmi3Status status, const char* category, const char* message)>;
 
-  void say(fmi3Status status, const char* category, const std::string& message) const {
-    if (log != nullptr) log(environment, status, category, message.c_str());
-  }
-  fmi3Status refuse(const std::string& message) const {
-    say(fmi3Error, "logStatusError", message);
-    return fmi3Error;
-  }
-  void tell_words() {
-    for (const std::string& line : run->take_words()) {
-      if (tells_events && !line.empty()) say(fmi3OK, "logEvents", line);
-    }
-  }
+// A state is the list of commands: the run is recomputed to its time.
+struct UnitState {
+  Mode mode = Mode::instantiated;
+  double now_s = 0.0, start_s = 0.0, stop_s = 0.0;
+  Vec3 command_body_N_m = Vec3::Zero();
+  std::vector<Vec3> commands;
+
+  // Mode, three times, the command, then every command so far; doubles of this machine.
+  std::vector<double> numbers() const;
+  // Null where these bytes are no state.
+  static std::unique_ptr<UnitState> from(const void* bytes, size_t size);
+};
+
+class Instance {
+ public:
+  // `resources`: the folder of that name in the unit. InputError and NumericalError for a wrong
+  // token and an experiment that cannot run.
+  Instance(const std::string& resources, const std::string& token, bool tells_events, LogSink log);
+
+  fmi3Status enter_initialization(double start_s, std::optional<double> stop_s);
+  fmi3Status exit_initialization();
+  fmi3Status terminate();
+  fmi3Status reset();
+  // `ended`: the platform has reached its stop, at now_s().
+  fmi3Status step(double now_s, double step_s, bool& ended);
+  fmi3Status get_numbers(std::span<const uint32_t> references, double* values) const;
+  fmi3Status set_numbers(std::span<const uint32_t> references, const double* values);
+  // Null, and a message, where no flag has the reference.
+  const bool* flag(uint32_t reference) const;
+  UnitState state() const;
+  fmi3Status set_state(const UnitState& state);
+
+  const UnitDescription& description() const { return description_; }
+  double now_s() const { return now_s_; }
+  void set_debug_logging(bool on, size_t count, const char* const categories[]);
+  fmi3Status refuse(const std::string& message) const;
+  // No further step is possible.
+  void give_up() { mode_ = Mode::terminated; }
+
+ private:
+  void say(fmi3Status status, const char* category, const std::string& message) const;
+  void tell_words();
+  // Restarts the run and follows `commands`.
+  fmi3Status begin(std::vector<Vec3> commands);
+
+  LogSink log_;
+  bool tells_events_ = false;
+  Mode mode_ = Mode::instantiated;
+  UnitDescription description_;
+  std::unique_ptr<CoSimulation> run_;
+  Vec3 command_body_N_m_ = Vec3::Zero();
+  double now_s_ = 0.0, start_s_ = 0.0, stop_s_ = 0.0;
 };
 
 // Exceptions may not leave the unit.
 template <typename Body>
-fmi3Status guarded(fmi3Instance handle, const char* function, Body body) {
+fmi3Status guarded(void* handle, const char* function, Body body) {
   auto* instance = static_cast<Instance*>(handle);
   if (instance == nullptr) return fmi3Error;
   try {
     return body(*instance);
   } catch (const std::exception& error) {
-    instance->mode = Mode::terminated;
+    instance->give_up();
     return instance->refuse(std::string(function) + ": " + error.what());
   }
 }
 
-// Restarts the run and follows `commands`.
-inline fmi3Status begin(Instance& instance, std::vector<Vec3> commands) {
-  instance.run->begin(instance.start_s, instance.stop_s, std::move(commands));
-  instance.tell_words();
-  return fmi3OK;
-}
+// A new instance; null, and a message to `log`, where it cannot be made. Null arguments are errors.
+Instance* instantiate(const char* function, const char* name, const char* token,
+                      const char* resources, bool tells_events, const LogSink& log);
 
 }  // namespace photorque::fmi

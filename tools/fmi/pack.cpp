@@ -95,28 +95,69 @@ void append_structure(pugi::xml_node root, const UnitDescription& unit) {
   }
 }
 
-// modelDescription.xml: `name` of the model, `token` that a unit is instantiated with, `tool` that
-// made it.
-std::string model_description(const UnitDescription& unit, const std::string& name,
-                              const std::string& token, const std::string& tool) {
+// Variables of FMI 2.0, where the type is an element within.
+void append_variable2(pugi::xml_node variables, const UnitVariable& variable,
+                      const UnitDescription& unit) {
+  using Kind = UnitVariable::Kind;
+  const bool is_flag = variable.kind == Kind::flag;
+  pugi::xml_node element = variables.append_child("ScalarVariable");
+  set_attribute(element, "name", variable.name);
+  set_attribute(element, "valueReference", std::to_string(variable.reference));
+  set_attribute(element, "description", variable.meaning);
+  const char* causality = variable.kind == Kind::time    ? "independent"
+                          : variable.kind == Kind::input ? "input"
+                                                         : "output";
+  set_attribute(element, "causality", causality);
+  set_attribute(element, "variability", is_flag ? "discrete" : "continuous");
+  if (causality == std::string_view("output")) set_attribute(element, "initial", "calculated");
+  pugi::xml_node type = element.append_child(is_flag ? "Boolean" : "Real");
+  if (!variable.unit.empty()) set_attribute(type, "unit", variable.unit);
+  if (variable.kind == Kind::input) {
+    set_attribute(type, "min", -unit.max_torque_N_m);
+    set_attribute(type, "max", unit.max_torque_N_m);
+    set_attribute(type, "start", 0.0);
+  }
+}
+
+// Outputs as places among the variables, from 1; they depend on no input at a tick.
+void append_structure2(pugi::xml_node root, const UnitDescription& unit) {
+  pugi::xml_node structure = root.append_child("ModelStructure");
+  for (const char* name : {"Outputs", "InitialUnknowns"}) {
+    pugi::xml_node list = structure.append_child(name);
+    for (size_t i = 0; i < unit.variables.size(); ++i) {
+      const UnitVariable::Kind kind = unit.variables[i].kind;
+      if (kind != UnitVariable::Kind::output && kind != UnitVariable::Kind::flag) continue;
+      pugi::xml_node element = list.append_child("Unknown");
+      set_attribute(element, "index", std::to_string(i + 1));
+      set_attribute(element, "dependencies", "");
+    }
+  }
+}
+
+// modelDescription.xml of this version of FMI: `name` of the model, `token` that a unit is
+// instantiated with, `tool` that made it.
+std::string model_description(FmiVersion version, const UnitDescription& unit,
+                              const std::string& name, const std::string& token,
+                              const std::string& tool) {
+  const bool is_2 = version == FmiVersion::two;
   pugi::xml_document document;
   pugi::xml_node declaration = document.append_child(pugi::node_declaration);
   set_attribute(declaration, "version", "1.0");
   set_attribute(declaration, "encoding", "UTF-8");
   pugi::xml_node root = document.append_child("fmiModelDescription");
-  set_attribute(root, "fmiVersion", "3.0");
+  set_attribute(root, "fmiVersion", is_2 ? "2.0" : "3.0");
   set_attribute(root, "modelName", name);
-  set_attribute(root, "instantiationToken", token);
+  set_attribute(root, is_2 ? "guid" : "instantiationToken", token);
   set_attribute(root, "description",
                 "A free-floating platform under its disturbances and its light");
   set_attribute(root, "generationTool", tool);
   set_attribute(root, "variableNamingConvention", "flat");
   pugi::xml_node kind = root.append_child("CoSimulation");
   set_attribute(kind, "modelIdentifier", "photorque");
-  set_attribute(kind, "canGetAndSetFMUState", "true");
-  set_attribute(kind, "canSerializeFMUState", "true");
+  set_attribute(kind, is_2 ? "canGetAndSetFMUstate" : "canGetAndSetFMUState", "true");
+  set_attribute(kind, is_2 ? "canSerializeFMUstate" : "canSerializeFMUState", "true");
   set_attribute(kind, "canHandleVariableCommunicationStepSize", "true");
-  set_attribute(kind, "fixedInternalStepSize", 1.0 / unit.rate_Hz);
+  if (!is_2) set_attribute(kind, "fixedInternalStepSize", 1.0 / unit.rate_Hz);
   root.append_buffer(unit_definitions.data(), unit_definitions.size());
   root.append_buffer(log_categories.data(), log_categories.size());
   pugi::xml_node experiment = root.append_child("DefaultExperiment");
@@ -124,8 +165,10 @@ std::string model_description(const UnitDescription& unit, const std::string& na
   set_attribute(experiment, "stopTime", unit.stop_s);
   set_attribute(experiment, "stepSize", 1.0 / unit.rate_Hz);
   pugi::xml_node variables = root.append_child("ModelVariables");
-  for (const UnitVariable& variable : unit.variables) append_variable(variables, variable, unit);
-  append_structure(root, unit);
+  for (const UnitVariable& variable : unit.variables) {
+    (is_2 ? append_variable2 : append_variable)(variables, variable, unit);
+  }
+  (is_2 ? append_structure2 : append_structure)(root, unit);
   std::ostringstream text;
   document.save(text, "  ", pugi::format_indent, pugi::encoding_utf8);
   return text.str();
@@ -303,7 +346,7 @@ std::vector<std::pair<std::string, std::string>> files_below(const fs::path& fol
 
 }  // namespace
 
-RunResult pack_unit(const RunOptions& options, const Console& console) {
+RunResult pack_unit(const RunOptions& options, const Console& console, FmiVersion version) {
   const WallTime wall;
   const UnitDescription unit = describe_unit(options);
   RunResult result;
@@ -316,19 +359,20 @@ RunResult pack_unit(const RunOptions& options, const Console& console) {
   const fs::path resources = staging.path / "resources";
   const std::string name = options.experiment.stem().string();
   const std::string tool = "photorque " + result.provenance.version;
-  fs::create_directories(staging.path / "binaries" / "x86_64-linux");
-  fs::copy_file(library, staging.path / "binaries" / "x86_64-linux" / "photorque.so");
+  const bool is_2 = version == FmiVersion::two;
+  const fs::path binaries = staging.path / "binaries" / (is_2 ? "linux64" : "x86_64-linux");
+  fs::create_directories(binaries);
+  fs::copy_file(library, binaries / "photorque.so");
   copy_resources(options, resources, token);
   write_file_whole(staging.path / "modelDescription.xml",
-                   model_description(unit, name, token, tool));
-  try_unit(console, staging.path / "binaries" / "x86_64-linux" / "photorque.so", token, resources,
-           1.0 / unit.rate_Hz);
+                   model_description(version, unit, name, token, tool));
+  try_unit(console, binaries / "photorque.so", token, resources, 1.0 / unit.rate_Hz);
   const fs::path packed = staging.path / "unit.fmu";
   write_archive(packed, files_below(staging.path));
   const std::string archive = read_file(packed);
   result.files.push_back({name + ".fmu",
                           [archive](const fs::path& path) { write_file_whole(path, archive); },
-                          "for importers of FMI 3.0"});
+                          is_2 ? "for importers of FMI 2.0" : "for importers of FMI 3.0"});
   result.product.quantities.push_back({"ticks_Hz", {unit.rate_Hz, 0.0}});
   result.product.quantities.push_back({"start_s", {unit.start_s, 0.0}});
   result.product.quantities.push_back({"stop_s", {unit.stop_s, 0.0}});

@@ -295,8 +295,8 @@ Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_
   Plot plot;
   plot.name = "sweep_" + std::to_string(sweep) + "_of_" + recording.recording;
   const bool is_only = sweeps_of(light).size() == 1;
-  plot.title = (is_only ? "" : "Curve " + std::to_string(sweep) + " of ") + recording.recording +
-               (recording.is_held_out ? ", never fitted" : "");
+  plot.title = "Curve " + (is_only ? "" : std::to_string(sweep) + " ") + "of " +
+               recording.recording + (recording.is_held_out ? ", never fitted" : "");
   plot.x_label = "Voltage [V]";
   plot.y_label = "Current [A]";
   Plot::Curve measured, before, after, off_before, off_after;

@@ -356,7 +356,7 @@ std::string readings(const Diagnosis& d) {
                  "<span class=\"key shade\"></span> held out, never fitted &emsp;"
                  "<span class=\"key level\"></span> ± 2 σ of one reading");
   const bool found = d.verdict != Verdict::consistent;
-  for (const RecordingSeries& recording : d.series) {
+  for (const RecordingSeries& recording : shown_recordings(d, SIZE_MAX)) {
     section += tag("h3", xml_text(recording.recording));
     for (const ChannelSeries& channel : recording.channels) {
       section += figure_of(channel_plot(channel, recording));

@@ -209,7 +209,7 @@ class Checker {
       const ServeSettings serve = read_serve(settings);
       add("serve", show(serve.rate_Hz) + " Hz at " + serve.address);
     });
-    add("fmu", "a unit for co-simulation by FMI 3.0");
+    add("fmu", "a unit for co-simulation by FMI 3.0 or 2.0");
     if (settings.has("supply_trade")) {
       attempt([&] { add("supply", supply_in_words(full)); });
     }

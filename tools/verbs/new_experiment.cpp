@@ -151,23 +151,66 @@ SceneWords scene_words(const Options& options) {
                      "glTF, STL or OBJ (.gltf, .glb, .stl, .obj): others are converted to one of "
                      "them, as docs/files.md says");
   }
-  SettingsNode root;
-  for (const std::string& assignment : options.overrides) apply_override(root, assignment);
-  const Settings settings(std::make_shared<const SettingsNode>(std::move(root)));
   SceneWords words;
-  if (cad_format(*options.scene)) {
-    if (!settings.has("scene") || !settings.table("scene").has("unit")) {
-      throw InputError({options.scene->string()}, "scene.unit", "nothing",
-                       "the unit of its lengths, which the file does not say: --set scene.unit=mm");
-    }
-    const Settings scene = settings.table("scene");
-    const std::vector<std::string> units = cad_units(), axes = {"z", "y"};
-    words.unit = units[scene.choice("unit", units)];
-    words.up = axes[scene.choice_or("up", axes, 0)];
-    words.cad = CadConventions{metres_of_unit(words.unit), words.up == "y"};
+  if (!cad_format(*options.scene)) return words;
+  SettingsNode root;
+  for (const std::string& assignment : options.overrides) {
+    if (assignment.starts_with("scene.")) apply_override(root, assignment);
   }
-  settings.finish();
+  const Settings settings(std::make_shared<const SettingsNode>(std::move(root)));
+  if (!settings.has("scene") || !settings.table("scene").has("unit")) {
+    throw InputError({options.scene->string()}, "scene.unit", "nothing",
+                     "the unit of its lengths, which the file does not say: --set scene.unit=mm");
+  }
+  const Settings scene = settings.table("scene");
+  const std::vector<std::string> units = cad_units(), axes = {"z", "y"};
+  words.unit = units[scene.choice("unit", units)];
+  words.up = axes[scene.choice_or("up", axes, 0)];
+  words.cad = CadConventions{metres_of_unit(words.unit), words.up == "y"};
   return words;
+}
+
+// Where a value took the place of another, it stands on that line.
+void keep_lines(const SettingsNode& before, SettingsNode& now) {
+  if (now.where.line <= 0) now.where = before.where;
+  const auto* old_table = std::get_if<SettingsNode::Table>(&before.value);
+  const auto* old_items = std::get_if<SettingsNode::Array>(&before.value);
+  if (auto* table = std::get_if<SettingsNode::Table>(&now.value); table && old_table) {
+    for (auto& [key, item] : *table) {
+      if (const auto at = old_table->find(key); at != old_table->end())
+        keep_lines(at->second, item);
+    }
+  } else if (auto* items = std::get_if<SettingsNode::Array>(&now.value); items && old_items) {
+    for (size_t i = 0; i < std::min(items->size(), old_items->size()); ++i) {
+      keep_lines((*old_items)[i], (*items)[i]);
+    }
+  }
+}
+
+// The experiment with --set applied, its comments kept.
+std::string with_overrides(const std::string& text, const Options& options) {
+  if (options.overrides.empty()) return text;
+  TomlDocument document(text, options.experiment.string());
+  const SettingsNode before = document.root;
+  for (const std::string& one : options.overrides) apply_override(document.root, one);
+  if (same_values(before, document.root)) return text;
+  keep_lines(before, document.root);
+  return document.text();
+}
+
+// A wrong unit shows in the size of the model.
+std::string size_text(const Scene& scene, const fs::path& file, const SceneWords& words) {
+  Eigen::AlignedBox3d box;
+  for (const Instance& instance : scene.instances) {
+    for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
+      box.extend(Vec3(instance.body_from_mesh * vertex));
+    }
+  }
+  if (box.isEmpty()) return "";
+  const Vec3 size_m = box.sizes();
+  return "Size of " + file.filename().string() + ": " + number(size_m.x()) + " × " +
+         number(size_m.y()) + " × " + number(size_m.z()) + " m along body x, y and z, with " +
+         (words.cad ? "scene.unit = \"" + words.unit + "\"" : "metres in the file");
 }
 
 std::string scene_text(const SceneWords& words) {
@@ -242,6 +285,7 @@ void run(const Options& options, const Program&) {
       "docs/experiment.md (scene, light) and docs/disturbances.md (platform) have them all.\n# "
       "photorque check " +
       options.experiment.filename().string() + " says what can be done with it.\n\n";
+  std::string size;
   if (options.scene) {
     const SceneWords words = scene_words(options);
     const GltfModel model =
@@ -249,12 +293,11 @@ void run(const Options& options, const Program&) {
     const fs::path file = fs::absolute(*options.scene)
                               .lexically_proximate(fs::absolute(options.experiment).parent_path());
     text += light_text(model, file.generic_string(), words);
-  } else if (!options.overrides.empty()) {
-    throw InputError({options.experiment.string()}, "", "--set " + options.overrides.front(),
-                     "nothing without --scene: the new file is there to be changed");
+    size = size_text(model.scene, *options.scene, words);
   } else {
     text += std::string(platform_text).substr(1);
   }
+  text = with_overrides(text, options);
   // The folder must exist, because file names are relative to it.
   if (options.experiment.has_parent_path()) make_folders(options.experiment.parent_path());
   RunOptions checked;
@@ -264,6 +307,7 @@ void run(const Options& options, const Program&) {
   if (!report.mistakes.empty()) throw InputError(report.mistakes.front());
   write_file_whole(options.experiment, text);
   console.line("Written to " + options.experiment.string());
+  if (!size.empty()) console.line(size);
   for (const CheckReport::Command& command : report.commands) {
     console.line("  " + padded(command.name, 12) + command.what);
   }

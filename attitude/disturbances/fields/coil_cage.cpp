@@ -149,17 +149,23 @@ Vec3 CircularOrbit::up(double time_s) const {
 
 TimeSeries orbit_field_T(const CircularOrbit& orbit, double decimal_year, double duration_s,
                          double interval_s) {
+  return orbit_field_T([&orbit](double t_s) { return Vec3(orbit.radius_m * orbit.up(t_s)); },
+                       orbit.greenwich_angle_rad, decimal_year, 0.0, duration_s, interval_s);
+}
+
+TimeSeries orbit_field_T(const std::function<Vec3(double)>& position_m, double greenwich_angle_rad,
+                         double decimal_year, double from_s, double duration_s, double interval_s) {
   const GeomagneticModel model(decimal_year);
   const auto samples = static_cast<int>(std::ceil(duration_s / interval_s)) + 1;
   std::vector<double> times_s;
   std::vector<Vec3> fields_T;
   for (int i = 0; i < samples; ++i) {
-    const double t_s = i * interval_s;
-    const Vec3 up = orbit.up(t_s);
+    const double t_s = from_s + i * interval_s;
+    const Vec3 at_m = position_m(t_s), up = at_m.normalized();
     const double right_ascension_rad = std::atan2(up.y(), up.x());
-    const Vec3 ned_T = model.north_east_down_T(GeocentricPosition{
-        orbit.radius_m, std::acos(std::clamp(up.z(), -1.0, 1.0)),
-        right_ascension_rad - orbit.greenwich_angle_rad - earth_rate_rad_s * t_s});
+    const Vec3 ned_T = model.north_east_down_T(
+        GeocentricPosition{at_m.norm(), std::acos(std::clamp(up.z(), -1.0, 1.0)),
+                           right_ascension_rad - greenwich_angle_rad - earth_rate_rad_s * t_s});
     const Vec3 east(-std::sin(right_ascension_rad), std::cos(right_ascension_rad), 0.0);
     times_s.push_back(t_s);
     fields_T.push_back(ned_T.x() * up.cross(east) + ned_T.y() * east - ned_T.z() * up);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -86,5 +87,9 @@ inline constexpr double earth_gravitation_m3_s2 = 3.986004418e14;  // EGM2008
 // `duration_s` [T]. The Earth and its field rotate below the orbit.
 TimeSeries orbit_field_T(const CircularOrbit& orbit, double decimal_year, double duration_s,
                          double interval_s);
+// Likewise along any path: from the Earth's centre [m] over time, in axes whose x is
+// `greenwich_angle_rad` west of the zero meridian at time 0.
+TimeSeries orbit_field_T(const std::function<Vec3(double)>& position_m, double greenwich_angle_rad,
+                         double decimal_year, double from_s, double duration_s, double interval_s);
 
 }  // namespace photorque

@@ -1,19 +1,25 @@
-// A spacecraft on a circular orbit instead of a platform in a laboratory: free fall, the direction
-// of the Earth and its gravity gradient, its field, and its shadow. The lab axes stand for inertial
-// ones, z along the Earth's axis.
+// A spacecraft in orbit instead of a platform in a laboratory: free fall, the direction of the
+// Earth and its gravity gradient, its field, and its shadow. The lab axes stand for inertial ones,
+// z along the Earth's axis.
 //
-// altitude_m above 6371.2 km, inclination_deg, ascending_node_deg (0), phase_deg (0; argument of
-// latitude at time 0), greenwich_angle_deg (0);
-// date_year: the field is IGRF along the orbit (none without it), known for duration_s (default
-//   86400);
-// sun_direction[3] (any length): full light and shadow of the Earth with its penumbra; without it
-//   there is light all the time.
+// A circle: altitude_m above 6371.2 km, inclination_deg, ascending_node_deg (0), phase_deg (0;
+// argument of latitude at time 0), greenwich_angle_deg (0); or the states of an OEM: ephemeris, and
+// epoch, the calendar time of t = 0 (default: the first usable state).
+// date_year: the field is IGRF along the orbit (none without it), of a circle known for duration_s
+//   (default 86400);
+// sun_direction[3] (any length; default: that of [environment.sun]): full light and shadow of the
+//   Earth with its penumbra; without either there is light all the time.
+#include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "attitude/disturbances/fields/coil_cage.h"
 #include "attitude/disturbances/kind.h"
+#include "attitude/environment/environment.h"
 #include "attitude/environment/sun.h"
+#include "attitude/recordings/oem.h"
 #include "core/constants.h"
+#include "core/text/parse.h"
 
 namespace photorque::kinds::orbit {
 namespace {
@@ -21,54 +27,116 @@ namespace {
 constexpr double interval_s = 20.0;  // of the table of the field
 
 namespace key {
-constexpr NumberKey altitude("altitude_m", Range::positive(), "above 6371.2 km");
-constexpr NumberKey inclination("inclination_deg", {}, "of the orbit");
-constexpr NumberKey ascending_node("ascending_node_deg", 0.0, {}, "of the orbit");
-constexpr NumberKey phase("phase_deg", 0.0, {}, "argument of latitude at t = 0");
-constexpr NumberKey greenwich_angle("greenwich_angle_deg", 0.0, {}, "at t = 0");
+constexpr NumberKey altitude("altitude_m", Range::positive(), "of a circle, above 6371.2 km",
+                             {.optional = true});
+constexpr NumberKey inclination("inclination_deg", {}, "of a circle", {.optional = true});
+constexpr NumberKey ascending_node("ascending_node_deg", 0.0, {}, "of a circle");
+constexpr NumberKey phase("phase_deg", 0.0, {}, "of a circle: argument of latitude at t = 0");
+constexpr NumberKey greenwich_angle("greenwich_angle_deg", 0.0, {}, "of a circle, at t = 0");
+constexpr TextKey ephemeris("ephemeris",
+                            "instead of a circle: file of states around the Earth, CCSDS OEM (KVN "
+                            "or XML)",
+                            {.optional = true});
+constexpr TextKey epoch("epoch", "with `ephemeris`: calendar time of t = 0, UTC",
+                        {.usually = "`propagate.epoch`, else that of `propagate.initial_apm`, else "
+                                    "the first usable state"});
 constexpr NumberKey date_year("date_year", {1900.0, 2035.0, false, false},
                               "field by IGRF along the orbit",
                               {.usually = "the field of `[environment]`"});
-constexpr NumberKey duration("duration_s", 86400.0, {0.0, 1e6 * interval_s, true, false},
-                             "with `date_year`: duration of the field; its end is held");
+constexpr NumberKey duration(
+    "duration_s", 86400.0, {0.0, 1e6 * interval_s, true, false},
+    "of a circle with `date_year`: duration of the field; its end is held");
 constexpr Vec3Key sun_direction("sun_direction",
                                 "towards the Sun, any length: shadow with penumbra",
-                                {.usually = "always light"});
+                                {.usually = "that of `[environment.sun]`, else always light"});
 }  // namespace key
 
 constexpr double mean_radius_m = 6371.2e3;
 
-class Orbit final : public LawOf<Orbit> {
+class Circle {
  public:
-  Orbit(const CircularOrbit& orbit, std::optional<TimeSeries> field_T,
-        std::optional<Vec3> sun_direction)
-      : orbit_(orbit), field_T_(std::move(field_T)), sun_direction_(std::move(sun_direction)) {}
+  explicit Circle(const CircularOrbit& orbit) : orbit_(orbit) {}
 
   template <class T>
-  void apply(const ParametersAndStates<T>&, EvaluationContext<T>& now) const {
+  void apply(EvaluationContext<T>& now) const {
     const T u = orbit_.phase_rad + orbit_.motion_rad_s() * now.time_s;
     const Vec3 node = orbit_.node(), ahead = orbit_.ahead();
     now.up_lab = cos(u) * node.cast<T>() + sin(u) * ahead.cast<T>();
     now.gravity_gradient_1_s2 = std::pow(orbit_.motion_rad_s(), 2);
+  }
+  Vec3 position_m(double time_s) const { return orbit_.radius_m * orbit_.up(time_s); }
+
+ private:
+  CircularOrbit orbit_;
+};
+
+class Ephemeris {
+ public:
+  // `zero_s`: the time of t = 0 since the start of the ephemeris.
+  Ephemeris(std::shared_ptr<const OrbitEphemeris> states, double zero_s)
+      : states_(std::move(states)), zero_s_(zero_s) {}
+
+  template <class T>
+  void apply(EvaluationContext<T>& now) const {
+    Vec3Of<T> position_m;
+    for (int k = 0; k < 3; ++k) {
+      position_m[k] = from_values(now.time_s, [&](double t_s) {
+        const auto [value, slope] = states_->at(zero_s_ + t_s);
+        return std::array<double, 2>{value[k], slope[k]};
+      });
+    }
+    const T square_m2 = position_m.dot(position_m), distance_m = sqrt(square_m2);
+    now.up_lab = position_m / distance_m;
+    now.gravity_gradient_1_s2 = earth_gravitation_m3_s2 / (square_m2 * distance_m);
+  }
+  Vec3 position_m(double time_s) const { return states_->at(zero_s_ + time_s)[0]; }
+
+ private:
+  std::shared_ptr<const OrbitEphemeris> states_;
+  double zero_s_;
+};
+
+template <class Path>
+class Orbit final : public LawOf<Orbit<Path>> {
+ public:
+  Orbit(Path path, std::optional<TimeSeries> field_T, std::optional<SunPath> sun)
+      : path_(std::move(path)), field_T_(std::move(field_T)), sun_(std::move(sun)) {}
+
+  template <class T>
+  void apply(const ParametersAndStates<T>&, EvaluationContext<T>& now) const {
+    path_.apply(now);
     now.gravity_lab_m_s2 = Vec3Of<T>::Constant(T(0.0));
     if (field_T_) now.magnetic_field_lab_T = field_T_->sample(now.time_s);
-    if (sun_direction_) now.illumination *= T(light(values(now.time_s)));
+    if (sun_) now.illumination *= T(light(values(now.time_s)));
   }
 
  private:
   Lanes light(const Lanes& time_s) const {
     return each_lane(time_s, [this](double t_s) {
-      return sunlit_fraction(orbit_.radius_m * orbit_.up(t_s),
-                             astronomical_unit_m * *sun_direction_, mean_radius_m);
+      return sunlit_fraction(path_.position_m(t_s), astronomical_unit_m * sun_->at(t_s)[0],
+                             mean_radius_m);
     });
   }
 
-  CircularOrbit orbit_;
+  Path path_;
   std::optional<TimeSeries> field_T_;
-  std::optional<Vec3> sun_direction_;
+  std::optional<SunPath> sun_;
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
+std::optional<SunPath> read_sun_path(const Settings& settings, const DisturbanceContext& context) {
+  if (!settings.has(key::sun_direction)) return context.environment.sun;
+  const Vec3 direction = settings.get(key::sun_direction);
+  if (!(direction.norm() > 0.0)) {
+    throw settings.error(key::sun_direction, "a zero vector", "a direction");
+  }
+  return SunPath::fixed(direction.normalized());
+}
+
+Disturbance read_circle(const Settings& settings, const DisturbanceContext& context) {
+  if (settings.has(key::epoch)) {
+    throw settings.error(key::epoch, "a calendar time of a circle",
+                         "`ephemeris` beside it, or `phase_deg`");
+  }
   const CircularOrbit orbit{mean_radius_m + settings.get(key::altitude),
                             settings.get(key::inclination), settings.get(key::ascending_node),
                             settings.get(key::phase), settings.get(key::greenwich_angle)};
@@ -77,29 +145,62 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
     field_T =
         orbit_field_T(orbit, settings.get(key::date_year), settings.get(key::duration), interval_s);
   }
-  std::optional<Vec3> sun_direction;
-  if (settings.has(key::sun_direction)) {
-    const Vec3 direction = settings.get(key::sun_direction);
-    if (!(direction.norm() > 0.0)) {
-      throw settings.error(key::sun_direction, "a zero vector", "a direction");
+  return make_disturbance<Orbit<Circle>>({}, Stage::conditions, {}, Circle(orbit), field_T,
+                                         read_sun_path(settings, context));
+}
+
+Disturbance read(const Settings& settings, const DisturbanceContext& context) {
+  if (!settings.has(key::ephemeris)) return read_circle(settings, context);
+  for (const std::string_view of_circle :
+       {std::string_view(key::altitude), std::string_view(key::inclination),
+        std::string_view(key::ascending_node), std::string_view(key::phase),
+        std::string_view(key::greenwich_angle), std::string_view(key::duration)}) {
+    if (settings.has(of_circle)) {
+      throw settings.error(of_circle, "a key of a circle beside `ephemeris`", "one of the two");
     }
-    sun_direction = direction.normalized();
   }
-  return make_disturbance<Orbit>({}, Stage::conditions, {}, orbit, field_T, sun_direction);
+  const auto states = std::make_shared<const OrbitEphemeris>(file_of(settings, key::ephemeris));
+  double zero_s = 0.0;
+  if (settings.has(key::epoch)) {
+    const std::optional<Epoch> zero = parse_epoch(settings.get(key::epoch));
+    if (!zero) {
+      throw settings.error(key::epoch, in_quotes(settings.get(key::epoch)),
+                           "a time as 2000-01-01T12:00:00");
+    }
+    zero_s = zero->seconds_since(states->start());
+    if (zero_s < 0.0 || zero_s > states->duration_s()) {
+      throw settings.error(key::epoch, settings.get(key::epoch) + ", outside the ephemeris",
+                           "a time from " + epoch_text(states->start()) + " to " +
+                               epoch_text(states->start().after(states->duration_s())));
+    }
+  }
+  const Ephemeris path(states, zero_s);
+  std::optional<TimeSeries> field_T;
+  if (settings.has(key::date_year)) {
+    constexpr double most_instants = 1e6;
+    const double duration_s = states->duration_s();
+    field_T = orbit_field_T([&path](double t_s) { return path.position_m(t_s); },
+                            states->greenwich_angle_rad() + earth_rate_rad_s * zero_s,
+                            settings.get(key::date_year), -zero_s, duration_s,
+                            std::max(interval_s, duration_s / most_instants));
+  }
+  return make_disturbance<Orbit<Ephemeris>>({}, Stage::conditions, {}, path, field_T,
+                                            read_sun_path(settings, context));
 }
 
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "orbit",
-          .summary = "a circular orbit around the Earth: free fall, gradient, field and shadow",
+          .summary = "an orbit around the Earth: free fall, gradient, field and shadow",
           .read = read,
           .screening = {.reason_against = "the orbit of a platform is known"},
           .budget = {.reason_against = "an orbit is the environment of the others"},
           .has_eclipses = true,
           .sets = "the magnetic field",
           .keys = {key::altitude, key::inclination, key::ascending_node, key::phase,
-                   key::greenwich_angle, key::date_year, key::duration, key::sun_direction}};
+                   key::greenwich_angle, key::ephemeris, key::epoch, key::date_year, key::duration,
+                   key::sun_direction}};
 }
 
 }  // namespace photorque::kinds::orbit

@@ -68,21 +68,28 @@ class PlanetLight final : public TorqueLaw<PlanetLight> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     Vec3Of<T> sum = Vec3Of<T>::Constant(T(0.0));
-    // The orbit is a circle: the same at all eight instants.
-    const double gradient_1_s2 = values(now.gravity_gradient_1_s2)[0];
-    const double distance_m = std::cbrt(earth_gravitation_m3_s2 / gradient_1_s2);
-    if (!(distance_m > 1.001 * mean_radius_of_planet_m)) return sum;  // on the ground
     std::array<Mat3, Lanes::count> axes;
+    std::array<std::vector<PlanetPart>, Lanes::count> parts;
+    const Lanes gradient_1_s2 = values(now.gravity_gradient_1_s2);
     for (int i = 0; i < Lanes::count; ++i) {
       const Vec3 up(values(now.up_lab.x())[i], values(now.up_lab.y())[i],
                     values(now.up_lab.z())[i]);
-      axes[static_cast<size_t>(i)] = planet_axes(up.normalized(), options_.to_sun);
+      const auto lane = static_cast<size_t>(i);
+      axes[lane] = planet_axes(up.normalized(), options_.to_sun);
+      if (i > 0 && gradient_1_s2[i] == gradient_1_s2[i - 1]) {
+        parts[lane] = parts[lane - 1];
+        continue;
+      }
+      const double distance_m = std::cbrt(earth_gravitation_m3_s2 / gradient_1_s2[i]);
+      if (!(distance_m > 1.001 * mean_radius_of_planet_m)) return sum;  // on the ground
+      parts[lane] = planet_parts(mean_radius_of_planet_m, distance_m);
     }
-    for (const PlanetPart& part : planet_parts(mean_radius_of_planet_m, distance_m)) {
+    for (size_t k = 0; k < parts[0].size(); ++k) {
       Vec3Of<Lanes> towards;
       Lanes reflected = 0.0, emitted = 0.0;
       for (int i = 0; i < Lanes::count; ++i) {
         const Mat3& of = axes[static_cast<size_t>(i)];
+        const PlanetPart& part = parts[static_cast<size_t>(i)][k];
         const Vec3 way = of * part.towards;
         for (int k = 0; k < 3; ++k) towards[k].set(i, way[k]);
         const PlanetIrradiance light =

@@ -1,0 +1,307 @@
+// The functions of FMI 2.0, all of which a unit for co-simulation has to export. Types, values and
+// order of the arguments are those of the specification (Functional Mock-up Interface for Model
+// Exchange and Co-Simulation 2.0.4, sections 2.1 and 4.2).
+#include <cstdarg>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "core/text/parse.h"
+#include "tools/fmi/instance.h"
+
+// NOLINTBEGIN(readability-identifier-naming,cert-dcl50-cpp)
+
+using namespace photorque;
+using namespace photorque::fmi;
+
+using fmi2Component = void*;
+using fmi2FMUstate = void*;
+using fmi2ValueReference = unsigned int;
+using fmi2Real = double;
+using fmi2Boolean = int;
+using fmi2String = const char*;
+using fmi2Byte = char;
+// The first five have the values of fmi3Status; fmi2Pending is not used.
+using fmi2Status = int;
+enum fmi2Type { fmi2ModelExchange, fmi2CoSimulation };
+enum fmi2StatusKind { fmi2DoStepStatus, fmi2PendingStatus, fmi2LastSuccessfulTime, fmi2Terminated };
+
+struct fmi2CallbackFunctions {
+  void (*logger)(void* environment, fmi2String instance, fmi2Status status, fmi2String category,
+                 fmi2String message, ...);
+  void* (*allocateMemory)(size_t, size_t);
+  void (*freeMemory)(void*);
+  void (*stepFinished)(void* environment, fmi2Status status);
+  void* componentEnvironment;
+};
+
+namespace {
+
+// An instance, and the data that FMI 2.0 exchanges apart from a step.
+struct Unit2 {
+  std::unique_ptr<Instance> instance;
+  double start_s = 0.0;
+  std::optional<double> stop_s;
+  bool has_ended = false;
+};
+
+template <typename Body>
+fmi2Status guarded2(fmi2Component handle, const char* function, Body body) {
+  auto* unit = static_cast<Unit2*>(handle);
+  if (unit == nullptr) return fmi3Error;
+  return guarded(unit->instance.get(), function, [&](Instance&) { return body(*unit); });
+}
+
+// "file:///a%20b", "file:/a b" and "file://localhost/a b" as the path "/a b". Null: no such
+// address.
+std::optional<std::string> path_of(std::string_view location) {
+  constexpr std::string_view scheme = "file:", host = "//localhost/", no_host = "///";
+  if (!location.starts_with(scheme)) return std::string(location);
+  location.remove_prefix(scheme.size());
+  if (location.starts_with(host)) {
+    location.remove_prefix(host.size() - 1);
+  } else if (location.starts_with(no_host)) {
+    location.remove_prefix(no_host.size() - 1);
+  }
+  return percent_decoded(location);
+}
+
+// The logger takes a format of printf.
+std::string as_format(const char* message) {
+  std::string format;
+  for (const char* c = message; *c != '\0'; ++c) {
+    format += *c;
+    if (*c == '%') format += '%';
+  }
+  return format;
+}
+
+}  // namespace
+
+PHOTORQUE_EXPORT const char* fmi2GetTypesPlatform() {
+  return "default";
+}
+
+PHOTORQUE_EXPORT const char* fmi2GetVersion() {
+  return "2.0";
+}
+
+PHOTORQUE_EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid,
+                                               fmi2String resource_location,
+                                               const fmi2CallbackFunctions* callbacks, fmi2Boolean,
+                                               fmi2Boolean logging) {
+  LogSink sink;
+  if (callbacks != nullptr && callbacks->logger != nullptr) {
+    sink = [call = *callbacks, instance = std::string(name != nullptr ? name : "")](
+               fmi3Status status, const char* category, const char* message) {
+      call.logger(call.componentEnvironment, instance.c_str(), status, category,
+                  as_format(message).c_str());
+    };
+  }
+  if (type != fmi2CoSimulation) {
+    if (sink) {
+      sink(fmi3Error, "logStatusError", "fmi2Instantiate: the unit is for co-simulation alone");
+    }
+    return nullptr;
+  }
+  const std::optional<std::string> folder =
+      resource_location != nullptr ? path_of(resource_location) : std::nullopt;
+  Instance* instance = instantiate("fmi2Instantiate", name, guid,
+                                   folder ? folder->c_str() : nullptr, logging != 0, sink);
+  if (instance == nullptr) return nullptr;
+  auto unit = std::make_unique<Unit2>();
+  unit->instance.reset(instance);
+  unit->start_s = instance->description().start_s;
+  return unit.release();
+}
+
+PHOTORQUE_EXPORT void fmi2FreeInstance(fmi2Component handle) {
+  delete static_cast<Unit2*>(handle);
+}
+
+PHOTORQUE_EXPORT fmi2Status fmi2SetDebugLogging(fmi2Component handle, fmi2Boolean on, size_t count,
+                                                const fmi2String categories[]) {
+  return guarded2(handle, "fmi2SetDebugLogging", [&](Unit2& unit) {
+    unit.instance->set_debug_logging(on != 0, count, categories);
+    return fmi3OK;
+  });
+}
+
+PHOTORQUE_EXPORT fmi2Status fmi2SetupExperiment(fmi2Component handle, fmi2Boolean, fmi2Real,
+                                                fmi2Real start_s, fmi2Boolean has_stop,
+                                                fmi2Real stop_s) {
+  return guarded2(handle, "fmi2SetupExperiment", [&](Unit2& unit) {
+    unit.start_s = start_s;
+    unit.stop_s = has_stop != 0 ? std::optional<double>(stop_s) : std::nullopt;
+    return fmi3OK;
+  });
+}
+
+PHOTORQUE_EXPORT fmi2Status fmi2EnterInitializationMode(fmi2Component handle) {
+  return guarded2(handle, "fmi2EnterInitializationMode", [](Unit2& unit) {
+    return unit.instance->enter_initialization(unit.start_s, unit.stop_s);
+  });
+}
+
+PHOTORQUE_EXPORT fmi2Status fmi2ExitInitializationMode(fmi2Component handle) {
+  return guarded2(handle, "fmi2ExitInitializationMode",
+                  [](Unit2& unit) { return unit.instance->exit_initialization(); });
+}
+
+PHOTORQUE_EXPORT fmi2Status fmi2Terminate(fmi2Component handle) {
+  return guarded2(handle, "fmi2Terminate", [](Unit2& unit) { return unit.instance->terminate(); });
+}
+
+PHOTORQUE_EXPORT fmi2Status fmi2Reset(fmi2Component handle) {
+  return guarded2(handle, "fmi2Reset", [](Unit2& unit) {
+    unit.start_s = unit.instance->description().start_s;
+    unit.stop_s.reset();
+    unit.has_ended = false;
+    return unit.instance->reset();
+  });
+}
+
+// Where the platform reaches its stop, the step ends early: fmi2Discard, and fmi2Terminated is
+// true.
+PHOTORQUE_EXPORT fmi2Status fmi2DoStep(fmi2Component handle, fmi2Real now_s, fmi2Real step_s,
+                                       fmi2Boolean) {
+  return guarded2(handle, "fmi2DoStep", [&](Unit2& unit) {
+    const fmi3Status status = unit.instance->step(now_s, step_s, unit.has_ended);
+    return status == fmi3OK && unit.has_ended ? fmi3Discard : status;
+  });
+}
+
+PHOTORQUE_EXPORT fmi2Status fmi2GetBooleanStatus(fmi2Component handle, fmi2StatusKind kind,
+                                                 fmi2Boolean* value) {
+  return guarded2(handle, "fmi2GetBooleanStatus", [&](Unit2& unit) {
+    if (kind != fmi2Terminated) return unit.instance->refuse("only fmi2Terminated is a Boolean");
+    *value = unit.has_ended ? 1 : 0;
+    return fmi3OK;
+  });
+}
+
+PHOTORQUE_EXPORT fmi2Status fmi2GetRealStatus(fmi2Component handle, fmi2StatusKind kind,
+                                              fmi2Real* value) {
+  return guarded2(handle, "fmi2GetRealStatus", [&](Unit2& unit) {
+    if (kind != fmi2LastSuccessfulTime) {
+      return unit.instance->refuse("only fmi2LastSuccessfulTime is a Real");
+    }
+    *value = unit.instance->now_s();
+    return fmi3OK;
+  });
+}
+
+PHOTORQUE_EXPORT fmi2Status fmi2GetReal(fmi2Component handle, const fmi2ValueReference of[],
+                                        size_t count, fmi2Real values[]) {
+  return guarded2(handle, "fmi2GetReal", [&](Unit2& unit) {
+    return unit.instance->get_numbers({of, count}, values);
+  });
+}
+
+PHOTORQUE_EXPORT fmi2Status fmi2SetReal(fmi2Component handle, const fmi2ValueReference of[],
+                                        size_t count, const fmi2Real values[]) {
+  return guarded2(handle, "fmi2SetReal", [&](Unit2& unit) {
+    return unit.instance->set_numbers({of, count}, values);
+  });
+}
+
+PHOTORQUE_EXPORT fmi2Status fmi2GetBoolean(fmi2Component handle, const fmi2ValueReference of[],
+                                           size_t count, fmi2Boolean values[]) {
+  return guarded2(handle, "fmi2GetBoolean", [&](Unit2& unit) {
+    for (size_t i = 0; i < count; ++i) {
+      const bool* flag = unit.instance->flag(of[i]);
+      if (flag == nullptr) return fmi3Error;
+      values[i] = *flag ? 1 : 0;
+    }
+    return fmi3OK;
+  });
+}
+
+PHOTORQUE_EXPORT fmi2Status fmi2GetFMUstate(fmi2Component handle, fmi2FMUstate* to) {
+  return guarded2(handle, "fmi2GetFMUstate", [&](Unit2& unit) {
+    auto* state = static_cast<UnitState*>(*to);
+    if (state == nullptr) state = new UnitState;
+    *state = unit.instance->state();
+    *to = state;
+    return fmi3OK;
+  });
+}
+
+PHOTORQUE_EXPORT fmi2Status fmi2SetFMUstate(fmi2Component handle, fmi2FMUstate from) {
+  return guarded2(handle, "fmi2SetFMUstate", [&](Unit2& unit) {
+    const auto* state = static_cast<const UnitState*>(from);
+    if (state == nullptr) return unit.instance->refuse("fmi2SetFMUstate: no state");
+    unit.has_ended = false;
+    return unit.instance->set_state(*state);
+  });
+}
+
+PHOTORQUE_EXPORT fmi2Status fmi2FreeFMUstate(fmi2Component handle, fmi2FMUstate* state) {
+  return guarded2(handle, "fmi2FreeFMUstate", [&](Unit2&) {
+    delete static_cast<UnitState*>(*state);
+    *state = nullptr;
+    return fmi3OK;
+  });
+}
+
+PHOTORQUE_EXPORT fmi2Status fmi2SerializedFMUstateSize(fmi2Component handle, fmi2FMUstate from,
+                                                       size_t* size) {
+  return guarded2(handle, "fmi2SerializedFMUstateSize", [&](Unit2&) {
+    *size = sizeof(double) * static_cast<const UnitState*>(from)->numbers().size();
+    return fmi3OK;
+  });
+}
+
+PHOTORQUE_EXPORT fmi2Status fmi2SerializeFMUstate(fmi2Component handle, fmi2FMUstate from,
+                                                  fmi2Byte bytes[], size_t size) {
+  return guarded2(handle, "fmi2SerializeFMUstate", [&](Unit2& unit) {
+    const std::vector<double> all = static_cast<const UnitState*>(from)->numbers();
+    if (size < all.size() * sizeof(double)) {
+      return unit.instance->refuse("too few bytes for the state");
+    }
+    std::memcpy(bytes, all.data(), all.size() * sizeof(double));
+    return fmi3OK;
+  });
+}
+
+PHOTORQUE_EXPORT fmi2Status fmi2DeSerializeFMUstate(fmi2Component handle, const fmi2Byte bytes[],
+                                                    size_t size, fmi2FMUstate* to) {
+  return guarded2(handle, "fmi2DeSerializeFMUstate", [&](Unit2& unit) {
+    std::unique_ptr<UnitState> state = UnitState::from(bytes, size);
+    if (state == nullptr) return unit.instance->refuse("these bytes are no state of this unit");
+    *to = state.release();
+    return fmi3OK;
+  });
+}
+
+// The functions that the unit does not offer: they return fmi2Error. Importers look for every name.
+#define PHOTORQUE_ABSENT2(name)                                                    \
+  PHOTORQUE_EXPORT fmi2Status name(fmi2Component handle) {                         \
+    return guarded2(handle, #name, [](Unit2& unit) {                               \
+      return unit.instance->refuse(#name " is not offered: modelDescription.xml"); \
+    });                                                                            \
+  }
+PHOTORQUE_ABSENT2(fmi2GetInteger)
+PHOTORQUE_ABSENT2(fmi2GetString)
+PHOTORQUE_ABSENT2(fmi2SetInteger)
+PHOTORQUE_ABSENT2(fmi2SetBoolean)
+PHOTORQUE_ABSENT2(fmi2SetString)
+PHOTORQUE_ABSENT2(fmi2GetDirectionalDerivative)
+PHOTORQUE_ABSENT2(fmi2SetRealInputDerivatives)
+PHOTORQUE_ABSENT2(fmi2GetRealOutputDerivatives)
+PHOTORQUE_ABSENT2(fmi2CancelStep)
+PHOTORQUE_ABSENT2(fmi2GetStatus)
+PHOTORQUE_ABSENT2(fmi2GetIntegerStatus)
+PHOTORQUE_ABSENT2(fmi2GetStringStatus)
+// Of model exchange.
+PHOTORQUE_ABSENT2(fmi2EnterEventMode)
+PHOTORQUE_ABSENT2(fmi2NewDiscreteStates)
+PHOTORQUE_ABSENT2(fmi2EnterContinuousTimeMode)
+PHOTORQUE_ABSENT2(fmi2CompletedIntegratorStep)
+PHOTORQUE_ABSENT2(fmi2SetTime)
+PHOTORQUE_ABSENT2(fmi2SetContinuousStates)
+PHOTORQUE_ABSENT2(fmi2GetDerivatives)
+PHOTORQUE_ABSENT2(fmi2GetEventIndicators)
+PHOTORQUE_ABSENT2(fmi2GetContinuousStates)
+PHOTORQUE_ABSENT2(fmi2GetNominalsOfContinuousStates)
+// NOLINTEND(readability-identifier-naming,cert-dcl50-cpp)
