@@ -518,14 +518,19 @@ class Reader {
     }
   }
 
-  // Which of reading and source is the voltage, by the units in the first row.
+  // Which of reading and source is the voltage, and their units, by the first row.
   void assign_instrument(const std::vector<std::string_view>& cells) {
-    for (size_t i = *header_.reading + 1; i < cells.size(); ++i) {
-      const std::string unit = lower(unquoted(cells[i]));
-      if (unit_named(current, unit)) return;
-      if (!unit_named(voltage, unit)) continue;
-      std::swap(header_.place[voltage], header_.place[current]);
-      return;
+    const auto unit_after = [&](Column column) -> std::optional<Unit> {
+      for (size_t i = *header_.place[column] + 1; i < cells.size(); ++i) {
+        const std::string unit = lower(unquoted(cells[i]));
+        if (unit_named(column == voltage ? current : voltage, unit)) return std::nullopt;
+        if (const auto found = unit_named(column, unit)) return found;
+      }
+      return std::nullopt;
+    };
+    if (!unit_after(current)) std::swap(header_.place[voltage], header_.place[current]);
+    for (const Column column : {voltage, current}) {
+      if (const auto unit = unit_after(column)) header_.unit[column] = *unit;
     }
   }
 
