@@ -267,11 +267,15 @@ CellModel replaced(CellModel model, const Settings& s, bool area_is_stated) {
   return model;
 }
 
-CellModel read_cell(const Settings& array) {
+NamedCell known_cell(const Settings& array) {
   const std::vector<NamedCell> known = known_cells();
   std::vector<std::string> names;
   for (const NamedCell& cell : known) names.push_back(cell.name);
-  CellModel model = known[array.choice_or("cell", names, 1)].model;
+  return known[array.choice_or("cell", names, 1)];
+}
+
+CellModel read_cell(const Settings& array) {
+  CellModel model = known_cell(array).model;
   if (!array.has(array_key::cell_parameters)) return model;
   const Settings s = array.get(array_key::cell_parameters);
   model.reference_area_m2 = s.get_or(cell_key::reference_area, model.reference_area_m2);
@@ -313,7 +317,11 @@ std::vector<CellOverride> read_overrides(const Settings& array, const ArrayDesig
 
 QuantumEfficiency read_efficiency(const Settings& array) {
   if (!array.has(array_key::quantum_efficiency)) {
-    return silicon_quantum_efficiency(array.get(array_key::quantum_efficiency_peak));
+    std::optional<double> peak;
+    if (array.has(array_key::quantum_efficiency_peak)) {
+      peak = array.get(array_key::quantum_efficiency_peak);
+    }
+    return quantum_efficiency_of(known_cell(array).name, peak);
   }
   const Settings table = array.get(array_key::quantum_efficiency);
   QuantumEfficiency read{table.get(array_key::wavelength), table.get(array_key::efficiency)};

@@ -92,7 +92,7 @@ ArrayWiring regular_wiring(int columns, int rows, const RegularWiring& options);
 //   [[array.cell_override]]  one cell that differs: index, photocurrent_factor (1), and the keys of
 //                            [array.cell_parameters] but the temperature; what is not given is that
 //                            of the other cells
-//   quantum_efficiency_peak = 0.95    of the default table for monocrystalline silicon, or
+//   quantum_efficiency_peak           of quantum_efficiency_of() the cell, or
 //   [array.quantum_efficiency]        wavelength_m = […] (or _nm), efficiency = […]
 //   [array.cover]                     see read_cell_front()
 //

@@ -70,7 +70,7 @@ std::vector<Key> array_design_keys() {
                   Key::choice_or("cell", std::move(kinds), 1, "type of the cells"),
                   cell_parameters.of(all_cells_keys()), cell_override.of(one_cell_keys()),
                   quantum_efficiency_peak, quantum_efficiency.of({wavelength, efficiency}),
-                  cover.of(cell_front_keys())}});
+                  back.of({back_receiver, bifaciality}), cover.of(cell_front_keys())}});
 }
 
 }  // namespace photorque

@@ -135,9 +135,10 @@ inline constexpr TablesKey cell_override(
     "cell_override",
     "a cell that differs from the others; its photocurrent has their temperature coefficient");
 inline constexpr NumberKey quantum_efficiency_peak(
-    "quantum_efficiency_peak", 0.95, Range::fraction(),
-    "external quantum efficiency at 800 nm, with the default shape; or "
-    "`[array.quantum_efficiency]`");
+    "quantum_efficiency_peak", Range::fraction(),
+    "largest external quantum efficiency, with the shape that belongs to `cell` (of silicon at "
+    "800 nm); or `[array.quantum_efficiency]`",
+    {.usually = "silicon 0.95, gallium arsenide 0.95, cadmium telluride 0.949"});
 inline constexpr NumbersKey wavelength("wavelength_nm", Range::positive(), "at least two, rising");
 inline constexpr NumbersKey efficiency("efficiency", Range::fraction(),
                                        "electrons per photon at each wavelength");
@@ -145,6 +146,15 @@ inline constexpr TableKey quantum_efficiency("quantum_efficiency",
                                              "measured external quantum efficiency");
 inline constexpr TableKey cover("cover", "cover glass, if the material of the cells has none",
                                 {.usually = "none"});
+inline constexpr TableKey back("back", "light on the back of bifacial cells");
+inline constexpr TextKey back_receiver(
+    "receiver",
+    "irradiance map of the same node and grid with `side = \"back\"`; its light counts as "
+    "perpendicular");
+inline constexpr NumberKey bifaciality(
+    "bifaciality", 0.7, Range::fraction(),
+    "short-circuit current by the light of the back over that by equal light of the front "
+    "(IEC TS 60904-1-2): about 0.7 for PERC, 0.85 for TOPCon, 0.92 for heterojunction");
 }  // namespace array_key
 
 // read_array_design() and read_cell_places().

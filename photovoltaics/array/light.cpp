@@ -56,6 +56,36 @@ ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums, con
   return light;
 }
 
+void add_back_light(ArrayLight& light, const ArrayLight& back, double fraction) {
+  constexpr double rounding_m2 = 1e-9;
+  bool is_alike = light.width == back.width && light.height == back.height &&
+                  light.power_W.sums.size() == back.power_W.sums.size();
+  for (size_t bin = 0; is_alike && bin < light.area_m2.size(); ++bin) {
+    is_alike = std::abs(light.area_m2[bin] - back.area_m2[bin]) <= rounding_m2;
+  }
+  if (!is_alike) {
+    throw InputError({}, "array.back.receiver", "another grid than that of array.receiver",
+                     "a flux_map of the same node, axes and bins with side = \"back\"");
+  }
+  for (size_t i = 0; i < back.power_W.sums.size(); ++i) {
+    light.power_W.sums[i] += fraction * back.power_W.sums[i];
+  }
+  for (size_t i = 0; i < light.power_W.bound.size(); ++i) {
+    light.power_W.bound[i] += fraction * back.power_W.bound_of(i);
+  }
+  if (light.entry.bins == 0) return;
+  const size_t bins = light.power_W.bins;
+  for (int r = 0; r < light.power_W.replicates; ++r) {
+    const auto from_back = back.power_W.of(r);
+    for (size_t half = 0; half < 2; ++half) {
+      for (size_t bin = 0; bin < bins; ++bin) {
+        light.entry.sums[static_cast<size_t>(r) * light.entry.bins + half * bins + bin] +=
+            fraction * from_back[bin];
+      }
+    }
+  }
+}
+
 ArrayLight array_light(int width, int height, double u_length_m, double v_length_m,
                        std::span<const double> irradiance_W_m2) {
   const double area_m2 = u_length_m * v_length_m / (width * height);

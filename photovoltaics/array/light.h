@@ -27,6 +27,10 @@ struct ArrayLight {
 ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums,
                        const BinSums& entry = {});
 
+// Adds `fraction` of the light on the back of the same surface. It enters as perpendicular light.
+// InputError unless the grids are alike.
+void add_back_light(ArrayLight& light, const ArrayLight& back, double fraction);
+
 // The whole of a grid of given irradiance, exactly known: one replicate, one band.
 ArrayLight array_light(int width, int height, double u_length_m, double v_length_m,
                        std::span<const double> irradiance_W_m2);

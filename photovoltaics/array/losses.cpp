@@ -179,6 +179,8 @@ std::vector<CellFigures> known_cell_figures(double irradiance_W_m2, double photo
                                             double quantum_efficiency, double temperature_K) {
   std::vector<CellFigures> figures;
   for (const NamedCell& known : known_cells()) {
+    // One quantum efficiency for all; cells of other semiconductors have other absorption edges.
+    if (!known.name.starts_with("silicon")) continue;
     const double area_m2 = known.model.reference_area_m2;
     const CellCurve cell(parameters_at(known.model, area_m2, temperature_K));
     const double light_W = irradiance_W_m2 * area_m2;

@@ -93,6 +93,29 @@ QuantumEfficiency silicon_quantum_efficiency(double peak) {
   return table;
 }
 
+QuantumEfficiency quantum_efficiency_of(std::string_view cell, std::optional<double> peak) {
+  struct Shape {
+    double wavelength_nm, of_plateau;
+  };
+  const auto table = [](std::span<const Shape> shape, double plateau) {
+    QuantumEfficiency made;
+    for (const Shape& s : shape) {
+      made.wavelength_m.push_back(1e-9 * s.wavelength_nm);
+      made.efficiency.push_back(plateau * s.of_plateau);
+    }
+    return made;
+  };
+  static constexpr Shape gallium_arsenide[] = {{300, 0.2}, {350, 0.5},  {400, 0.8},  {450, 0.95},
+                                               {500, 1.0}, {850, 1.0},  {860, 0.98}, {868, 0.85},
+                                               {876, 0.4}, {884, 0.08}, {900, 0.0}};
+  static constexpr Shape cadmium_telluride[] = {{300, 0.2}, {350, 0.5},  {400, 0.82}, {450, 0.92},
+                                                {500, 1.0}, {850, 1.0},  {860, 0.97}, {870, 0.88},
+                                                {880, 0.6}, {890, 0.27}, {900, 0.08}, {920, 0.0}};
+  if (cell == "gallium_arsenide") return table(gallium_arsenide, peak.value_or(0.950));
+  if (cell == "cadmium_telluride") return table(cadmium_telluride, peak.value_or(0.949));
+  return silicon_quantum_efficiency(peak.value_or(silicon_peak));
+}
+
 double responsivity_A_W(const QuantumEfficiency& efficiency, double wavelength_m) {
   return efficiency.at(wavelength_m) * wavelength_m * elementary_charge_C /
          (planck_J_s * speed_of_light_m_s);

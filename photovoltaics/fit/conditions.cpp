@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <ranges>
 
 #include "core/constants.h"
 #include "core/errors.h"
@@ -16,9 +17,10 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-// The shared parameters: the gap and the logarithms of I₀, n V_t, R_s and 1/R_sh at temperature and
-// light of the first curve. Each curve has the logarithm of its photocurrent in addition.
-enum Shared { gap, saturation, scale, series, shunt, shared_count };
+// The shared parameters: the gap, the logarithms of I₀, n V_t, R_s and 1/R_sh at temperature and
+// light of the first curve, and of R_sh in the dark over that. Each curve has the logarithm of its
+// photocurrent in addition.
+enum Shared { gap, saturation, scale, series, shunt, dark, shared_count };
 
 constexpr double silicon_gap_eV = 1.121, silicon_gap_slope_1_K = -0.0002677;  // De Soto (2006)
 
@@ -27,16 +29,23 @@ struct Task {
   SweepNoise noise;
   ShuntLaw law = ShuntLaw::constant;
   double first_A = 1.0;         // approximate photocurrent of the first curve
+  double brightest_A = 1.0;     // and the largest one
   double reference_K = 298.15;  // of the shared values
   bool fits_gap = false;
   bool holds_shared = false;      // fits the photocurrents only
+  double misfit = 0.0;            // error of the model, as a fraction of the photocurrent
+  double variance = 0.0;          // per degree of freedom, in units of the noise alone
   std::vector<VectorXd> error_A;  // of each reading of each curve
+
+  // c of in_light(): PVsyst's 5.5 at the largest photocurrent.
+  double shunt_exponent() const { return 5.5 * first_A / brightest_A; }
 };
 
 // The circuit of a curve at its values (photocurrent, then shared), and d ln I₀/d gap.
 struct Circuit {
   double photocurrent_A, saturation_A, scale_V, series_ohm, shunt_S;
   double saturation_by_gap_1_eV;
+  double shunt_by_light, shunt_by_dark;  // d ln R_sh by the logarithms
 
   CellCurve cell() const {
     return CellCurve(single_diode(saturation_A, scale_V, series_ohm, 1.0 / shunt_S));
@@ -54,7 +63,20 @@ Circuit circuit_of(const Task& task, Index run, const VectorXd& x) {
   c.scale_V = std::exp(s[scale]) * T / T0;
   c.series_ohm = std::exp(s[series]);
   c.shunt_S = std::exp(s[shunt]);
-  if (task.law == ShuntLaw::inverse) c.shunt_S *= c.photocurrent_A / task.first_A;
+  const double light = c.photocurrent_A / task.first_A;
+  if (task.law == ShuntLaw::inverse) {
+    c.shunt_S *= light;
+    c.shunt_by_light = -1.0;
+  } else if (task.law == ShuntLaw::exponential) {
+    // R_sh over that of the first curve, as in_light() has it.
+    const double exponent = task.shunt_exponent(), full = std::exp(-exponent);
+    const double in_dark = std::exp(s[dark]), base = (1.0 - in_dark * full) / (1.0 - full);
+    const double fallen = std::exp(-exponent * light);
+    const double times = base + (in_dark - base) * fallen;
+    c.shunt_S /= times;
+    c.shunt_by_light = -exponent * light * (in_dark - base) * fallen / times;
+    c.shunt_by_dark = in_dark * (fallen - full) / (1.0 - full) / times;
+  }
   c.saturation_by_gap_1_eV = by_gap;
   return c;
 }
@@ -65,18 +87,21 @@ struct Reading {
 };
 
 // As point_of_curve() of fit.cpp: 0 = I_L − I₀ (e^{V_d/a} − 1) − G V_d − I with V_d = V + I R_s.
-Reading reading_of(const Task& task, const Circuit& c, const CellCurve& cell, double voltage_V) {
-  const double current = cell.current_A(c.photocurrent_A, voltage_V);
+Reading reading_of(const Circuit& c, const CellCurve& cell, const IvSweep& sweep, size_t i) {
+  const double voltage_V = sweep.voltage_V[i];
+  const double light_A = c.photocurrent_A * (sweep.light.empty() ? 1.0 : sweep.light[i]);
+  const double current = cell.current_A(light_A, voltage_V);
   const double diode_V = voltage_V + current * c.series_ohm;
   const double growth = std::expm1(diode_V / c.scale_V);
   const double junction_S = c.saturation_A * (growth + 1.0) / c.scale_V;
   const double conductance = junction_S + c.shunt_S;
   const double divisor = 1.0 + conductance * c.series_ohm;
   const double leak_A = c.shunt_S * diode_V;
-  const double by_light = c.photocurrent_A - (task.law == ShuntLaw::inverse ? leak_A : 0.0);
+  const double by_light = light_A + leak_A * c.shunt_by_light;
   Reading r{current, conductance / divisor, {}};
   r.by << by_light, -c.saturation_A * growth * c.saturation_by_gap_1_eV, -c.saturation_A * growth,
-      junction_S * diode_V, -conductance * current * c.series_ohm, -leak_A;
+      junction_S * diode_V, -conductance * current * c.series_ohm, -leak_A,
+      leak_A * c.shunt_by_dark;
   r.by /= divisor;
   return r;
 }
@@ -97,11 +122,11 @@ void find_errors(Task& task, const VectorXd& at) {
     const IvSweep& sweep = task.curves[k].sweep;
     VectorXd error(static_cast<Index>(sweep.voltage_V.size()));
     for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
-      const Reading r = reading_of(task, c, cell, sweep.voltage_V[i]);
+      const Reading r = reading_of(c, cell, sweep, i);
       error[static_cast<Index>(i)] =
           std::hypot(task.noise.current_fraction * r.current_A,
                      task.noise.voltage_fraction * sweep.voltage_V[i] * r.slope_S,
-                     1e-6 * task.noise.current_fraction * c.photocurrent_A);
+                     std::max(1e-6 * task.noise.current_fraction, task.misfit) * c.photocurrent_A);
     }
     task.error_A.push_back(std::move(error));
   }
@@ -120,7 +145,7 @@ inference::ResidualFunction residuals_of(const Task& task) {
     const VectorXd& error = task.error_A[static_cast<size_t>(run)];
     for (Index i = 0; i < points; ++i) {
       const auto k = static_cast<size_t>(i);
-      const Reading r = reading_of(task, c, cell, sweep.voltage_V[k]);
+      const Reading r = reading_of(c, cell, sweep, k);
       residuals[i] = (sweep.current_A[k] - r.current_A) / error[i];
       if (slopes != nullptr) slopes->row(i) = r.by / error[i];
     }
@@ -135,8 +160,10 @@ inference::Parameters parameters_from(const Task& task, const VectorXd& at) {
       {"saturation", "ln A", s[saturation]},
       {"n V_t", "ln V", s[scale]},
       {"series", "ln ohm", s[series]},
-      {"shunt", "ln S", s[shunt]}};
+      {"shunt", "ln S", s[shunt]},
+      {"dark", "", s[dark], s[dark], inference::infinity, 0.0, task.shunt_exponent()}};
   constexpr double held = 1e-9;
+  if (task.law != ShuntLaw::exponential) all.shared[dark].sigma = held;
   for (inference::Parameter& p : all.shared) {
     if (!task.holds_shared) break;
     p.mean = p.value;
@@ -172,8 +199,21 @@ VectorXd start_of(const Task& task) {
   }
   at.tail(Index{shared_count}) << silicon_gap_eV, std::log(first.saturation_A.value),
       std::log(first.scale_V.value), std::log(first.series_ohm.value),
-      -std::log(first.shunt_ohm.value);
+      -std::log(first.shunt_ohm.value), 0.5 * task.shunt_exponent();
   return at;
+}
+
+// Squares of a curve's residuals, of the current over its photocurrent, summed; at its values.
+double relative_squares(const Task& task, Index run, const VectorXd& at) {
+  const Circuit c = circuit_of(task, run, values_of(at, run));
+  const CellCurve cell = c.cell();
+  const IvSweep& sweep = task.curves[static_cast<size_t>(run)].sweep;
+  double sum = 0.0;
+  for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
+    const double off = sweep.current_A[i] - reading_of(c, cell, sweep, i).current_A;
+    sum += off * off;
+  }
+  return sum / (c.photocurrent_A * c.photocurrent_A);
 }
 
 inference::Fit best_fit(Task& task, const VectorXd& start, std::vector<OutlierReading>& outliers) {
@@ -187,7 +227,7 @@ inference::Fit best_fit(Task& task, const VectorXd& start, std::vector<OutlierRe
       const IvSweep& sweep = task.curves[k].sweep;
       off.emplace_back();
       for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
-        const Reading r = reading_of(task, c, cell, sweep.voltage_V[i]);
+        const Reading r = reading_of(c, cell, sweep, i);
         const double error_A =
             std::hypot(task.noise.current_fraction * c.photocurrent_A,
                        task.noise.voltage_fraction * sweep.voltage_V[i] * r.slope_S);
@@ -200,20 +240,17 @@ inference::Fit best_fit(Task& task, const VectorXd& start, std::vector<OutlierRe
     for (const CurveAt& curve : task.curves) check_sweep(curve.sweep);
     fit = fit_rounds(task, fit.at, 4);
   }
-  return fit;
-}
-
-// Sum of squares of the residuals of a curve's current, divided by the square of its photocurrent.
-double relative_squares(const Task& task, Index run, const VectorXd& at) {
-  const Circuit c = circuit_of(task, run, values_of(at, run));
-  const CellCurve cell = c.cell();
-  const IvSweep& sweep = task.curves[static_cast<size_t>(run)].sweep;
-  double sum = 0.0;
-  for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
-    const double off = sweep.current_A[i] - cell.current_A(c.photocurrent_A, sweep.voltage_V[i]);
-    sum += off * off;
+  // Residuals far beyond the noise are the model's, which is off alike at all voltages.
+  constexpr double far = 3.0;
+  task.variance = fit.variance();
+  if (!std::isfinite(fit.chi2) || task.variance < far * far) return fit;
+  double squares = 0.0, readings = 0.0;
+  for (size_t k = 0; k < task.curves.size(); ++k) {
+    squares += relative_squares(task, static_cast<Index>(k), fit.at);
+    readings += static_cast<double>(task.curves[k].sweep.voltage_V.size());
   }
-  return sum / (c.photocurrent_A * c.photocurrent_A);
+  task.misfit = std::sqrt(squares / readings);
+  return fit_rounds(task, fit.at, 4);
 }
 
 // The mean square residual of each curve under a fit to the other curves (five-fold
@@ -316,13 +353,20 @@ ConditionsFit described(const Task& task, const inference::Fit& fit,
   result.diode.series_ohm = exponential(s[series], e[series]);
   result.diode.shunt_ohm = {1.0 / first.shunt_S, e[shunt] / first.shunt_S};
   result.model.reference = result.diode.parameters(task.reference_K);
-  if (task.law == ShuntLaw::inverse) {
+  if (task.law != ShuntLaw::constant) {
     result.model.reference.shunt_light_A = first.photocurrent_A;
+  }
+  if (task.law == ShuntLaw::exponential) {
+    // By the photocurrent of the first curve as fitted, which differs from that at the start.
+    const double times = std::exp(s[dark]) / std::exp(s[shunt]);
+    result.model.reference.shunt_dark_ohm = times;
+    result.model.reference.shunt_exponent =
+        task.shunt_exponent() * first.photocurrent_A / task.first_A;
   }
   result.model.gap_eV = s[gap];
   result.model.gap_slope_1_K = silicon_gap_slope_1_K;
   result.gap_error_eV = task.fits_gap ? e[gap] : 0.0;
-  result.variance = fit.variance();
+  result.variance = task.variance;
   result.points = static_cast<size_t>(fit.samples);
   double squares = 0.0;
   for (Index run = 0; run < curves; ++run) {
@@ -331,14 +375,68 @@ ConditionsFit described(const Task& task, const inference::Fit& fit,
     const auto readings =
         static_cast<double>(task.curves[static_cast<size_t>(run)].sweep.voltage_V.size());
     squares += sum;
-    result.curves.push_back(
-        {exponential(at[run], error[run]), light_A * std::sqrt(sum / readings)});
+    const auto k = static_cast<size_t>(run);
+    result.curves.push_back({k, exponential(at[run], error[run]),
+                             light_A * std::sqrt(sum / readings),
+                             !task.curves[k].sweep.light.empty()});
   }
   result.rms = std::sqrt(squares / static_cast<double>(result.points));
   std::vector<NamedBound> named = resistance_bounds(series, shunt);
   result.bounds = bounds_reached(fit, named, Index{curves});
   describe_light(task, result);
   return result;
+}
+
+// The curves that one diode may describe, and in `result` the others; the irradiance of readings
+// stays where it helps.
+std::vector<CurveAt> described_curves(std::span<const CurveAt> curves, const SweepNoise& noise,
+                                      std::vector<size_t>& kept,
+                                      std::vector<ConditionsFit::Omitted>& omitted) {
+  std::vector<CurveAt> all(curves.begin(), curves.end());
+  kept.resize(all.size());
+  std::iota(kept.begin(), kept.end(), size_t{0});
+  constexpr size_t fewest = 4;
+  const bool may_omit = all.size() >= fewest;
+  std::vector<double> rms, scatter, ideality;
+  for (CurveAt& curve : all) {
+    if (!may_omit && curve.sweep.light.empty()) continue;
+    const SweepFit own = fit_sweeps(std::span(&curve.sweep, 1), noise);
+    if (!own.uses_light) curve.sweep.light.clear();
+    rms.push_back(own.rms_A / own.diode.photocurrent_A.value);
+    scatter.push_back(std::sqrt(own.variance));
+    ideality.push_back(own.diode.scale_V.value / curve.temperature_K);
+  }
+  // The reference is put first: the brightest, where it is twice as bright.
+  const auto by_light = [&] {
+    constexpr double far_brighter = 2.0;
+    const auto light = [&](size_t k) { return sweep_ends(all[k].sweep).short_circuit_A; };
+    const auto brightest = std::ranges::max_element(kept, {}, light);
+    if (light(*brightest) > far_brighter * light(kept[0])) {
+      std::rotate(kept.begin(), brightest, brightest + 1);
+    }
+    std::vector<CurveAt> some;
+    for (const size_t k : kept) some.push_back(all[k]);
+    return some;
+  };
+  if (!may_omit) return by_light();
+  const auto median = [](std::vector<double> values) {
+    std::ranges::sort(values);
+    return values[values.size() / 2];
+  };
+  constexpr double least = 0.005, far = 2.5;
+  const double rms_limit = std::max(2.0 * least, far * median(rms));
+  const double scatter_limit = far * median(scatter), usual_ideality = median(ideality);
+  const auto out = [&](size_t k) {
+    return rms[k] > rms_limit || (rms[k] > least && scatter[k] > scatter_limit) ||
+           ideality[k] < usual_ideality / far || ideality[k] > usual_ideality * far;
+  };
+  const auto count = static_cast<size_t>(std::ranges::count_if(kept, out));
+  if (3 * count > all.size()) return by_light();
+  for (const size_t k : kept) {
+    if (out(k)) omitted.push_back({k, rms[k]});
+  }
+  std::erase_if(kept, out);
+  return by_light();
 }
 
 }  // namespace
@@ -349,39 +447,55 @@ ConditionsFit fit_conditions(std::span<const CurveAt> curves, const SweepNoise& 
   using namespace several_conditions;
   if (curves.empty()) throw InputError({}, "curves", "none", "at least one");
   for (const CurveAt& curve : curves) check_sweep(curve.sweep);
+  std::vector<size_t> kept;
+  std::vector<ConditionsFit::Omitted> omitted;
   Task task;
-  task.curves.assign(curves.begin(), curves.end());
+  task.curves = described_curves(curves, noise, kept, omitted);
   task.noise = noise;
-  task.reference_K = curves[0].temperature_K;
-  const auto [coldest, warmest] = std::ranges::minmax(curves, {}, &CurveAt::temperature_K);
+  task.reference_K = task.curves[0].temperature_K;
+  const auto [coldest, warmest] = std::ranges::minmax(task.curves, {}, &CurveAt::temperature_K);
   constexpr double least_K = 5.0;
   task.fits_gap = warmest.temperature_K - coldest.temperature_K >= least_K;
+  const auto ends = [](const CurveAt& curve) { return sweep_ends(curve.sweep).short_circuit_A; };
+  task.first_A = ends(task.curves[0]);
+  task.brightest_A = std::ranges::max(task.curves | std::views::transform(ends));
+  const double dimmest_A = std::ranges::min(task.curves | std::views::transform(ends));
   const Eigen::VectorXd start = start_of(task);
-  task.first_A = std::exp(start[0]);
   task.law = shunt_law.value_or(ShuntLaw::constant);
   std::vector<OutlierReading> outliers;
   Task fitted = task;
   inference::Fit best = best_fit(fitted, start, outliers);
-  const auto lights = start.head(static_cast<Eigen::Index>(curves.size()));
-  constexpr double apart = 0.2;
-  if (!shunt_law && lights.maxCoeff() - lights.minCoeff() > apart) {
+  constexpr double apart = 1.2, far_apart = 4.0;
+  constexpr size_t enough = 5;
+  const double range = task.brightest_A / dimmest_A;
+  std::vector<ShuntLaw> others;
+  if (!shunt_law && range > apart) others.push_back(ShuntLaw::inverse);
+  if (!shunt_law && range > far_apart && task.curves.size() >= enough) {
+    others.push_back(ShuntLaw::exponential);
+  }
+  std::vector<double> predicted;  // by the best law
+  if (!others.empty()) predicted = predicted_squares(task, start);
+  for (const ShuntLaw law : others) {
     Task other = task;
-    other.law = ShuntLaw::inverse;
+    other.law = law;
     std::vector<OutlierReading> other_outliers;
     inference::Fit trial = best_fit(other, start, other_outliers);
-    if (std::isfinite(trial.chi2) &&
-        (!std::isfinite(best.chi2) ||
-         predicts_better(predicted_squares(task, start), predicted_squares(other, start)))) {
-      best = std::move(trial);
-      outliers = std::move(other_outliers);
-      fitted = std::move(other);
-    }
+    if (!std::isfinite(trial.chi2)) continue;
+    std::vector<double> squares = predicted_squares(other, start);
+    if (std::isfinite(best.chi2) && !predicts_better(predicted, squares)) continue;
+    best = std::move(trial);
+    outliers = std::move(other_outliers);
+    fitted = std::move(other);
+    predicted = std::move(squares);
   }
   if (!std::isfinite(best.chi2)) {
     throw InputError({}, "curves", "curves and noise that no diode fits together",
                      "curves of one lit device, their temperatures and their noise");
   }
-  return described(fitted, best, std::move(outliers));
+  ConditionsFit result = described(fitted, best, std::move(outliers));
+  for (ConditionsFit::Curve& curve : result.curves) curve.index = kept[curve.index];
+  result.omitted = std::move(omitted);
+  return result;
 }
 
 }  // namespace photorque

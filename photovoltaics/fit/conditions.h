@@ -16,21 +16,29 @@ struct CurveAt {
 };
 
 struct ConditionsFit {
-  SingleDiode diode;  // of the first curve
+  SingleDiode diode;  // of the reference: the first of `curves` below
   ShuntLaw shunt_law = ShuntLaw::constant;
-  CellModel model;  // of the whole device, reference_area_m2 = 1, at the first temperature
+  CellModel model;            // of the whole device, reference_area_m2 = 1, at its temperature
   double gap_error_eV = 0.0;  // 0: one temperature, which does not determine the gap
   std::vector<BoundReached> bounds;
   std::vector<OutlierReading> outliers;  // left out
   struct Curve {
+    size_t index = 0;  // of the given curves
     Estimate photocurrent_A;
     double rms_A = 0.0;
+    bool uses_light = false;  // the irradiance of its single readings
   };
   std::vector<Curve> curves;
+  // Curves that no one diode describes, with the rms of the best one over its photocurrent.
+  struct Omitted {
+    size_t index = 0;
+    double rms = 0.0;
+  };
+  std::vector<Omitted> omitted;
   double rms = 0.0;       // of current over the curve's photocurrent
   double variance = 0.0;  // per degree of freedom, in units of the noise given
   size_t points = 0;
-  // The photocurrent by the irradiance, where all curves state one: at the first temperature, and
+  // The photocurrent by the irradiance, where all curves state one: at that temperature, and
   // the error of its slope in the model, where there are several temperatures.
   double photocurrent_A_m2_W = 0.0;
   double photocurrent_slope_error_1_K = 0.0;
@@ -40,9 +48,17 @@ struct ConditionsFit {
 // follows the gap (model.h, with De Soto's slope of silicon), which is fitted where temperatures
 // differ by 5 K or more. The shunt follows `shunt_law`; without one it is constant, unless the
 // photocurrents differ by a fifth or more and the inverse law predicts curves better that were left
-// out of the fit, by more than two standard errors over the curves. Errors of single
-// readings are independent of each other. Outliers are left out as by fit_sweeps(). Throws
-// InputError as fit_sweeps() does.
+// out of the fit, by more than two standard errors over the curves; and of five curves over a
+// factor of four in light, the exponential law, if that predicts still better. The irradiance of
+// single readings is used as by fit_sweeps(). The reference is the first curve that is not omitted,
+// or the brightest, where it is twice as bright. Where the residuals are three times the noise,
+// they are weighed as an error of the model that is one fraction of each photocurrent.
+//
+// Of four curves and more, those are omitted that one diode does not describe (a shadow on a part
+// of the device, a cloud), as long as they are at most a third: their own best diode leaves more
+// than 1 % of the photocurrent, or 0.5 % beyond the noise, each 2.5 times the median of all, or has
+// an ideality 2.5 times off that median. Errors of single readings are independent of each
+// other. Outliers are left out as by fit_sweeps(). Throws InputError as fit_sweeps() does.
 ConditionsFit fit_conditions(std::span<const CurveAt> curves, const SweepNoise& noise,
                              std::optional<ShuntLaw> shunt_law = {});
 

@@ -17,8 +17,9 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-// Fitted are I_L and the logarithms of I₀, n V_t, R_s and 1/R_sh.
-enum Parameter { light, saturation, scale, series, shunt, count };
+// Fitted are I_L and the logarithms of I₀, n V_t, R_s and 1/R_sh, and of sweeps in both directions
+// τ of the charge storage.
+enum Parameter { light, saturation, scale, series, shunt, count, storage = count };
 
 CellCurve circuit(const VectorXd& x) {
   return CellCurve(single_diode(std::exp(x[saturation]), std::exp(x[scale]), std::exp(x[series]),
@@ -28,20 +29,41 @@ CellCurve circuit(const VectorXd& x) {
 struct PointOfCurve {
   double current_A;
   double slope_S;  // −dI/dV
-  Eigen::Matrix<double, 1, count> derivatives_A;
+  Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, count + 1> derivatives_A;
 };
 
-// I(V) and its derivatives, from 0 = I_L − I₀ (e^{V_d/a} − 1) − G V_d − I with V_d = V + I R_s.
-PointOfCurve point_of_curve(const CellCurve& cell, const VectorXd& x, double voltage_V) {
+// I(V) of reading `i` of a sweep and its derivatives, from
+// 0 = I_L − I₀ (e^{V_d/a} − 1) − G V_d − τ g dV_d/dt − I, with V_d = V + I R_s, g = I₀ e^{V_d/a}/a
+// and dV_d/dt = dV/dt/(1 + (g + G) R_s).
+PointOfCurve point_of_curve(const CellCurve& cell, const VectorXd& x, const IvSweep& sweep,
+                            size_t i) {
   const double a = std::exp(x[scale]), i0 = std::exp(x[saturation]);
   const double rs = std::exp(x[series]), g = std::exp(x[shunt]);
-  const double current = cell.current_A(x[light], voltage_V);
+  const double voltage_V = sweep.voltage_V[i];
+  const double factor = sweep.light.empty() ? 1.0 : sweep.light[i];
+  const double light_A = x[light] * factor;
+  double current = cell.current_A(light_A, voltage_V);
+  double stored_A = 0.0, stored_A_s = 0.0;
+  if (x.size() > count) {
+    constexpr int most = 50;
+    for (int round = 0; round < most; ++round) {
+      const double junction_S = i0 * std::exp((voltage_V + current * rs) / a) / a;
+      stored_A_s = junction_S * sweep.rate_V_s[i] / (1.0 + (junction_S + g) * rs);
+      stored_A = x[storage] * stored_A_s;
+      const double before = current;
+      current = cell.current_A(light_A - stored_A, voltage_V);
+      if (std::abs(current - before) < 1e-13 * light_A) break;
+    }
+  }
   const double diode_V = voltage_V + current * rs;
-  const double growth = std::expm1(diode_V / a), junction_S = i0 * (growth + 1.0) / a;
+  const double growth = std::expm1(diode_V / a);
+  const double junction_S = (i0 * (growth + 1.0) + stored_A) / a;
   const double conductance = junction_S + g, divisor = 1.0 + conductance * rs;
   PointOfCurve p{current, conductance / divisor, {}};
-  p.derivatives_A << 1.0, -i0 * growth, junction_S * diode_V, -conductance * current * rs,
-      -g * diode_V;
+  p.derivatives_A.resize(x.size());
+  p.derivatives_A.head(Index{count}) << factor, -i0 * growth - stored_A,
+      junction_S * diode_V + stored_A, -conductance * current * rs, -g * diode_V;
+  if (x.size() > count) p.derivatives_A[storage] = -stored_A_s;
   p.derivatives_A /= divisor;
   return p;
 }
@@ -54,7 +76,7 @@ MatrixXd covariance_root(const IvSweep& sweep, const SweepNoise& noise, const Ve
   MatrixXd covariance = MatrixXd::Zero(points, points);
   for (Index i = 0; i < points; ++i) {
     const double v = sweep.voltage_V[static_cast<size_t>(i)];
-    const PointOfCurve p = point_of_curve(cell, x, v);
+    const PointOfCurve p = point_of_curve(cell, x, sweep, static_cast<size_t>(i));
     from_light[i] = noise.current_fraction * p.current_A;
     const double from_voltage_A = noise.voltage_fraction * v * p.slope_S;
     const double rounding_A = 1e-6 * noise.current_fraction * x[light];
@@ -80,6 +102,7 @@ std::vector<inference::Parameter> parameters_from(const VectorXd& x, const Sweep
                                            {"series", "ln ohm", x[series]},
                                            {"shunt", "ln S", x[shunt]}};
   bound_resistances(ends.open_circuit_V / ends.short_circuit_A, all[series], all[shunt]);
+  if (x.size() > count) all.push_back({"storage", "s", x[storage]});
   return all;
 }
 
@@ -91,13 +114,13 @@ inference::ResidualFunction whitened(std::span<const IvSweep> sweeps,
   return [sweeps, &roots, points](const VectorXd& x, Index, VectorXd& residuals, MatrixXd* slopes) {
     residuals = VectorXd::Constant(points, std::numeric_limits<double>::infinity());
     if (!reasonable(x)) return;
-    if (slopes != nullptr) slopes->resize(points, count);
+    if (slopes != nullptr) slopes->resize(points, x.size());
     const CellCurve cell = circuit(x);
     Index row = 0;
     for (size_t s = 0; s < sweeps.size(); ++s) {
       const Index first = row;
       for (size_t i = 0; i < sweeps[s].voltage_V.size(); ++i, ++row) {
-        const PointOfCurve p = point_of_curve(cell, x, sweeps[s].voltage_V[i]);
+        const PointOfCurve p = point_of_curve(cell, x, sweeps[s], i);
         residuals[row] = sweeps[s].current_A[i] - p.current_A;
         if (slopes != nullptr) slopes->row(row) = p.derivatives_A;
       }
@@ -161,7 +184,7 @@ std::vector<std::vector<double>> off_curve(std::span<const IvSweep> sweeps, cons
   for (size_t s = 0; s < sweeps.size(); ++s) {
     for (size_t i = 0; i < sweeps[s].voltage_V.size(); ++i) {
       const double v = sweeps[s].voltage_V[i];
-      const PointOfCurve p = point_of_curve(cell, x, v);
+      const PointOfCurve p = point_of_curve(cell, x, sweeps[s], i);
       const double error_A =
           std::hypot(noise.current_fraction * x[light], noise.voltage_fraction * v * p.slope_S);
       off[s].push_back(std::abs(sweeps[s].current_A[i] - p.current_A) / error_A);
@@ -175,11 +198,67 @@ double rms_A(std::span<const IvSweep> sweeps, const VectorXd& x) {
   double squares = 0.0, points = 0.0;
   for (const IvSweep& sweep : sweeps) {
     for (size_t i = 0; i < sweep.voltage_V.size(); ++i, ++points) {
-      const double apart = cell.current_A(x[light], sweep.voltage_V[i]) - sweep.current_A[i];
+      const double apart = point_of_curve(cell, x, sweep, i).current_A - sweep.current_A[i];
       squares += apart * apart;
     }
   }
   return std::sqrt(squares / points);
+}
+
+// Whether the voltage rises over a part of the readings and falls over another one.
+bool has_both_directions(std::span<const IvSweep> sweeps) {
+  double up_V = 0.0, down_V = 0.0;
+  for (const IvSweep& sweep : sweeps) {
+    if (sweep.rate_V_s.size() != sweep.voltage_V.size()) return false;
+    if (sweep.is_timed != sweeps[0].is_timed) return false;
+    for (const double rate : sweep.rate_V_s) (rate > 0.0 ? up_V : down_V) += std::abs(rate);
+  }
+  constexpr double least = 0.1;
+  return std::min(up_V, down_V) > least * std::max(up_V, down_V);
+}
+
+// The charge storage at a fit, where it is determined.
+std::optional<ChargeStorage> storage_of(std::span<const IvSweep> sweeps,
+                                        const inference::Fit& fit) {
+  ChargeStorage found;
+  found.time = {fit.at[storage], fit.scatter_errors()[storage]};
+  found.is_timed = sweeps[0].is_timed;
+  constexpr double certain = 3.0;
+  if (!(std::abs(found.time.value) > certain * found.time.standard_error)) return std::nullopt;
+  const CellCurve cell = circuit(fit.at);
+  const VectorXd steady = fit.at.head(Index{count});
+  for (const IvSweep& sweep : sweeps) {
+    for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
+      const double off_A = point_of_curve(cell, fit.at, sweep, i).current_A -
+                           point_of_curve(cell, steady, sweep, i).current_A;
+      found.largest_A = std::max(found.largest_A, 2.0 * std::abs(off_A));
+    }
+  }
+  return found;
+}
+
+// The best fit without outliers, which go to `outliers` and out of `sweeps`; with the charge
+// storage where it is determined.
+inference::Fit best_fit(std::vector<IvSweep>& sweeps, const SweepNoise& noise,
+                        std::vector<OutlierReading>& outliers) {
+  const bool may_store = has_both_directions(sweeps);
+  const auto fitted = [&] {
+    inference::Fit fit = fit_rounds(sweeps, noise, start_from(sweeps[0], noise), 4);
+    if (!may_store || !std::isfinite(fit.chi2)) return fit;
+    VectorXd start(fit.at.size() + 1);
+    start << fit.at, 0.0;
+    const inference::Fit stored = fit_rounds(sweeps, noise, start, 6);
+    return std::isfinite(stored.chi2) && storage_of(sweeps, stored) ? stored : fit;
+  };
+  inference::Fit best = fitted();
+  for (int round = 0; round < 4 && std::isfinite(best.chi2); ++round) {
+    std::vector<IvSweep*> changed;
+    for (IvSweep& sweep : sweeps) changed.push_back(&sweep);
+    if (!take_outliers(changed, off_curve(sweeps, noise, best.at), outliers)) break;
+    for (const IvSweep& sweep : sweeps) check_sweep(sweep);
+    best = fitted();
+  }
+  return best;
 }
 
 }  // namespace
@@ -189,17 +268,23 @@ SweepFit fit_sweeps(std::span<const IvSweep> sweeps, const SweepNoise& noise) {
   using namespace even_light;
   if (sweeps.empty()) throw InputError({}, "curves", "none", "at least one sweep");
   for (const IvSweep& sweep : sweeps) check_sweep(sweep);
-  inference::Fit best = fit_rounds(sweeps, noise, start_from(sweeps[0], noise), 4);
   SweepFit result;
   std::vector<IvSweep> kept(sweeps.begin(), sweeps.end());
-  for (int round = 0; round < 4 && std::isfinite(best.chi2); ++round) {
-    std::vector<IvSweep*> changed;
-    for (IvSweep& sweep : kept) changed.push_back(&sweep);
-    if (!take_outliers(changed, off_curve(kept, noise, best.at), result.outliers)) break;
-    sweeps = kept;
-    for (const IvSweep& sweep : sweeps) check_sweep(sweep);
-    best = fit_rounds(sweeps, noise, start_from(sweeps[0], noise), 4);
+  for (IvSweep& sweep : kept) sweep.light.clear();
+  inference::Fit best = best_fit(kept, noise, result.outliers);
+  if (std::ranges::any_of(sweeps, [](const IvSweep& one) { return !one.light.empty(); })) {
+    std::vector<IvSweep> lit(sweeps.begin(), sweeps.end());
+    std::vector<OutlierReading> outliers;
+    inference::Fit trial = best_fit(lit, noise, outliers);
+    result.uses_light = std::isfinite(trial.chi2) &&
+                        (!std::isfinite(best.chi2) || trial.variance() < best.variance());
+    if (result.uses_light) {
+      best = std::move(trial);
+      kept = std::move(lit);
+      result.outliers = std::move(outliers);
+    }
   }
+  sweeps = kept;
   if (!std::isfinite(best.chi2)) {
     throw InputError({}, "curves", "sweeps and noise that no diode fits together",
                      "sweeps of one lit cell and their noise");
@@ -219,6 +304,7 @@ SweepFit fit_sweeps(std::span<const IvSweep> sweeps, const SweepNoise& noise) {
   result.bounds = bounds_reached(best, resistance_bounds(series, shunt));
   result.rms_A = rms_A(sweeps, x);
   result.points = static_cast<size_t>(best.samples);
+  if (x.size() > count) result.storage = storage_of(sweeps, best);
   return result;
 }
 

@@ -20,6 +20,13 @@ namespace photorque {
 // One current–voltage sweep in the order in which it was measured.
 struct IvSweep {
   std::vector<double> voltage_V, current_A;  // of equal length, at least 6 points
+  // Of each reading, or empty: the irradiance over its mean, and the rate of the voltage, in V/s if
+  // `is_timed`, else in V per reading.
+  std::vector<double> light = {}, rate_V_s = {};
+  bool is_timed = false;
+
+  // Without the readings whose element of `out` is not zero.
+  IvSweep without(const std::vector<char>& out) const;
 };
 
 // The noise of a sweep. Both errors are proportional: to the current with a correlation
@@ -57,21 +64,33 @@ struct OutlierReading {
   double voltage_V = 0.0, current_A = 0.0;
 };
 
+// The charge stored in the junction, from sweeps in both directions: it takes the current
+// τ dI_D/dt (diffusion capacitance τ dI_D/dV), I_D the current of the diode.
+struct ChargeStorage {
+  Estimate time;  // τ in s, or in readings where the sweeps have no times
+  bool is_timed = false;
+  double largest_A = 0.0;  // largest difference of the current between the directions
+};
+
 struct SweepFit {
-  SingleDiode diode;
+  SingleDiode diode;  // at the mean irradiance of the sweeps
   std::vector<BoundReached> bounds;
   double rms_A = 0.0;     // of current at the measured voltages
   double variance = 0.0;  // per degree of freedom, in units of the noise given
   size_t points = 0;
   std::vector<OutlierReading> outliers;  // left out
+  bool uses_light = false;               // the irradiance of single readings
+  std::optional<ChargeStorage> storage = {};
 };
 
-// One set of parameters for all sweeps (repeats under the same light).
+// One set of parameters for all sweeps (repeats under the same light). The irradiance of single
+// readings is used where the fit is better with it. If both directions of the voltage occur, τ of
+// the charge storage is fitted, and stated where it is more than three standard errors from zero.
 //
 // Generalised least squares in the current: the covariance of a sweep is that of its noise, with
 // the voltage's error carried over by the curve's slope, taken from the fit of the round before.
 // Exact data give their parameters back to about 1e-12. Readings more than eight of their errors
-// off, and eight times the median, are left out as outliers, as long as they are at most 5 %.
+// off, and eight times the median, are left out as outliers, as long as they are at most 10 %.
 // Throws InputError for a sweep of less than six points or without a short or open circuit in
 // reach.
 SweepFit fit_sweeps(std::span<const IvSweep> sweeps, const SweepNoise& noise);
@@ -116,7 +135,8 @@ RatedTolerance written_steps(std::span<const RatedPoint> points);
 // How the shunt resistance changes with the light.
 enum class ShuntLaw {
   constant,
-  inverse,  // R_sh ∝ 1/irradiance: De Soto, CEC; see in_light()
+  inverse,      // R_sh ∝ 1/irradiance: De Soto, CEC; see in_light()
+  exponential,  // with a resistance in the dark: PVsyst; not of a datasheet
 };
 
 struct RatedFit {

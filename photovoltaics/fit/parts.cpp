@@ -44,6 +44,21 @@ double gap_of_voltage_slope_eV(const CellModel& model, double light_A, double gr
   return std::midpoint(low, high);
 }
 
+IvSweep IvSweep::without(const std::vector<char>& out) const {
+  IvSweep kept;
+  kept.is_timed = is_timed;
+  const auto keep = [&out](const std::vector<double>& all, std::vector<double>& some) {
+    for (size_t i = 0; i < all.size(); ++i) {
+      if (out[i] == 0) some.push_back(all[i]);
+    }
+  };
+  keep(voltage_V, kept.voltage_V);
+  keep(current_A, kept.current_A);
+  keep(light, kept.light);
+  keep(rate_V_s, kept.rate_V_s);
+  return kept;
+}
+
 void check_sweep(const IvSweep& sweep) {
   constexpr size_t fewest = 6;  // one more than parameters
   const size_t points = sweep.voltage_V.size();
@@ -220,7 +235,7 @@ std::vector<NamedBound> resistance_bounds(Index series, Index shunt) {
 
 bool take_outliers(std::span<IvSweep* const> sweeps, const std::vector<std::vector<double>>& off,
                    std::vector<OutlierReading>& taken) {
-  constexpr double far = 8.0, most = 0.05;
+  constexpr double far = 8.0, most = 0.1;
   std::vector<double> all;
   for (const std::vector<double>& one : off) all.insert(all.end(), one.begin(), one.end());
   const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
@@ -245,13 +260,7 @@ bool take_outliers(std::span<IvSweep* const> sweeps, const std::vector<std::vect
   const auto count = static_cast<double>(found.size() + taken.size());
   if (found.empty() || count > most * static_cast<double>(all.size() + taken.size())) return false;
   for (size_t s = 0; s < sweeps.size(); ++s) {
-    IvSweep kept;
-    for (size_t i = 0; i < off[s].size(); ++i) {
-      if (is_out[s][i] != 0) continue;
-      kept.voltage_V.push_back(sweeps[s]->voltage_V[i]);
-      kept.current_A.push_back(sweeps[s]->current_A[i]);
-    }
-    *sweeps[s] = std::move(kept);
+    *sweeps[s] = sweeps[s]->without(is_out[s]);
   }
   taken.insert(taken.end(), found.begin(), found.end());
   return true;

@@ -348,6 +348,9 @@ RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureS
                           std::optional<ShuntLaw> shunt_law) {
   using namespace rated_points;
   check(points);
+  if (shunt_law == ShuntLaw::exponential) {
+    throw InputError({}, "shunt", "\"exponential\" with a datasheet", "it with curves");
+  }
   const auto differs = [&](double RatedPoint::*figure) {
     return std::ranges::any_of(points,
                                [&](const RatedPoint& p) { return p.*figure != points[0].*figure; });

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/errors.h"
+#include "photovoltaics/array/keys.h"
 #include "receivers/flux_map.h"
 
 namespace photorque {
@@ -103,6 +104,10 @@ LightParts light_parts(const Experiment& experiment) {
   parts.lamps = experiment.beams.size();
   const auto arrays = experiment.file.others("array");
   if (arrays.size() == 1) {
+    if (arrays[0].has(array_key::back)) {
+      throw arrays[0].error(array_key::back, "bifacial cells",
+                            "none here: the effects of light know the front only");
+    }
     parts.design =
         read_array_design(arrays[0], read_cell_places(arrays[0], experiment.scene, *parts.grid));
   }

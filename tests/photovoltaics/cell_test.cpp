@@ -5,6 +5,8 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstdio>
+#include <fstream>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -16,6 +18,7 @@
 #include "core/numerics/random.h"
 #include "core/parallel.h"
 #include "ivcurves.h"
+#include "photovoltaics/cell/model.h"
 #include "photovoltaics/cell/table.h"
 #include "reference.h"
 
@@ -270,6 +273,35 @@ TEST(PhotovoltaicCell, ShuntInLightIsThatOfTheNamedModels) {
   EXPECT_NEAR(in_light(p, 0.8 * 6.0).shunt_ohm, 305.757, 5e-4);
   EXPECT_NEAR(in_light(p, 0.0).shunt_ohm, 1000.0, 1e-9);
   EXPECT_NEAR(in_light(p, 6.0).shunt_ohm, 300.0, 1e-9);
+}
+
+// tests/data/de_soto.py: De Soto's model by its equations in Python, as pvlib has it.
+TEST(PhotovoltaicCell, ModuleInOtherConditionsIsDeSotos) {
+  CellModel module;
+  module.reference.saturation_1_A = 8.196e-10;
+  module.reference.ideality_1 = 2.6373 / (boltzmann_J_K * 298.15 / elementary_charge_C);
+  module.reference.series_ohm = 1.065;
+  module.reference.shunt_ohm = 381.68;
+  module.reference.shunt_light_A = 5.114;
+  module.gap_eV = 1.121;
+  module.gap_slope_1_K = -0.0002677;
+  module.photocurrent_slope_1_K = 0.004539 / 5.114;
+  std::ifstream in(reference::file("de_soto"));
+  std::string line;
+  std::getline(in, line);
+  int rows = 0;
+  for (; std::getline(in, line); ++rows) {
+    double irradiance_W_m2 = 0, kelvin = 0, short_A = 0, open_V = 0, maximum_W = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf", &irradiance_W_m2, &kelvin, &short_A,
+                          &open_V, &maximum_W),
+              5);
+    const double light_A = 5.114 * irradiance_W_m2 / 1000.0 * photocurrent_factor(module, kelvin);
+    const CellCurve cell(in_light(parameters_at(module, 1.0, kelvin), light_A));
+    EXPECT_NEAR(cell.short_circuit_A(light_A), short_A, 1e-8 * short_A) << line;
+    EXPECT_NEAR(cell.open_circuit_V(light_A), open_V, 1e-8 * open_V) << line;
+    EXPECT_NEAR(cell.maximum_power(light_A).power_W(), maximum_W, 1e-8 * maximum_W) << line;
+  }
+  EXPECT_EQ(rows, 20);
 }
 
 TEST(PhotovoltaicCell, ParametersOutOfRangeAreNamed) {

@@ -107,6 +107,39 @@ TEST(PhotovoltaicFit, FilesOfInstrumentsAreRead) {
            {"Spannung in V;Strom in mA;Einstrahlung in W/m2;Zelltemperatur in °C\n"
             "0,1;500;900;24\n0,2;400;1100;26\n",
             1000.0, 298.15},
+           // KickStart, the buffer and the SCPI fields of Keithley's source-measure units, whose
+           // current is counted into the device.
+           {"KickStart Export\nModel,2460\n\nRun Index,Point,SMU-1 Voltage (V),SMU-1 Current (A),"
+            "SMU-1 Time (s)\n1,1,1.0E-01,5.0E-01,0.1\n1,2,2.0E-01,4.0E-01,0.2\n",
+            {},
+            {}},
+           {"Model,2450\n\nIndex,Reading,Unit,Source Value,Source Unit\n1,+5.0E-01,A,+1.0E-01,V\n"
+            "2,+4.0E-01,A,+2.0E-01,V\n",
+            {},
+            {}},
+           {"Index,Reading,Unit,Value,Unit\n1,100,mV,0.5,A\n2,200,mV,0.4,A\n", {}, {}},
+           {"VOLT,CURR,RES,TIME,STAT\n+1.0E-01,+5.0E-01,+9.91E+37,+0.0E+00,+2.1E+04\n"
+            "+2.0E-01,+4.0E-01,+9.91E+37,+1.0E-01,+2.1E+04\n",
+            {},
+            {}},
+           {"AnodeI,AnodeV,CathodeI\n0.5,0.1,-0.5\n0.4,0.2,-0.4\n", {}, {}},
+           // PVPM, Daystar, ESTI, HT, and lines above and below the readings.
+           {"PVPM 1000C40\r\nUoc = 0,60 V\r\nEeff = 1000 W/m²\r\nTmod = 25,0 °C\r\n\r\n"
+            "Nr\tU in V\tI in A\tP in W\r\n1\t0,1\t0,5\t0,05\r\n2\t0,2\t0,4\t0,08\r\n",
+            1000.0, 298.15},
+           {"\"Daystar, Inc.\",\"IVPC 3.11\"\n\"Irradiance (W/m^2)\",1000\n\"Cell Temp (C)\",25\n"
+            "\"Volts\",\"Amps\",\"Watts\"\n0.1,0.5,0.05\n0.2,0.4,0.08\n",
+            1000.0, 298.15},
+           {"Device: AB123\n# Irradiance [W/m2]: 1000\nT_DUT [°C]: 25\n"
+            "V_meas [V]\tI_meas [A]\tV_corr [V]\tI_corr [A]\n0.1\t0.5\t9\t9\n0.2\t0.4\t9\t9\n",
+            1000.0, 298.15},
+           {"Temperature coefficient: 0.05 %/K\nV (V),I (A),Vopc (V),Iopc (A)\n0.1,0.5,9,9\n"
+            "0.2,0.4,9,9\n",
+            {},
+            {}},
+           {"Vmod;Imod;\n0,1 V;500 mA;\n0,2 V;400 mA;\nIsc;0,5\nEnd of data\n", {}, {}},
+           {"Voltage (V) Current (mA)\n0.1 500\n0.2 400\n", {}, {}},
+           {"V [V],J [mA/cm^2]\n0.1,500\n0.2,400\n", {}, {}},
            {"voltage_mV,current_mA\n100,500\n150,NaN\n200,400\n250,9.91E37\n", {}, {}},
            {"voltage_V,current_A,irradiance_W_m2,Temperature "
             "(C)\n0.1,0.5,900,24\n0.2,0.4,1100,26\n",
@@ -149,10 +182,113 @@ TEST(PhotovoltaicFit, FilesOfInstrumentsAreRead) {
     return "accepted";
   };
   EXPECT_NE(message("0.1,0.5\n0.2,0.4\n").find("a header that names a voltage"), std::string::npos);
-  EXPECT_NE(message("V,I (mA/cm2)\n0.1,35\n").find("the unit ma/cm2"), std::string::npos);
+  EXPECT_NE(message("V,I (mA/sr)\n0.1,35\n").find("the unit ma/sr"), std::string::npos);
+  // A row without a voltage among the readings is a mistake, not their end.
+  EXPECT_NE(message("V,I\n0.1,0.5\nO.2,0.4\n0.3,0.3\n").find("curve.csv:3"), std::string::npos);
+  EXPECT_TRUE(curves_in("V,J (mA/cm2)\n0.1,35\n", "x")[0].is_density);
+  EXPECT_FALSE(is_curve_header("t,motor voltage,motor current,omega"));
   EXPECT_NE(message("V,I,V,I\n0.1,0.5,0.1,0.4\n").find("second such column"), std::string::npos);
   EXPECT_NE(message("V,I\n0.1,a\n").find("curve.csv:2"), std::string::npos);
   EXPECT_NE(message("V,I,temperature\n0.1,0.5,25\n").find("K or °C"), std::string::npos);
+}
+
+// A module of 60 cells, 9 A, n 1.05, R_s 0.3 Ω, R_sh 200 Ω; its curve under light that changes by
+// `light`, and with charge stored in the junction for `stored` readings: the diode's current at a
+// diode voltage that lags by τ dV_d/dt.
+struct Module {
+  ivcurves::Truth truth{9.0, 5e-10, 0.3, 200.0, 1.05, 60};
+  CellCurve cell = CellCurve(truth.parameters());
+
+  template <typename Light>
+  IvSweep sweep(const Light& light) const {
+    IvSweep s;
+    const double open_V = cell.open_circuit_V(9.0);
+    for (int i = 0; i < 100; ++i) {
+      const double v = open_V * i / 99.0;
+      const double noise = unit_interval(hash_words(7, static_cast<uint64_t>(i))) - 0.5;
+      s.voltage_V.push_back(v);
+      s.current_A.push_back(cell.current_A(9.0 * light(i), v) * (1.0 + 1e-3 * noise));
+    }
+    return s;
+  }
+};
+
+TEST(PhotovoltaicFit, ReadingsUnderOtherLightAreLeftOut) {
+  const Module module;
+  const auto dip = [](int i) { return i < 8 ? 0.98 : 1.0; };
+  const auto cloud = [](int i) { return 1.0 - 0.04 * std::exp(-std::pow((i - 15) / 5.0, 2)); };
+  const auto flash = [](int i) { return 1.0 + 0.03 * std::exp(-std::pow((i - 25) / 4.0, 2)); };
+  const auto check = [&](IvSweep sweep, size_t fewest) {
+    const UnsteadyLight found = take_unsteady_light(sweep, 1e-3);
+    EXPECT_GE(found.readings, fewest);
+    EXPECT_LT(found.readings, 25u);
+    const SweepFit fit = fit_sweeps(std::array{sweep}, {});
+    EXPECT_NEAR(fit.diode.scale_V.value, module.truth.scale_V(), 0.02 * module.truth.scale_V());
+    EXPECT_NEAR(fit.diode.photocurrent_A.value, 9.0, 0.01);
+    EXPECT_NEAR(fit.diode.series_ohm.value, 0.3, 0.01);
+  };
+  check(module.sweep(dip), 8);
+  check(module.sweep(cloud), 10);
+  check(module.sweep(flash), 8);
+  // Steady light, and a step down as of a shadow on a substring, lose nothing.
+  IvSweep steady = module.sweep([](int) { return 1.0; });
+  EXPECT_EQ(take_unsteady_light(steady, 1e-3).readings, 0u);
+  IvSweep step = module.sweep([](int i) { return i < 30 ? 1.05 : 1.0; });
+  EXPECT_EQ(take_unsteady_light(step, 1e-3).readings, 0u);
+  // With the irradiance of each reading all are used.
+  IvSweep measured = module.sweep(cloud);
+  for (int i = 0; i < 100; ++i) measured.light.push_back(cloud(i));
+  const SweepFit fit = fit_sweeps(std::array{measured}, {});
+  EXPECT_TRUE(fit.uses_light);
+  EXPECT_EQ(fit.points, 100u);
+  EXPECT_NEAR(fit.diode.photocurrent_A.value, 9.0, 0.01);
+  EXPECT_NEAR(fit.diode.shunt_ohm.value, 200.0, 8.0);
+  // A sensor that scatters while the light is steady is not.
+  IvSweep scattered = module.sweep([](int) { return 1.0; });
+  for (uint64_t i = 0; i < 100; ++i) {
+    scattered.light.push_back(1.0 + 0.01 * (unit_interval(hash_words(8, i)) - 0.5));
+  }
+  EXPECT_FALSE(fit_sweeps(std::array{scattered}, {}).uses_light);
+}
+
+// The stored charge makes the diode's current that of a voltage τ dV_d/dt higher: to first order in
+// τ this is the diffusion capacitance. The curve is made by that shift, bisected for the current.
+TEST(PhotovoltaicFit, HysteresisGivesTheStoredCharge) {
+  const Module module;
+  const double open_V = module.cell.open_circuit_V(9.0), a = module.truth.scale_V();
+  for (const double readings : {0.05, 0.3}) {
+    std::string text = "t (ms),V,I\n";
+    for (int i = 0; i < 200; ++i) {
+      const bool rising = i < 100;
+      const double v = open_V * (rising ? i : 199 - i) / 99.0;
+      const double rate_V = (rising ? 1.0 : -1.0) * open_V / 99.0;  // per reading
+      double low = -20.0, high = 10.0;
+      for (int k = 0; k < 80; ++k) {
+        const double current = 0.5 * (low + high), d = v + 0.3 * current;
+        const double g = 5e-10 * std::exp(d / a) / a;
+        const double moved = d + readings * rate_V / (1.0 + 0.3 * (g + 1.0 / 200.0));
+        const double left = 9.0 - 5e-10 * std::expm1(moved / a) - d / 200.0 - current;
+        (left > 0.0 ? low : high) = current;
+      }
+      char line[80];
+      std::snprintf(line, sizeof line, "%.1f,%.6f,%.6f\n", 0.2 * i, v, low);
+      text += line;
+    }
+    const IvSweep sweep = curves_in(text, "x")[0].sweep;
+    EXPECT_TRUE(sweep.is_timed);
+    const SweepFit fit = fit_sweeps(std::array{sweep}, {});
+    ASSERT_TRUE(fit.storage.has_value());
+    EXPECT_TRUE(fit.storage->is_timed);
+    EXPECT_NEAR(fit.storage->time.value, readings * 2e-4, 0.1 * readings * 2e-4);
+    EXPECT_NEAR(fit.diode.scale_V.value, a, 0.02 * a);
+    EXPECT_NEAR(fit.diode.series_ohm.value, 0.3, 0.01);
+    // The rising half alone gives another open-circuit voltage, and no storage.
+    IvSweep half = sweep;
+    for (std::vector<double>* column : {&half.voltage_V, &half.current_A, &half.rate_V_s}) {
+      column->resize(100);
+    }
+    EXPECT_FALSE(fit_sweeps(std::array{half}, {}).storage.has_value());
+  }
 }
 
 }  // namespace

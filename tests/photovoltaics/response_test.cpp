@@ -3,6 +3,12 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "photovoltaics/cell/model.h"
+
 namespace photorque {
 namespace {
 
@@ -48,6 +54,51 @@ TEST(LightOutside, OfTheTableIsTold) {
   EXPECT_THAT(reported(cut, line_at(730)),
               testing::ElementsAre(testing::HasSubstr("50.0 % of the light at 730.0 nm")));
   EXPECT_THAT(reported(cut, line_at(660)), testing::IsEmpty());
+}
+
+// Efficiency of a named cell of 1 cm² in light of one spectrum.
+double efficiency(const char* name, const Spectrum& spectrum, double irradiance_W_m2) {
+  for (const NamedCell& known : known_cells()) {
+    if (known.name != name) continue;
+    const WeighedSpectrum light[] = {{spectrum, 1.0}};
+    const double amperes_W = band_responsivity_A_W(quantum_efficiency_of(name), Bands{}, light)[0];
+    const CellCurve cell(parameters_at(known.model, 1e-4, 298.15));
+    return cell.maximum_power(1e-4 * irradiance_W_m2 * amperes_W).power_W() /
+           (1e-4 * irradiance_W_m2);
+  }
+  return 0.0;
+}
+
+Spectrum light_at(double nm, double fwhm_nm) {
+  return {.shape = Spectrum::Shape::gaussian, .centre_m = 1e-9 * nm, .fwhm_m = 1e-9 * fwhm_nm};
+}
+
+// Published: the records of gallium arsenide and cadmium telluride in AM1.5G sunlight, 29.1 and
+// 21.0 % (Solar cell efficiency tables, version 54, 2019).
+TEST(NamedCells, HaveThePublishedEfficiencies) {
+  const Spectrum sunlight{.shape = Spectrum::Shape::am15g};
+  EXPECT_NEAR(efficiency("gallium_arsenide", sunlight, 1000.0), 0.291, 0.01);
+  EXPECT_NEAR(efficiency("cadmium_telluride", sunlight, 1000.0), 0.210, 0.01);
+  for (const char* name : {"silicon_heterojunction", "gallium_arsenide", "cadmium_telluride"}) {
+    for (const double nm : {730.0, 850.0, 940.0}) {
+      const double got = efficiency(name, light_at(nm, 30), 1000.0);
+      std::printf("    %-24s %3.0f nm %.3f\n", name, nm, got);
+      // Neither beyond the photon energy times the largest voltage, nor beyond the edge.
+      const double gap_nm = std::string(name) == "silicon_heterojunction" ? 1190.0 : 900.0;
+      if (nm > gap_nm) {
+        EXPECT_LT(got, 0.01) << name << nm;
+      } else {
+        EXPECT_GT(got, 0.25) << name << nm;
+        EXPECT_LT(got, 0.75) << name << nm;
+      }
+    }
+  }
+}
+
+TEST(NamedCells, APeakThatIsStatedHolds) {
+  for (const char* name : {"silicon_heterojunction", "gallium_arsenide", "cadmium_telluride"}) {
+    EXPECT_NEAR(std::ranges::max(quantum_efficiency_of(name, 0.8).efficiency), 0.8, 1e-12) << name;
+  }
 }
 
 TEST(BandResponsivity, LineInsideABandGivesNothingElsewhere) {

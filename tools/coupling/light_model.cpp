@@ -222,10 +222,7 @@ void LightModel::add(const Light& light, const Quat& lab_from_body, RotationSamp
   if (!light.array) return;
   const ArrayPower& array = *light.array;
   const CellCurrents cells =
-      cell_currents(array.design,
-                    array_light(run.flux_map(array.flux_map), result.sums[array.flux_map],
-                                array.incidence ? result.sums[*array.incidence] : BinSums{}),
-                    array.responsivity_A_W);
+      cell_currents(array.design, light_on(array, run, result.sums), array.responsivity_A_W);
   for (size_t i = 0; i < cells.photocurrent_A.size(); ++i) {
     put(cells.photocurrent_A[i], cells.photocurrent_error_A[i]);
   }

@@ -18,9 +18,9 @@ inline constexpr NumberKey curve_irradiance("irradiance_W_m2", Range::positive()
 inline constexpr NumberKey curve_temperature("temperature_K", {1.0, 1000.0}, "of the cells",
                                              {.usually = "that in the file, else that of `[fit]`"});
 inline constexpr ChoiceKey shunt(
-    "shunt", {"best", "constant", "inverse"}, 0,
-    "R_sh in any light, or inversely proportional to the irradiance (De Soto, CEC); `best`: of "
-    "several lights, what describes them better");
+    "shunt", {"best", "constant", "inverse", "exponential"}, 0,
+    "R_sh in any light, inversely proportional to the irradiance (De Soto, CEC), or of curves "
+    "exponential in it (PVsyst); `best`: of several lights, what describes them better");
 inline constexpr TablesKey datasheet("datasheet", "one to several points at one temperature");
 inline constexpr TextKey module_file(
     "module_file", "*or* instead: a library of modules of SAM (CSV), or a PAN file of PVsyst",

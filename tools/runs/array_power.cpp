@@ -100,6 +100,11 @@ ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known) {
   const FluxMapReceiver& map = run.flux_map(array.flux_map);
   array.design =
       read_array_design(tables[0], read_cell_places(tables[0], experiment.scene, map.grid()));
+  if (tables[0].has(array_key::back)) {
+    const Settings back = tables[0].get(array_key::back);
+    array.back_map = run.flux_map_index(back.get(array_key::back_receiver));
+    array.bifaciality = back.get(array_key::bifaciality);
+  }
   const CellHeat heat = read_cell_heat(tables[0], surroundings_of(experiment.file));
   if (!tables[0].has(array_key::temperature)) array.design.heat = heat;
   array.report = read_array_report(tables[0], read_published(experiment.file.others("published")));
@@ -123,9 +128,18 @@ ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known) {
   return array;
 }
 
+ArrayLight light_on(const ArrayPower& array, const OpticalRun& run, std::span<const BinSums> sums) {
+  ArrayLight light = array_light(run.flux_map(array.flux_map), sums[array.flux_map],
+                                 array.incidence ? sums[*array.incidence] : BinSums{});
+  if (array.back_map) {
+    add_back_light(light, array_light(run.flux_map(*array.back_map), sums[*array.back_map]),
+                   array.bifaciality);
+  }
+  return light;
+}
+
 ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const TraceResult& result) {
-  const ArrayLight light = array_light(run.flux_map(array.flux_map), result.sums[array.flux_map],
-                                       array.incidence ? result.sums[*array.incidence] : BinSums{});
+  const ArrayLight light = light_on(array, run, result.sums);
   ArrayResult power = evaluate_array(array.design, light, array.responsivity_A_W);
   const double delivered = power.efficiency.value;
   const bool too_dark = array.design.heat && array.design.heat->absorptance < delivered;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,10 @@ namespace photorque {
 // The `[array]` of an experiment, ready to be evaluated after each trace.
 struct ArrayPower {
   ArrayDesign design;
-  size_t flux_map = 0;                         // place among the receivers
-  std::optional<size_t> incidence;             // that of the IncidenceReceiver
+  size_t flux_map = 0;              // place among the receivers
+  std::optional<size_t> incidence;  // that of the IncidenceReceiver
+  std::optional<size_t> back_map;   // of bifacial cells
+  double bifaciality = 0.0;
   std::vector<double> responsivity_A_W;        // per band of the scene
   std::vector<double> ideal_responsivity_A_W;  // were every photon converted
   std::vector<std::string> notices;            // one line each
@@ -27,6 +30,9 @@ struct ArrayPower {
 // run where the light's angle counts: under [array.cover], and on a surface with optics by angle.
 // `known`: the array of a run with the same lamps, whose spectra need not be looked at again.
 ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known = nullptr);
+
+// The light on the cells: of a traced run, with that on the back by its bifaciality.
+ArrayLight light_on(const ArrayPower& array, const OpticalRun& run, std::span<const BinSums> sums);
 
 // In the steady state where the temperature of the cells is not stated. InputError where they
 // deliver more than they absorb.

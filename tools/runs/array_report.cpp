@@ -176,7 +176,7 @@ void print_trackers(const Console& console, const std::vector<TrackerRun>& runs)
 LossInputs loss_inputs(const ArrayPower& array, const OpticalRun& run, const TraceResult& traced) {
   LossInputs in;
   in.emitted_W = traced.power_balance.emitted_W;
-  const ArrayLight light = array_light(run.flux_map(array.flux_map), traced.sums[array.flux_map]);
+  const ArrayLight light = light_on(array, run, traced.sums);
   const std::vector<double> bins_W = mean_bins(light.power_W);
   const auto bands = static_cast<size_t>(light.bands);
   double current_A = 0.0, ideal_A = 0.0;

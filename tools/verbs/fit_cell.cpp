@@ -40,11 +40,24 @@ void add_curves(const fs::path& file, std::optional<double> irradiance_W_m2,
     if (curve.is_reversed) {
       task.notes.push_back(name + ": currents are negative in light; counted the other way round");
     }
+    if (curve.is_density) {
+      task.is_density = true;
+      task.notes.push_back(name + ": current densities; the parameters are those of 1 cm²");
+    }
+    if (!curve.stated.empty()) task.notes.push_back(name + ": " + curve.stated + " by its header");
     const CurveCleaning cleaning = clean_curve(curve.sweep);
     note(cleaning.spikes, "readings far from both neighbours");
     note(cleaning.clipped, "points from " + show(cleaning.clipped_from_V) +
                                " V on, beyond open circuit, where the meter stays at " +
                                show(cleaning.clipped_A) + " A");
+    if (curve.sweep.light.empty() && task.substrings == 0) {
+      const UnsteadyLight unsteady = take_unsteady_light(curve.sweep, task.noise.current_fraction);
+      note(unsteady.readings, "points between " + show(unsteady.from_V) + " and " +
+                                  show(unsteady.to_V) + " V, up to " +
+                                  show_percent(unsteady.largest) +
+                                  " off: the light changed, since no cell's current rises with "
+                                  "the voltage");
+    }
     task.sweeps.push_back(curve.sweep);
     task.names.push_back(name);
     task.conditions.push_back(
@@ -137,7 +150,7 @@ FitTask read_fit_task(const Settings& root, const fs::path& folder) {
     return task;
   }
   const size_t law = s.get(fit_key::shunt);
-  if (law > 0) task.shunt_law = law == 1 ? ShuntLaw::constant : ShuntLaw::inverse;
+  if (law > 0) task.shunt_law = static_cast<ShuntLaw>(law - 1);
   if (s.has(fit_key::datasheet)) {
     if (s.has(fit_key::temperature)) {
       throw s.error(fit_key::temperature, "a temperature beside a datasheet",
@@ -151,11 +164,11 @@ FitTask read_fit_task(const Settings& root, const fs::path& folder) {
                       s.get_or(fit_key::rounding_voltage, written.step_V),
                       s.get(fit_key::tolerance)};
   } else {
-    read_curves(s, folder, task);
     task.noise.current_fraction = s.get(fit_key::current_noise);
     task.noise.voltage_fraction = s.get(fit_key::voltage_noise);
     task.noise.correlation_points = s.get(fit_key::correlation_points);
     task.substrings = static_cast<int>(s.get(fit_key::substrings));
+    read_curves(s, folder, task);
     if (task.substrings > 0 && task.cells_in_series > 1 &&
         task.cells_in_series % task.substrings != 0) {
       throw s.error(fit_key::cells_in_series, std::to_string(task.cells_in_series),
@@ -257,6 +270,25 @@ ArrayPoint best_point(const CellCurve& cell, double light_A) {
   return {best.voltage_V, best.current_A};
 }
 
+void print_light_note(const Console& console, bool uses_light, bool is_one) {
+  if (!uses_light) return;
+  console.line(
+      std::string("  note: the irradiance of each reading is used; the photocurrent is at ") +
+      (is_one ? "its mean" : "the mean of each curve"));
+}
+
+// The difference between the directions of the voltage.
+void print_storage(const Console& console, const ChargeStorage& storage,
+                   std::vector<CellRow>& rows) {
+  const std::string unit = storage.is_timed ? "s" : "readings";
+  console.line("  note: hysteresis: rising and falling voltage differ by up to " +
+               show(storage.largest_A) + " A; the charge stored in the junction, " +
+               show(storage.time, unit.c_str()) +
+               ", explains it, and the parameters are those of "
+               "a slow sweep");
+  rows.push_back({"charge_storage_" + unit, storage.time});
+}
+
 Product fit_even_light(const FitTask& task, const Console& console) {
   const SweepFit fit = fit_sweeps(task.sweeps, task.noise);
   check_ideality(fit.diode, task);
@@ -272,6 +304,8 @@ Product fit_even_light(const FitTask& task, const Console& console) {
   console.line("  rms of current " + show(fit.rms_A) + " A over " + std::to_string(fit.points) +
                " points; scatter over that expected " + show(std::sqrt(fit.variance)));
   print_misfit(console, std::sqrt(fit.variance));
+  print_light_note(console, fit.uses_light, task.sweeps.size() == 1);
+  if (fit.storage) print_storage(console, *fit.storage, rows);
   console.line("  maximum " + show(best.power_W()) + " W at " + show(best.voltage_V) + " V");
   print_cell(console, fit.diode, task);
   rows.push_back({"rms_current_A", {fit.rms_A, 0.0}});
@@ -284,12 +318,16 @@ Product fit_even_light(const FitTask& task, const Console& console) {
 // The shunt in words, and `more`.
 void print_shunt_law(const Console& console, ShuntLaw law, const std::string& more) {
   console.line(std::string("  shunt: ") +
-               (law == ShuntLaw::constant ? "constant" : "inversely proportional to the light") +
+               (law == ShuntLaw::constant  ? "constant"
+                : law == ShuntLaw::inverse ? "inversely proportional to the light"
+                                           : "exponential in the light (PVsyst)") +
                more);
 }
 
-Product fit_several_conditions(const FitTask& task, const Console& console) {
-  const ConditionsFit fit = fit_conditions(task.conditions, task.noise, task.shunt_law);
+Product fit_several_conditions(const FitTask& given, const Console& console) {
+  const ConditionsFit fit = fit_conditions(given.conditions, given.noise, given.shunt_law);
+  FitTask task = given;
+  task.temperature_K = fit.model.reference.temperature_K;
   check_ideality(fit.diode, task);
   double worst_A = 0.0;
   for (const ConditionsFit::Curve& curve : fit.curves) worst_A = std::max(worst_A, curve.rms_A);
@@ -309,6 +347,17 @@ Product fit_several_conditions(const FitTask& task, const Console& console) {
   print_ideality_note(console, fit.diode, task);
   print_left_out(console, task, fit.outliers);
   print_shunt_law(console, fit.shunt_law, "");
+  if (fit.curves[0].index > 0) {
+    console.line("  photocurrent and shunt are those of " + task.names[fit.curves[0].index]);
+  }
+  for (const ConditionsFit::Omitted& one : fit.omitted) {
+    console.line("  note: left out " + task.names[one.index] + ": one diode leaves " +
+                 show_percent(one.rms) +
+                 " of its photocurrent (a shadow on a part, or a cloud); "
+                 "fit it with substrings = N");
+  }
+  print_light_note(console, std::ranges::any_of(fit.curves, &ConditionsFit::Curve::uses_light),
+                   false);
   console.line("  rms of current " + show_percent(fit.rms) + " of the photocurrent over " +
                std::to_string(fit.points) + " points of " + std::to_string(fit.curves.size()) +
                " curves; scatter over that expected " + show(std::sqrt(fit.variance)));
@@ -320,12 +369,12 @@ Product fit_several_conditions(const FitTask& task, const Console& console) {
   at_first.sweeps.clear();
   std::vector<ArrayPoint> points, maxima;
   for (size_t k = 0; k < fit.curves.size(); ++k) {
-    const CurveAt& at = task.conditions[k];
+    const CurveAt& at = task.conditions[fit.curves[k].index];
     const double light_A = fit.curves[k].photocurrent_A.value;
     const CellCurve cell(in_light(parameters_at(fit.model, 1.0, at.temperature_K), light_A));
     const ArrayPoint best = best_point(cell, light_A);
     table.row()
-        .set("curve", task.names[k])
+        .set("curve", task.names[fit.curves[k].index])
         .set("irradiance_W_m2", at.irradiance_W_m2)
         .set("temperature_K", at.temperature_K)
         .set("photocurrent_A", light_A)
@@ -338,7 +387,7 @@ Product fit_several_conditions(const FitTask& task, const Console& console) {
       at_first.sweeps = {at.sweep};
     }
   }
-  print_cell(console, fit.diode, task, fit.shunt_law);
+  print_cell(console, fit.diode, task, fit.model.reference);
   if (has_gap) print_key(console, "gap_eV", fit.model.gap_eV);
   if (has_gap) print_key(console, "gap_slope_per_K", fit.model.gap_slope_1_K);
   Product product = parameter_product(rows);
@@ -382,7 +431,7 @@ Product fit_datasheet(const FitTask& task, const Console& console) {
                  " times their rounding: one diode with such a shunt does not describe them; "
                  "tolerance = N states how well they are known");
   }
-  print_cell(console, fit.diode, at_first, fit.shunt_law);
+  print_cell(console, fit.diode, at_first, fit.model.reference);
   print_key(console, "gap_eV", fit.model.gap_eV);
   print_key(console, "gap_slope_per_K", fit.model.gap_slope_1_K);
   print_key(console, "photocurrent_slope_per_K", fit.model.photocurrent_slope_1_K);

@@ -104,7 +104,7 @@ void print_key(const Console& console, const char* name, double value, const std
 }
 
 void print_cell(const Console& console, const SingleDiode& d, const FitTask& task,
-                ShuntLaw shunt_law) {
+                const CellParameters& reference) {
   const double cells = task.cells_in_series;
   console.heading("One cell, for [array.cell_parameters]");
   print_key(console, "saturation_1_A", d.saturation_A.value);
@@ -119,11 +119,20 @@ void print_cell(const Console& console, const SingleDiode& d, const FitTask& tas
   } else {
     print_key(console, "shunt_ohm", d.shunt_ohm.value / cells);
   }
-  if (shunt_law == ShuntLaw::inverse) {
-    print_key(console, "shunt_photocurrent_A", d.photocurrent_A.value);
+  if (reference.shunt_light_A > 0.0) {
+    print_key(console, "shunt_photocurrent_A", reference.shunt_light_A);
+    if (std::isfinite(reference.shunt_dark_ohm)) {
+      print_key(console, "shunt_dark_ohm", reference.shunt_dark_ohm / cells);
+      print_key(console, "shunt_exponent", reference.shunt_exponent);
+    }
   }
   print_key(console, "reference_temperature_K", task.temperature_K);
-  console.line("  reference_area_m2 =   # to be filled in: the area of one cell");
+  constexpr double square_centimetre_m2 = 1e-4;
+  if (task.is_density) {
+    print_key(console, "reference_area_m2", square_centimetre_m2);
+  } else {
+    console.line("  reference_area_m2 =   # to be filled in: the area of one cell");
+  }
 }
 
 // Residual of each measured point from the fitted curve, between the curve's own points straight.

@@ -32,6 +32,7 @@ struct FitTask {
   int cells_in_series = 1;
   int substrings = 0;  // 0: even light
   double temperature_K = 298.15;
+  bool is_density = false;  // the currents are those of 1 cm²
 
   // n V_t of the whole device over the ideality of one of its cells, at that temperature.
   double thermal_V() const;
@@ -58,8 +59,9 @@ void print_bounds(const Console& console, const std::vector<BoundReached>& bound
 void print_key(const Console& console, const char* name, double value,
                const std::string& comment = "");
 // The keys of an experiment's [array.cell_parameters] for one of the cells.
+// `reference`: the shunt's change with the light.
 void print_cell(const Console& console, const SingleDiode& diode, const FitTask& task,
-                ShuntLaw shunt_law = ShuntLaw::constant);
+                const CellParameters& reference = {});
 
 // Measured points and a fitted curve, as current and as power.
 void add_fit_plot(const FitTask& task, const std::vector<ArrayPoint>& fitted,
