@@ -126,7 +126,9 @@ std::string guess_experiment(const std::vector<std::filesystem::path>& recording
                      "motion, or current over voltage: a scan or a run needs its scene, which "
                      "photorque new --scene MODEL begins");
   }
-  guess_module(document, recordings, folder, {});
+  // Of a current density the area is a guess.
+  const GuessedCurve curve = guess_curve(recordings.front());
+  guess_module(document, recordings, folder, curve.because.empty() ? GuessedCurve{} : curve);
   return document.text();
 }
 
