@@ -723,6 +723,21 @@ size_t take_spikes(IvSweep& sweep) {
 }  // namespace
 }  // namespace curve_text
 
+IvSweep IvSweep::without(const std::vector<char>& out) const {
+  IvSweep kept;
+  kept.is_timed = is_timed;
+  const auto keep = [&out](const std::vector<double>& all, std::vector<double>& some) {
+    for (size_t i = 0; i < all.size(); ++i) {
+      if (out[i] == 0) some.push_back(all[i]);
+    }
+  };
+  keep(voltage_V, kept.voltage_V);
+  keep(current_A, kept.current_A);
+  keep(light, kept.light);
+  keep(rate_V_s, kept.rate_V_s);
+  return kept;
+}
+
 std::vector<MeasuredCurve> curves_in(std::string_view text, const std::string& file,
                                      const CurveColumns& columns) {
   return curve_text::Reader(text, file, columns).read();

@@ -44,21 +44,6 @@ double gap_of_voltage_slope_eV(const CellModel& model, double light_A, double gr
   return std::midpoint(low, high);
 }
 
-IvSweep IvSweep::without(const std::vector<char>& out) const {
-  IvSweep kept;
-  kept.is_timed = is_timed;
-  const auto keep = [&out](const std::vector<double>& all, std::vector<double>& some) {
-    for (size_t i = 0; i < all.size(); ++i) {
-      if (out[i] == 0) some.push_back(all[i]);
-    }
-  };
-  keep(voltage_V, kept.voltage_V);
-  keep(current_A, kept.current_A);
-  keep(light, kept.light);
-  keep(rate_V_s, kept.rate_V_s);
-  return kept;
-}
-
 void check_sweep(const IvSweep& sweep) {
   constexpr size_t fewest = 6;  // one more than parameters
   const size_t points = sweep.voltage_V.size();
