@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -71,20 +72,33 @@ TEST(TextbookMachines, ATorsionPendulumInTwentyReadingsAPeriod) {
   expect_number(d, "bearing_drag", "coefficient_N_m_s", 0, c);
 }
 
-// ω' = T − c ω from rest: ω = (T/c) (1 − e^(−c t)), with noise of a fiftieth of the final rate.
+// ω' = T − c ω from rest: ω = (T/c) (1 − e^(−c t)), with noise of a fiftieth of the final rate. In
+// one of six recordings (as drawn in Python, too) the fit of all laws does not find the start.
 TEST(TextbookMachines, AFlywheelThatAMotorSpinsUp) {
   constexpr double torque = 208.0, c = 0.76, interval_s = 0.02, noise_rad_s = 4.9;
+  constexpr int recordings = 8, fewest_right = 6;
   std::vector<double> rate_rad_s;
   for (int i = 0; i < 196; ++i) {
     rate_rad_s.push_back(torque / c * (1.0 - std::exp(-c * interval_s * i)));
   }
-  const Diagnosis d = diagnose(
-      machine(about("z", "gyro]\nnoise_rad_s = 4.9")),
-      {{"run_up.csv", recording_of(interval_s, {noisy("rate_rad_s", rate_rad_s, noise_rad_s, 6)})}},
-      {});
-  EXPECT_THAT(kinds_of(d), UnorderedElementsAre("room_draft", "bearing_drag")) << d.sentence;
-  expect_number(d, "room_draft", "torque_lab_N_m", 2, torque);
-  expect_number(d, "bearing_drag", "coefficient_N_m_s", 0, c);
+  int right = 0;
+  for (uint64_t seed = 6; seed < 6 + recordings; ++seed) {
+    const Diagnosis d =
+        diagnose(machine(about("z", "gyro]\nnoise_rad_s = 4.9")),
+                 {{"run_up.csv",
+                   recording_of(interval_s, {noisy("rate_rad_s", rate_rad_s, noise_rad_s, seed)})}},
+                 {});
+    std::vector<std::string> kinds = kinds_of(d);
+    std::ranges::sort(kinds);
+    if (kinds != std::vector<std::string>{"bearing_drag", "room_draft"}) {
+      EXPECT_THAT(kinds, testing::IsEmpty()) << d.sentence;
+      continue;
+    }
+    ++right;
+    expect_number(d, "room_draft", "torque_lab_N_m", 2, torque);
+    expect_number(d, "bearing_drag", "coefficient_N_m_s", 0, c);
+  }
+  EXPECT_GE(right, fewest_right);
 }
 
 // Readings six times a period, with a noise of 3 degrees that no file states.
