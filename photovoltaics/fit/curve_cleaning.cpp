@@ -1,0 +1,195 @@
+// Readings of a curve that do not belong to it: spikes, and runs in changing light.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "photovoltaics/fit/curve_text.h"
+
+namespace photorque {
+namespace curve_cleaning {
+namespace {
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+// Order of the readings: by rising voltage, and at equal voltage by falling current.
+std::vector<size_t> order_of(const IvSweep& sweep) {
+  std::vector<size_t> order(sweep.voltage_V.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::ranges::stable_sort(order, [&](size_t a, size_t b) {
+    if (sweep.voltage_V[a] != sweep.voltage_V[b]) return sweep.voltage_V[a] < sweep.voltage_V[b];
+    return sweep.current_A[a] > sweep.current_A[b];
+  });
+  return order;
+}
+
+void remove(IvSweep& sweep, const std::vector<char>& out) {
+  sweep = sweep.without(out);
+}
+
+// A single reading off both neighbours, which agree with each other and with those beyond.
+size_t take_spikes(IvSweep& sweep) {
+  const std::vector<size_t> order = order_of(sweep);
+  const double scale_A = std::ranges::max(sweep.current_A);
+  constexpr double far = 0.1, alike = 0.25;
+  std::vector<char> out(order.size(), 0);
+  size_t count = 0;
+  for (size_t k = 2; k + 2 < order.size(); ++k) {
+    const double at = sweep.current_A[order[k]];
+    const std::array<double, 4> near = {
+        sweep.current_A[order[k - 2]], sweep.current_A[order[k - 1]], sweep.current_A[order[k + 1]],
+        sweep.current_A[order[k + 2]]};
+    const auto [low, high] = std::ranges::minmax(near);
+    const double off = at > high ? at - high : low - at;
+    if (off > far * scale_A && high - low < alike * off) {
+      out[order[k]] = 1;
+      ++count;
+    }
+  }
+  // If there are many, they are not outliers.
+  if (count * 20 > order.size()) return 0;
+  if (count > 0) remove(sweep, out);
+  return count;
+}
+
+}  // namespace
+}  // namespace curve_cleaning
+
+IvSweep IvSweep::without(const std::vector<char>& out) const {
+  IvSweep kept;
+  kept.is_timed = is_timed;
+  const auto keep = [&out](const std::vector<double>& all, std::vector<double>& some) {
+    for (size_t i = 0; i < all.size(); ++i) {
+      if (out[i] == 0) some.push_back(all[i]);
+    }
+  };
+  keep(voltage_V, kept.voltage_V);
+  keep(current_A, kept.current_A);
+  keep(light, kept.light);
+  keep(rate_V_s, kept.rate_V_s);
+  return kept;
+}
+
+UnsteadyLight take_unsteady_light(IvSweep& sweep, double noise) {
+  using namespace curve_cleaning;
+  const std::vector<size_t> order = order_of(sweep);
+  if (order.size() < 20) return {};
+  const double open_V = sweep.voltage_V[order.back()];
+  std::vector<size_t> flat;  // readings of the flat part, by rising voltage
+  for (const size_t i : order) {
+    if (sweep.voltage_V[i] < 0.6 * open_V) flat.push_back(i);
+  }
+  if (flat.size() < 12) return {};
+  const auto volts = [&](size_t k) { return sweep.voltage_V[flat[k]]; };
+  const auto amperes = [&](size_t k) { return sweep.current_A[flat[k]]; };
+  // The falling line through two of the readings that most readings agree with.
+  const double scale_A = std::ranges::max(sweep.current_A), close_A = 3.0 * noise * scale_A;
+  const double steepest_S = 0.1 * scale_A / (0.6 * open_V);
+  size_t most = 0;
+  double at_zero_A = 0.0, slope_S = 0.0;
+  const size_t stride = std::max<size_t>(1, flat.size() / 60);
+  for (size_t a = 0; a < flat.size(); a += stride) {
+    for (size_t b = a + flat.size() / 4; b < flat.size(); b += stride) {
+      if (!(volts(b) > volts(a))) continue;
+      const double slope = (amperes(b) - amperes(a)) / (volts(b) - volts(a));
+      if (slope > 0.0 || slope < -steepest_S) continue;
+      size_t agree = 0;
+      for (size_t k = 0; k < flat.size(); ++k) {
+        agree += std::abs(amperes(k) - amperes(a) - slope * (volts(k) - volts(a))) < close_A;
+      }
+      if (agree <= most) continue;
+      most = agree;
+      slope_S = slope;
+      at_zero_A = amperes(a) - slope * volts(a);
+    }
+  }
+  if (5 * most < 3 * flat.size()) return {};  // no line
+  UnsteadyLight found;
+  std::vector<char> out(order.size(), 0);
+  constexpr size_t shortest = 3, beside = 3;
+  constexpr double least = 0.01, half = 0.5;
+  const auto off_A = [&](size_t k) { return amperes(k) - at_zero_A - slope_S * volts(k); };
+  for (size_t k = 0, end = 0; k < flat.size(); k = end + 1) {
+    for (end = k; end < flat.size() && std::abs(off_A(end)) > close_A;) ++end;
+    if (end - k < shortest) continue;
+    // With the edges, which go over into the line.
+    const double sign = off_A(k + (end - k) / 2) < 0.0 ? -1.0 : 1.0;
+    size_t first = k, last = end;
+    while (first > 0 && sign * off_A(first - 1) > close_A / 3.0) --first;
+    while (last < flat.size() && sign * off_A(last) > close_A / 3.0) ++last;
+    double largest_A = 0.0, lowest_A = amperes(first), rise_A = 0.0;
+    for (size_t j = first; j < last; ++j) largest_A = std::max(largest_A, std::abs(off_A(j)));
+    for (size_t j = first - std::min(first, beside); j < std::min(last + beside, flat.size());
+         ++j) {
+      lowest_A = std::min(lowest_A, amperes(j));
+      rise_A = std::max(rise_A, amperes(j) - lowest_A);
+    }
+    // Without light that changes no current rises with the voltage.
+    if (largest_A < least * scale_A || rise_A < half * largest_A) continue;
+    for (size_t j = first; j < last; ++j) out[flat[j]] = 1;
+    found.largest = std::max(found.largest, largest_A / scale_A);
+    if (found.readings == 0) found.from_V = volts(first);
+    found.to_V = volts(last - 1);
+    found.readings += last - first;
+    end = std::max(end, last);
+  }
+  if (found.readings > 0) remove(sweep, out);
+  return found;
+}
+
+CurveCleaning clean_curve(IvSweep& sweep) {
+  using namespace curve_cleaning;
+  CurveCleaning cleaning;
+  if (sweep.voltage_V.size() < 8 || sweep.current_A.size() != sweep.voltage_V.size()) return {};
+  const double scale_A = std::ranges::max(sweep.current_A);
+  if (!(scale_A > 0.0)) return {};
+  cleaning.spikes = take_spikes(sweep);
+  const std::vector<size_t> order = order_of(sweep);
+  const auto volts = [&](size_t k) { return sweep.voltage_V[order[k]]; };
+  const auto amperes = [&](size_t k) { return sweep.current_A[order[k]]; };
+  constexpr double near_zero = 0.03, least_fall = 0.01, held = 0.25;
+  // The longest tail within the band about zero, then the longest part of it that stays in place.
+  size_t band = order.size();
+  while (band > 0 && std::abs(amperes(band - 1)) <= near_zero * scale_A) --band;
+  for (size_t first = band; first + 1 < order.size(); ++first) {
+    double low = amperes(first), high = low;
+    for (size_t k = first; k < order.size(); ++k) {
+      low = std::min(low, amperes(k));
+      high = std::max(high, amperes(k));
+    }
+    // The largest slope before these readings, over at least a tenth of the short-circuit current.
+    double steepest_S = 0.0;
+    for (size_t k = first; k-- > 0;) {
+      const double fall_A = amperes(k) - high;
+      const double run_V = volts(first) - volts(k);
+      if (fall_A < 0.1 * scale_A) continue;
+      if (run_V > 0.0) steepest_S = std::max(steepest_S, fall_A / run_V);
+      if (fall_A > 0.5 * scale_A) break;
+    }
+    const double expected_A = steepest_S * (volts(order.size() - 1) - volts(first));
+    if (!(expected_A > least_fall * scale_A && high - low < held * expected_A)) continue;
+    // A point of the falling curve that the band reached does not belong to the tail.
+    std::vector<double> tail;
+    for (size_t k = first; k < order.size(); ++k) tail.push_back(amperes(k));
+    const double usual_A = median(tail);
+    for (double& one : tail) one = std::abs(one - usual_A);
+    const double around_A = std::max(5.0 * median(tail), 2e-3 * scale_A);
+    std::vector<char> out(order.size(), 0);
+    for (size_t k = first; k < order.size(); ++k) {
+      if (cleaning.clipped == 0 && std::abs(amperes(k) - usual_A) > around_A) continue;
+      if (cleaning.clipped == 0) cleaning.clipped_from_V = volts(k);
+      out[order[k]] = 1;
+      ++cleaning.clipped;
+    }
+    cleaning.clipped_A = usual_A;
+    remove(sweep, out);
+    break;
+  }
+  return cleaning;
+}
+
+}  // namespace photorque

@@ -1,0 +1,33 @@
+// Words and units of the columns of current-voltage curves, in thirteen languages.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace photorque::curve_text {
+
+enum Column { voltage, current, irradiance, temperature, curve_number, time, columns };
+
+struct Unit {
+  std::string_view name;
+  double to_SI, offset;  // SI = (value + offset) · to_SI
+};
+
+std::string lower(std::string_view text);
+
+// The unit of a column by its name in small letters; empty if it is unknown.
+std::optional<Unit> unit_named(Column column, std::string_view name);
+
+// "Voltage (mV)" is a voltage in mV; "mA" a current; "V_meas", "Imod" and "SMU-1 Voltage" are
+// qualified names.
+struct Named {
+  Column column = columns;
+  std::optional<Unit> unit;
+  std::string unknown_unit;
+  bool is_qualified = false;
+};
+
+Named named(std::string_view header_cell);
+
+}  // namespace photorque::curve_text
