@@ -401,7 +401,7 @@ class Diagnose(PageTest):
         self.browser.value("[...document.querySelectorAll('.chart')].find((c) => !c.hidden).querySelector('svg').focus()")
         self.browser.key("ArrowRight")
         reading = self.browser.value("[...document.querySelectorAll('.chart')].find((c) => !c.hidden).querySelector('.reading').textContent")
-        self.assertIn("measured minus improved model: ", reading)
+        self.assertIn("residual, improved: ", reading)
 
     def test_a_scan_shows_its_readings_and_what_they_miss(self):
         write_square(self.folder)

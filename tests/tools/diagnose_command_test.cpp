@@ -78,6 +78,21 @@ TEST_F(DiagnoseCommand, WhatItImprovesHasTheChangesOfTheCommandLine) {
   EXPECT_EQ(again.status, 0) << again.err;
 }
 
+TEST_F(DiagnoseCommand, FiguresAreWrittenInTheFormatsThatAreAskedFor) {
+  const std::string command = "diagnose " + experiment_ + " --recording " + recording_ +
+                              " --quiet --style paper --out " + at("answer");
+  ASSERT_EQ(run(command).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(at("answer/gyro_z_rad_s.svg")));
+  const Outcome drawn = run(command + " --format svg,pdf");
+  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_TRUE(std::filesystem::exists(at("answer/diagnosis.json")));
+  EXPECT_THAT(file_text(at("answer/gyro_z_rad_s.svg")), HasSubstr("nominal model"));
+  EXPECT_THAT(file_text(at("answer/gyro_z_rad_s.pdf")), HasSubstr("%PDF-"));
+  const Outcome refused = run(command + " --format jpg");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("found \"jpg\", expected"));
+}
+
 TEST_F(DiagnoseCommand, RecordingsOfTwoKindsAreToldByName) {
   const std::string curve = write("curve.csv", "voltage_V,current_A\n0,1\n0.3,0.9\n0.5,0\n");
   for (const std::string& both : {"--recording " + recording_ + " --recording " + curve,

@@ -332,8 +332,7 @@ void add_curves(const RecordingSeries& recording, const std::string& suffix,
   static constexpr const char* models[] = {"nominal model", "improved model"};
   const auto name_residuals = [](std::vector<Plot::Curve>& curves) {
     for (size_t i = 0; i < curves.size(); ++i) {
-      curves[i].label =
-          std::string("measured minus ") + (i == 0 ? "nominal model" : "improved model");
+      curves[i].label = std::string("residual, ") + (i == 0 ? "nominal" : "improved");
     }
   };
   for (const ChannelSeries& channel : recording.channels) {

@@ -86,6 +86,10 @@ std::unique_ptr<OpticalRun> optics_of(const RunOptions& options) {
   return std::make_unique<OpticalRun>(options, Console());
 }
 
+bool found_something(const Diagnosis& d) {
+  return !d.effects.empty() || !d.empirical.empty() || !d.unnamed.empty();
+}
+
 bool is_of_module(const RunOptions& options) {
   return Settings(std::make_shared<const SettingsNode>(
                       parse_toml(options.experiment_text(), options.experiment.string())))
@@ -117,6 +121,31 @@ std::vector<RecordingSeries> shown_recordings(const Diagnosis& d, size_t most) {
   return shown;
 }
 
+Product diagnosis_figures(const Diagnosis& d, bool of_light) {
+  const std::vector<RecordingSeries> recordings = shown_recordings(d, most_recordings);
+  RunPage page;
+  if (of_light) {
+    show_light(recordings, found_something(d), nullptr, page);
+  } else {
+    for (size_t r = 0; r < recordings.size(); ++r) {
+      const std::string suffix =
+          recordings.size() == 1 ? "" : "_of_recording_" + std::to_string(r + 1);
+      add_curves(recordings[r], suffix, std::nullopt, page);
+    }
+  }
+  for (Plot& plot : page.product.plots) {  // one legend: colours are those of the first panel
+    for (Plot::Panel& panel : plot.below) {
+      for (Plot::Curve& curve : panel.curves) curve.label.clear();
+    }
+  }
+  for (size_t e = 0; e < d.empirical.size(); ++e) {
+    Plot plot = empirical_plot(d.empirical[e]);
+    if (e > 0) plot.name += "_" + std::to_string(e + 1);
+    page.product.plots.push_back(std::move(plot));
+  }
+  return std::move(page.product);
+}
+
 std::string interactive_report_html(const Diagnosis& d, const Provenance& provenance, bool of_light,
                                     const RunOptions& options, const PageHead& head) {
   RunPage page;
@@ -131,7 +160,7 @@ std::string interactive_report_html(const Diagnosis& d, const Provenance& proven
                          std::to_string(files) +
                          " recordings or segments; a report without --page has all.");
   }
-  const bool found = !d.effects.empty() || !d.empirical.empty() || !d.unnamed.empty();
+  const bool found = found_something(d);
   const std::unique_ptr<OpticalRun> optics = is_of_module(options) ? nullptr : optics_of(options);
   if (of_light) {
     show_light(recordings, found, optics.get(), page);

@@ -53,6 +53,9 @@ RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageH
 // data. It needs no script.
 std::string report_html(const Diagnosis& diagnosis, const Provenance& provenance,
                         const std::string& title);
+// The plots and maps of a diagnosis for figures in a paper: of every channel, sweep and scan the
+// readings, both models and the residuals, and torques without a law. `of_light` as below.
+Product diagnosis_figures(const Diagnosis& diagnosis, bool of_light);
 // The page with the scene, and curves and maps to point at, in place of the drawn readings. Where
 // the experiment has a scene with lamps, that scene; for motion without one an ellipsoid with the
 // platform's moments of inertia; for curves of a module no scene at all. `of_light`: the recordings

@@ -79,14 +79,6 @@ std::string unknown_style(const std::string& name) {
   return "found " + name + ", expected page, paper or slide";
 }
 
-RunFormats formats_of(const CommandOptions& options) {
-  RunFormats formats{formats_in(options.format)};
-  for (const auto& [name, style] : styles) {
-    if (options.style == name) formats.style = style;
-  }
-  return formats;
-}
-
 // Commands whose results are files: their text is a summary. That of others is the result.
 bool is_brief(const std::string& verb) {
   constexpr std::array brief = {"trace",    "power",  "torque-map", "budget", "propagate", "sweep",
@@ -254,6 +246,14 @@ Console terminal(const CommandOptions& options) {
     };
   }
   return Console(std::move(sinks));
+}
+
+RunFormats formats_of(const CommandOptions& options) {
+  RunFormats formats{formats_in(options.format)};
+  for (const auto& [name, style] : styles) {
+    if (options.style == name) formats.style = style;
+  }
+  return formats;
 }
 
 void write_results(const CommandOptions& options, const Console& console, const RunResult& result) {

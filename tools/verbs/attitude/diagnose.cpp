@@ -19,6 +19,7 @@
 #include "diagnosis/light/diagnose.h"
 #include "diagnosis/light/module/diagnose.h"
 #include "diagnosis/light/together.h"
+#include "images/writers/product.h"
 #include "images/writers/staged_files.h"
 #include "scenes/experiment/document.h"
 #include "scenes/experiment/named_files.h"
@@ -320,9 +321,14 @@ std::string first_experiment(const std::vector<fs::path>& recordings, const fs::
   return text;
 }
 
-void write_diagnosis(const DiagnosisRun& run, const std::string& report, const fs::path& folder) {
+void write_diagnosis(const DiagnosisRun& run, const std::string& report, const fs::path& folder,
+                     const RunFormats& formats) {
   const std::string json = run.json(), improved = run.improved(folder);
   StagedFiles staged(folder);
+  if (!formats.further.empty()) {
+    write_formats(diagnosis_figures(run.diagnosis, run.of_light), run.provenance, staged.path(),
+                  formats.further, formats.style);
+  }
   write_file_whole(staged.path() / "improved.toml", improved);
   write_file_whole(staged.path() / "report.html", report);
   write_file_whole(staged.path() / "diagnosis.json", json);
@@ -417,6 +423,7 @@ void write_guess(const Options& options) {
 void run(const Options& options, const Program&) {
   if (!options.guess.empty()) return write_guess(options);
   const Console console = terminal(options);
+  const RunFormats formats = formats_of(options);
   const DiagnosisRun run = run_diagnose(options, options.recordings, options.holdouts, console);
   print_diagnosis(console, run.diagnosis);
   const std::string report =
@@ -424,7 +431,7 @@ void run(const Options& options, const Program&) {
           ? interactive_report_html(run.diagnosis, run.provenance, run.of_light, options,
                                     page_head(options, options.recordings, options.holdouts))
           : run.report();
-  write_diagnosis(run, report, options.out_folder());
+  write_diagnosis(run, report, options.out_folder(), formats);
   console.line("Results in " + options.out_folder().string());
   if (!options.json) return;
   const std::string json = run.json();

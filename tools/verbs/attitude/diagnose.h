@@ -9,6 +9,7 @@
 #include "diagnosis/diagnosis.h"
 #include "tools/runs/console.h"
 #include "tools/runs/options.h"
+#include "tools/runs/result.h"
 
 namespace photorque {
 
@@ -37,8 +38,9 @@ DiagnosisRun run_diagnose(const RunOptions& options,
 std::string first_experiment(const std::vector<std::filesystem::path>& recordings,
                              const std::filesystem::path& file);
 
-// improved.toml, report.html with the text of `report`, and diagnosis.json into a folder.
+// improved.toml, report.html with the text of `report`, diagnosis.json and, in the further formats,
+// figures (diagnosis_figures()) into a folder.
 void write_diagnosis(const DiagnosisRun& run, const std::string& report,
-                     const std::filesystem::path& folder);
+                     const std::filesystem::path& folder, const RunFormats& formats = {});
 
 }  // namespace photorque
