@@ -317,8 +317,11 @@ PlotLayout plot_layout(const Plot& plot, const PlotRoom& room) {
     }
   }
   constexpr double most_beside = 0.36;  // of the room, so that curves keep their width
-  if (layout.panels.size() == 1 && legend_width > most_beside * (room.right - room.left)) {
-    Legend& legend = layout.legends.front();
+  const double width = room.right - room.left - layout.axis_width;
+  const auto has_curves = [](const Legend& legend) { return !legend.curves.empty(); };
+  if (std::ranges::count_if(layout.legends, has_curves) == 1 &&
+      legend_width > most_beside * width) {
+    Legend& legend = *std::ranges::find_if(layout.legends, has_curves);
     legend = in_columns(legend, room.right - room.left);
     layout.below = PagePoint{room.left, layout.bottom + 6.0};
     layout.bottom = layout.below->y + legend.height;
