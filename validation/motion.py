@@ -13,7 +13,9 @@ from scipy.integrate import solve_ivp
 
 from .errors import MotionError
 from .laws import CREEP_RAD_S, KINDS
-from .vectors import body_from_lab, cross, dot, inverse, normalised, product, quaternion_of, quaternion_rate, times
+from .vectors import (
+    body_from_lab, cross, dot, inverse, length, normalised, product, quaternion_of, quaternion_rate, times,
+)  # fmt: skip
 
 
 @dataclasses.dataclass
@@ -253,8 +255,9 @@ class Motion:
                     jumps.update(float(t) for t in KINDS[effect.kind].jumps_s(effect.numbers, from_s, to_s))
         return jumps
 
-    def states(self, starts, commands, times_s, tolerance=1e-9, max_step_s=math.inf):
-        """States (components, members, times) at rising times, not before start_s."""
+    def states(self, starts, commands, times_s, tolerance=1e-9, max_step_s=math.inf, fastest_rad_s=math.inf):
+        """States (components, members, times) at rising times, not before start_s. MotionError where the motion
+        diverges or begins to turn faster than fastest_rad_s."""
         y = np.zeros((10 if self.has_appendage else 8, self.size))
         y[:4] = np.stack([s.attitude for s in starts], axis=1)
         y[4:7] = np.stack([s.rate_rad_s for s in starts], axis=1)
@@ -267,6 +270,11 @@ class Motion:
         result = np.empty(y.shape + times_s.shape)
         result[..., times_s <= self.start_s] = y[..., np.newaxis]
         command, current_A, next_command = np.zeros(3), 0.0, 0
+
+        def room_rad_s(_, flat):
+            return fastest_rad_s - length(flat.reshape(-1, self.size)[4:7]).max()
+
+        room_rad_s.terminal = True
         for from_s, to_s in zip(edges[:-1], edges[1:], strict=True):
             while next_command < len(commands) and commands[next_command].time_s <= from_s + 1e-12:
                 command, current_A = commands[next_command].torque_N_m, commands[next_command].battery_current_A
@@ -281,8 +289,10 @@ class Motion:
             solution = solve_ivp(
                 lambda t, flat: self.rates(min(max(t, from_s + inside), to_s - inside), flat, command, current_A),
                 (from_s, to_s), y.ravel(), method=self.method, t_eval=at_s, rtol=tolerance, atol=0.01 * tolerance,
-                max_step=max_step_s,
+                max_step=max_step_s, events=room_rad_s if math.isfinite(fastest_rad_s) else None,
             )  # fmt: skip
+            if solution.status == 1:
+                raise MotionError(f"the platform turns faster than {fastest_rad_s:g} rad/s")
             if not solution.success or not np.all(np.isfinite(solution.y[:, -1])):
                 raise MotionError("the motion under the injected effects diverges")
             reached = solution.y.reshape(y.shape + (-1,))
@@ -290,14 +300,14 @@ class Motion:
             y = reached[..., -1].copy()
         return result
 
-    def read(self, starts, commands, times_s, tolerance=1e-9, max_step_s=math.inf):
+    def read(self, starts, commands, times_s, tolerance=1e-9, max_step_s=math.inf, fastest_rad_s=math.inf):
         """Readings of noiseless instruments at rising times."""
         times_s = np.asarray(times_s, dtype=float)
         p = self.platforms
         delays_s = np.unique(p.latency_s)
         seen_s = np.maximum(times_s[:, np.newaxis] - delays_s, self.start_s)
         all_s, back = np.unique(np.append(times_s, seen_s.ravel()), return_inverse=True)
-        states = self.states(starts, commands, all_s, tolerance, max_step_s)
+        states = self.states(starts, commands, all_s, tolerance, max_step_s, fastest_rad_s)
         here, back = back[: times_s.size], back[times_s.size :].reshape(seen_s.shape)
         attitude = normalised(states[:4][..., here])
         camera = np.empty_like(attitude)
