@@ -88,7 +88,6 @@ void add(const Mesh& mesh, MeshClosure& closure) {
     while (end < edges.size() && edges[end] == edges[i]) ++end;
     ++distinct;
     if (end - i == 1) open.push_back(edges[i]);
-    if (end - i > 2) ++closure.forked_edges;
     i = end;
   }
   ++closure.meshes;

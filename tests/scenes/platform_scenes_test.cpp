@@ -126,13 +126,7 @@ TEST(Stasis, HasThePartsThatThePaperNames) {
 TEST(Stasis, PartsDoNotOverlap) {
   const Scene scene = scene_of(platforms[0]);
   std::vector<Eigen::AlignedBox3d> boxes;
-  for (const Instance& instance : scene.instances) {
-    Eigen::AlignedBox3d box;
-    for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
-      box.extend(Vec3(instance.body_from_mesh * vertex));
-    }
-    boxes.push_back(box);
-  }
+  for (const Instance& instance : scene.instances) boxes.push_back(scene.box_of(instance));
   for (size_t a = 0; a < boxes.size(); ++a) {
     for (size_t b = 0; b < a; ++b) {
       const Vec3 shared_m = boxes[a].intersection(boxes[b]).sizes();

@@ -99,10 +99,7 @@ double upward_area_m2(const Scene& scene, uint32_t instance) {
 Vec3 middle_m(const Scene& scene, const std::string& path) {
   Eigen::AlignedBox3d box;
   for (const Instance& instance : scene.instances) {
-    if (instance.path != path) continue;
-    for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
-      box.extend(Vec3(instance.body_from_mesh * vertex));
-    }
+    if (instance.path == path) box.extend(scene.box_of(instance));
   }
   return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box.center());
 }
@@ -144,8 +141,7 @@ struct SceneWords {
 };
 
 SceneWords scene_words(const Options& options) {
-  std::string ending = options.scene->extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = lower_case(options.scene->extension().string());
   if (ending != ".gltf" && ending != ".glb" && !cad_format(*options.scene)) {
     throw InputError({options.scene->string()}, "", "a model \"" + ending + "\"",
                      "glTF, STL or OBJ (.gltf, .glb, .stl, .obj): others are converted to one of "
@@ -200,12 +196,7 @@ std::string with_overrides(const std::string& text, const Options& options) {
 
 // A wrong unit shows in the size of the model.
 std::string size_text(const Scene& scene, const fs::path& file, const SceneWords& words) {
-  Eigen::AlignedBox3d box;
-  for (const Instance& instance : scene.instances) {
-    for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
-      box.extend(Vec3(instance.body_from_mesh * vertex));
-    }
-  }
+  const Eigen::AlignedBox3d box = scene.box();
   if (box.isEmpty()) return "";
   const Vec3 size_m = box.sizes();
   return "Size of " + file.filename().string() + ": " + number(size_m.x()) + " × " +
