@@ -203,9 +203,13 @@ struct KeyOf {
   }
 
   // As it is declared, where its numbers may have a sigma each.
-  operator Key() const requires(size <= 3) {
-    const KeyTraits traits{.optional = !required, .has_error = true};
+  operator Key() const requires(size <= 6) {
+    KeyTraits traits{.optional = !required, .has_error = true};
     if constexpr (size == 3) return Vec3Key(name, what, traits);
+    if constexpr (size > 1) {
+      traits.size = size;
+      return NumbersKey(name, range, what, traits);
+    }
     return otherwise_SI ? UncertainNumberKey(name, {*otherwise_SI, 0.0}, range, what)
                         : UncertainNumberKey(name, range, what, traits);
   }
