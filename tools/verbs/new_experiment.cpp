@@ -99,7 +99,10 @@ double upward_area_m2(const Scene& scene, uint32_t instance) {
 Vec3 middle_m(const Scene& scene, const std::string& path) {
   Eigen::AlignedBox3d box;
   for (const Instance& instance : scene.instances) {
-    if (instance.path == path) box.extend(scene.box_of(instance));
+    if (instance.path != path) continue;
+    for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
+      box.extend(Vec3(instance.body_from_mesh * vertex));
+    }
   }
   return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box.center());
 }
@@ -196,7 +199,12 @@ std::string with_overrides(const std::string& text, const Options& options) {
 
 // A wrong unit shows in the size of the model.
 std::string size_text(const Scene& scene, const fs::path& file, const SceneWords& words) {
-  const Eigen::AlignedBox3d box = scene.box();
+  Eigen::AlignedBox3d box;
+  for (const Instance& instance : scene.instances) {
+    for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
+      box.extend(Vec3(instance.body_from_mesh * vertex));
+    }
+  }
   if (box.isEmpty()) return "";
   const Vec3 size_m = box.sizes();
   return "Size of " + file.filename().string() + ": " + number(size_m.x()) + " × " +
