@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/numerics/random.h"
@@ -46,6 +47,24 @@ class Emitter {
   // Radiant intensity at `angle_rad` ∈ [0, π] from the axis over its maximum, for beams that are
   // the same all round the axis; the average around the axis for others. In [0, 1].
   virtual double relative_intensity(double angle_rad) const = 0;
+};
+
+// An emitter that gives another power.
+class ScaledEmitter final : public Emitter {
+ public:
+  ScaledEmitter(std::shared_ptr<const Emitter> one, double factor)
+      : one_(std::move(one)), factor_(factor) {}
+  double power_W() const override { return factor_ * one_->power_W(); }
+  void emit(const SampleBlock& samples, RayBlock& rays) const override {
+    one_->emit(samples, rays);
+  }
+  double relative_intensity(double angle_rad) const override {
+    return one_->relative_intensity(angle_rad);
+  }
+
+ private:
+  std::shared_ptr<const Emitter> one_;
+  double factor_;
 };
 
 // An aperture that shines alike from all its points, with the emitter's relative_intensity() about

@@ -4,6 +4,20 @@
 
 namespace photorque {
 
+Eigen::AlignedBox3d Scene::box_of(const Instance& instance) const {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& vertex : meshes[instance.mesh].vertices_m) {
+    box.extend(instance.body_from_mesh * vertex);
+  }
+  return box;
+}
+
+Eigen::AlignedBox3d Scene::box() const {
+  Eigen::AlignedBox3d all;
+  for (const Instance& instance : instances) all.extend(box_of(instance));
+  return all;
+}
+
 double Scene::radius_m() const {
   double square = 0.0;
   for (const Instance& instance : instances) {

@@ -43,6 +43,9 @@ struct Scene {
   std::vector<Instance> instances;
   Bands bands;
 
+  // The box along the body axes that holds a part, or all parts; empty where there are no vertices.
+  Eigen::AlignedBox3d box_of(const Instance& instance) const;
+  Eigen::AlignedBox3d box() const;
   // Largest distance of any vertex from the body origin [m]; 0 for an empty scene.
   double radius_m() const;
   // Instances of the node called `name` (its name, or its path or the end of its path) and of all

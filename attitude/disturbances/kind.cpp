@@ -49,9 +49,9 @@ Key disturbance_table() {
   }
   return Key::tables("disturbance",
                      {Key::choice("kind", std::move(kinds), "the effect"),
-                      Key::flag_or("per_recording", false,
-                                   "its parameters with a sigma have other values in every "
-                                   "recording that `diagnose` gets")},
+                      FlagKey("per_recording", false,
+                              "its parameters with a sigma have other values in every "
+                              "recording that `diagnose` gets")},
                      "the effects on the platform");
 }
 

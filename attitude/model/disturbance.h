@@ -203,11 +203,15 @@ struct KeyOf {
   }
 
   // As it is declared, where its numbers may have a sigma each.
-  operator Key() const requires(size <= 3) {
-    Key key = size == 3      ? Key::uncertain_vector(name, what)
-              : otherwise_SI ? Key::uncertain_or(name, *otherwise_SI, range, what)
-                             : Key::uncertain(name, range, what);
-    return required ? key : std::move(key).optional();
+  operator Key() const requires(size <= 6) {
+    KeyTraits traits{.optional = !required, .has_error = true};
+    if constexpr (size == 3) return Vec3Key(name, what, traits);
+    if constexpr (size > 1) {
+      traits.size = size;
+      return NumbersKey(name, range, what, traits);
+    }
+    return otherwise_SI ? UncertainNumberKey(name, {*otherwise_SI, 0.0}, range, what)
+                        : UncertainNumberKey(name, range, what, traits);
   }
 };
 using ScalarKey = KeyOf<1>;

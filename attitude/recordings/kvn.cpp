@@ -1,7 +1,6 @@
 #include "attitude/recordings/kvn.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "attitude/recordings/text_lines.h"
 #include "core/errors.h"
@@ -193,8 +192,7 @@ KvnItem read_message(const std::filesystem::path& path) {
 bool is_message(const std::filesystem::path& path, const std::string& kind) {
   const std::string words = first_words(path);
   if (!words.starts_with("<")) return words.starts_with("CCSDS_" + kind + "_VERS");
-  std::string element = "<" + kind;
-  std::ranges::transform(element, element.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string element = "<" + lower_case(kind);
   try {
     return read_file(path).find(element) != std::string::npos;
   } catch (const InputError&) {

@@ -1,17 +1,11 @@
 #include "core/settings/keys.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/settings/read_log.h"
 
 namespace photorque {
 namespace {
-
-// Without the last bits that a conversion of units leaves: 1.8 and not 1.8000000000000003.
-double rounded(double x) {
-  return std::isfinite(x) ? std::stod(format_setting(x)) : x;
-}
 
 Key key_of(Key::Type type, std::string name, std::string what) {
   Key key;
@@ -21,61 +15,7 @@ Key key_of(Key::Type type, std::string name, std::string what) {
   return key;
 }
 
-Key with_default(Key key, SettingsNode otherwise) {
-  key.required = false;
-  key.otherwise = std::move(otherwise);
-  return key;
-}
-
 }  // namespace
-
-Key Key::number(std::string name, Range range, std::string what) {
-  Key key = key_of(Type::number, std::move(name), std::move(what));
-  key.range = range;
-  return key;
-}
-
-Key Key::number_or(std::string name, double otherwise_SI, Range range, std::string what) {
-  const double factor = unit_of_key(name).to_SI;
-  return with_default(number(std::move(name), range, std::move(what)),
-                      {rounded(otherwise_SI / factor)});
-}
-
-Key Key::uncertain(std::string name, Range range, std::string what) {
-  return number(std::move(name), range, std::move(what)).with_error();
-}
-
-Key Key::uncertain_or(std::string name, double otherwise_SI, Range range, std::string what) {
-  return number_or(std::move(name), otherwise_SI, range, std::move(what)).with_error();
-}
-
-Key Key::uncertain_vector(std::string name, std::string what) {
-  return vector3(std::move(name), std::move(what)).with_error();
-}
-
-Key Key::integer(std::string name, int64_t low, int64_t high, std::string what) {
-  Key key = key_of(Type::integer, std::move(name), std::move(what));
-  key.low = low;
-  key.high = high;
-  return key;
-}
-
-Key Key::integer_or(std::string name, int64_t otherwise, int64_t low, int64_t high,
-                    std::string what) {
-  return with_default(integer(std::move(name), low, high, std::move(what)), {otherwise});
-}
-
-Key Key::flag_or(std::string name, bool otherwise, std::string what) {
-  return with_default(key_of(Type::flag, std::move(name), std::move(what)), {otherwise});
-}
-
-Key Key::text(std::string name, std::string what) {
-  return key_of(Type::text, std::move(name), std::move(what));
-}
-
-Key Key::text_or(std::string name, std::string otherwise, std::string what) {
-  return with_default(text(std::move(name), std::move(what)), {std::move(otherwise)});
-}
 
 Key Key::choice(std::string name, std::vector<Choice> choices, std::string what) {
   Key key = key_of(Type::choice, std::move(name), std::move(what));
@@ -86,32 +26,10 @@ Key Key::choice(std::string name, std::vector<Choice> choices, std::string what)
 Key Key::choice_or(std::string name, std::vector<Choice> choices, size_t otherwise,
                    std::string what) {
   const std::string usual = choices.at(otherwise).name;
-  return with_default(choice(std::move(name), std::move(choices), std::move(what)), {usual});
-}
-
-Key Key::vector3(std::string name, std::string what) {
-  return key_of(Type::vector, std::move(name), std::move(what));
-}
-
-Key Key::vector3_or(std::string name, const Vec3& otherwise_SI, std::string what) {
-  const Vec3 written = otherwise_SI / unit_of_key(name).to_SI;
-  return with_default(
-      vector3(std::move(name), std::move(what)),
-      {SettingsNode::Array{{rounded(written[0])}, {rounded(written[1])}, {rounded(written[2])}}});
-}
-
-Key Key::vectors3(std::string name, std::string what) {
-  return key_of(Type::vectors, std::move(name), std::move(what));
-}
-
-Key Key::numbers(std::string name, Range range, std::string what) {
-  Key key = key_of(Type::numbers, std::move(name), std::move(what));
-  key.range = range;
+  Key key = choice(std::move(name), std::move(choices), std::move(what));
+  key.required = false;
+  key.otherwise = SettingsNode{usual};
   return key;
-}
-
-Key Key::texts(std::string name, std::string what) {
-  return key_of(Type::texts, std::move(name), std::move(what));
 }
 
 Key Key::table(std::string name, std::vector<Key> keys, std::string what) {
@@ -127,12 +45,6 @@ Key Key::tables(std::string name, std::vector<Key> keys, std::string what) {
   return key;
 }
 
-Key Key::other(std::string name, unsigned forms, std::string what) {
-  Key key = key_of(Type::other, std::move(name), std::move(what));
-  key.forms = forms;
-  return key;
-}
-
 Key Key::optional() && {
   required = false;
   return std::move(*this);
@@ -144,23 +56,8 @@ Key Key::usually_is(std::string words) && {
   return std::move(*this);
 }
 
-Key Key::that_completes() && {
-  required = false;
-  completes = true;
-  return std::move(*this);
-}
-
-Key Key::with_error() && {
-  has_error = true;
-  return std::move(*this);
-}
-
-Key Key::one_or_several() && {
+Key Key::one_or_several(size_t count) && {
   or_array = true;
-  return std::move(*this);
-}
-
-Key Key::of_size(size_t count) && {
   size = count;
   return std::move(*this);
 }

@@ -2,8 +2,8 @@
 // sentence.
 //
 // A reader's keys are typed constants (core/settings/typed_keys.h), which each room lists beside
-// their readers; what has no constant name or default is declared by the functions below, in the
-// words of the readers. Schema, tables in documents and `check` are made from these declarations.
+// their readers; tables, and choices whose words are no constants, are declared by the functions
+// below. Schema, tables in documents and `check` are made from these declarations.
 #pragma once
 
 #include <optional>
@@ -64,39 +64,18 @@ struct Key {
   unsigned forms = 0;                          // of Type::other
   std::vector<Key> keys = {};                  // of tables
 
-  // As the accessors of Settings: same names, same order. Defaults of numbers are SI.
-  static Key number(std::string name, Range range, std::string what);
-  static Key number_or(std::string name, double otherwise_SI, Range range, std::string what);
-  static Key uncertain(std::string name, Range range, std::string what);
-  static Key uncertain_or(std::string name, double otherwise_SI, Range range, std::string what);
-  static Key uncertain_vector(std::string name, std::string what);
-  static Key integer(std::string name, int64_t low, int64_t high, std::string what);
-  static Key integer_or(std::string name, int64_t otherwise, int64_t low, int64_t high,
-                        std::string what);
-  static Key flag_or(std::string name, bool otherwise, std::string what);
-  static Key text(std::string name, std::string what);
-  static Key text_or(std::string name, std::string otherwise, std::string what);
   static Key choice(std::string name, std::vector<Choice> choices, std::string what);
   static Key choice_or(std::string name, std::vector<Choice> choices, size_t otherwise,
                        std::string what);
-  static Key vector3(std::string name, std::string what);
-  static Key vector3_or(std::string name, const Vec3& otherwise_SI, std::string what);
-  static Key vectors3(std::string name, std::string what);
-  static Key numbers(std::string name, Range range, std::string what);
-  static Key texts(std::string name, std::string what);
   static Key table(std::string name, std::vector<Key> keys, std::string what);
   static Key tables(std::string name, std::vector<Key> keys, std::string what);
-  // A value of several forms, which its reader takes apart.
-  static Key other(std::string name, unsigned forms, std::string what);
 
   // For keys that a table can do without and that have no constant for a default.
   Key optional() &&;
   // The key with its default in words: "the file's".
   Key usually_is(std::string words) &&;
-  Key that_completes() &&;
-  Key with_error() &&;
-  Key one_or_several() &&;
-  Key of_size(size_t count) &&;
+  // A number, or an array of `count` of them.
+  Key one_or_several(size_t count) &&;
   Key range_that_varies() &&;
 };
 

@@ -1,55 +1,86 @@
 #include "core/settings/typed_keys.h"
 
+#include <cmath>
+
+#include "core/settings/read_log.h"
+
 namespace photorque {
 namespace {
 
-std::string s(std::string_view text) {
-  return std::string(text);
+// An SI number in the unit of the key, without the last bits that the conversion leaves: 1.8 and
+// not 1.8000000000000003.
+SettingsNode in_unit_of(std::string_view key, double x_SI) {
+  const double x = x_SI / unit_of_key(key).to_SI;
+  return {std::isfinite(x) ? std::stod(format_setting(x)) : x};
+}
+
+Key otherwise_is(Key key, SettingsNode otherwise) {
+  key.required = false;
+  key.otherwise = std::move(otherwise);
+  return key;
 }
 
 }  // namespace
 
 NumberKey::operator Key() const {
-  return declared(otherwise ? Key::number_or(s(name), *otherwise, range, s(what))
-                            : Key::number(s(name), range, s(what)));
+  Key key = declared(Key::Type::number);
+  key.range = range;
+  return otherwise ? otherwise_is(key, in_unit_of(name, *otherwise)) : key;
 }
 UncertainNumberKey::operator Key() const {
-  return declared(otherwise ? Key::uncertain_or(s(name), otherwise->value, range, s(what))
-                            : Key::uncertain(s(name), range, s(what)));
+  Key key = declared(Key::Type::number);
+  key.range = range;
+  key.has_error = true;
+  return otherwise ? otherwise_is(key, in_unit_of(name, otherwise->value)) : key;
 }
 IntegerKey::operator Key() const {
-  return declared(otherwise ? Key::integer_or(s(name), *otherwise, low, high, s(what))
-                            : Key::integer(s(name), low, high, s(what)));
+  Key key = declared(Key::Type::integer);
+  key.low = low;
+  key.high = high;
+  return otherwise ? otherwise_is(key, {*otherwise}) : key;
 }
 FlagKey::operator Key() const {
-  return declared(Key::flag_or(s(name), otherwise, s(what)));
+  return otherwise_is(declared(Key::Type::flag), {otherwise});
 }
 TextKey::operator Key() const {
-  return declared(otherwise ? Key::text_or(s(name), s(*otherwise), s(what))
-                            : Key::text(s(name), s(what)));
+  const Key key = declared(Key::Type::text);
+  return otherwise ? otherwise_is(key, {std::string(*otherwise)}) : key;
 }
 TextsKey::operator Key() const {
-  return declared(Key::texts(s(name), s(what)));
+  return declared(Key::Type::texts);
 }
 Vec3Key::operator Key() const {
-  return declared(otherwise ? Key::vector3_or(s(name), Vec3(otherwise->data()), s(what))
-                            : Key::vector3(s(name), s(what)));
+  const Key key = declared(Key::Type::vector);
+  if (!otherwise) return key;
+  SettingsNode::Array three;
+  for (const double x : *otherwise) three.push_back(in_unit_of(name, x));
+  return otherwise_is(key, {three});
 }
 Vec3sKey::operator Key() const {
-  return declared(Key::vectors3(s(name), s(what)));
+  return declared(Key::Type::vectors);
 }
 NumbersKey::operator Key() const {
-  return declared(Key::numbers(s(name), range, s(what)));
+  Key key = declared(Key::Type::numbers);
+  key.range = range;
+  return key;
 }
 OtherKey::operator Key() const {
-  return declared(Key::other(s(name), forms, s(what)));
+  Key key = declared(Key::Type::other);
+  key.forms = forms;
+  return key;
 }
 
 Key TableKey::of(std::vector<Key> keys) const {
-  return declared(Key::table(s(name), std::move(keys), s(what)));
+  Key key = declared(Key::Type::table);
+  key.required = false;
+  key.keys = std::move(keys);
+  return key;
 }
 Key TablesKey::of(std::vector<Key> keys) const {
-  return declared(Key::tables(s(name), std::move(keys), s(what)));
+  Key key = declared(Key::Type::tables);
+  key.required = false;
+  key.keys = std::move(keys);
+  return key;
 }
 
 }  // namespace photorque

@@ -61,11 +61,15 @@ struct TypedKey {
     change(copy);
     return copy;
   }
-  Key declared(Key key) const {
-    key.required = key.required && !traits.optional && !traits.completes && traits.usually.empty();
+  Key declared(Key::Type type) const {
+    Key key;
+    key.name = name;
+    key.type = type;
+    key.what = what;
+    key.required = !traits.optional && !traits.completes && traits.usually.empty();
     key.usually = traits.usually;
     key.completes = traits.completes;
-    key.has_error = key.has_error || traits.has_error;
+    key.has_error = traits.has_error;
     key.or_array = traits.several;
     key.size = traits.size;
     key.range_varies = traits.varies;
@@ -193,14 +197,15 @@ struct ChoiceKey : TypedKey<ChoiceKey<count>> {
   }
   // Declares it with the keys that a table has beside each word, in the words' order.
   Key bringing(const std::vector<std::vector<Key>>& keys) const {
-    std::vector<Key::Choice> choices;
+    Key key = this->declared(Key::Type::choice);
     for (size_t i = 0; i < count; ++i) {
-      choices.push_back({std::string(words[i].name), std::string(words[i].what),
-                         i < keys.size() ? keys[i] : std::vector<Key>{}});
+      key.choices.push_back({std::string(words[i].name), std::string(words[i].what),
+                             i < keys.size() ? keys[i] : std::vector<Key>{}});
     }
-    const std::string key(this->name), sentence(this->what);
-    return this->declared(otherwise ? Key::choice_or(key, choices, *otherwise, sentence)
-                                    : Key::choice(key, choices, sentence));
+    if (!otherwise) return key;
+    key.required = false;
+    key.otherwise = SettingsNode{key.choices[*otherwise].name};
+    return key;
   }
   operator Key() const { return bringing({}); }
 };

@@ -20,6 +20,9 @@ std::string_view trimmed(std::string_view text);
 // Without blanks and double quotes at both ends, as cells of a table may have them.
 std::string_view unquoted(std::string_view text);
 
+// With small letters for A to Z.
+std::string lower_case(std::string_view text);
+
 // Lines without their ends (LF, CR LF or CR).
 std::vector<std::string_view> lines_of(std::string_view text);
 

@@ -1,5 +1,6 @@
 #include "diagnosis/light/keys.h"
 
+#include "core/settings/typed_keys.h"
 #include "scenes/effects/kind.h"
 
 namespace photorque {
@@ -11,13 +12,15 @@ Key key_of(const EffectParameter& parameter) {
   // Two kinds may have a name in common but different ranges.
   const std::string range = range_of(parameter);
   const std::string meaning = "of the effect" + (range.empty() ? "" : ", " + range);
-  if (parameter.count > 1) return Key::numbers(parameter.key, {}, meaning).of_size(parameter.count);
-  return Key::number(parameter.key, {}, meaning);
+  if (parameter.count > 1) {
+    return NumbersKey(parameter.key, {}, meaning, {.size = parameter.count});
+  }
+  return NumberKey(parameter.key, Range{}, meaning);
 }
 
 std::vector<Key> place_keys(LightEffectKind::Index index) {
   const auto number_of = [](const char* what) {
-    return std::vector{Key::integer("index", 0, most, what).range_that_varies()};
+    return std::vector<Key>{IntegerKey("index", 0, most, what, {.varies = true})};
   };
   switch (index) {
     case LightEffectKind::Index::none:
@@ -31,7 +34,7 @@ std::vector<Key> place_keys(LightEffectKind::Index index) {
     case LightEffectKind::Index::bypass:
       return number_of("of the bypass diode, along the serpentine, from 0");
     case LightEffectKind::Index::wall:
-      return {Key::text("node", "of the scene, beside the receiver")};
+      return {TextKey("node", "of the scene, beside the receiver")};
     case LightEffectKind::Index::frame:
       return {Key::choice_or("axes", words({"lab", "body"}), 0, "in which it is fixed")};
   }
@@ -42,7 +45,7 @@ std::vector<Key> place_keys(LightEffectKind::Index index) {
 
 std::vector<Key> light_sensor_keys() {
   const auto noise = [](const char* name, const char* what) {
-    return Key::number_or(name, 0.0, Range::not_negative(), what);
+    return NumberKey(name, 0.0, Range::not_negative(), what);
   };
   return {
       Key::table(
@@ -53,10 +56,10 @@ std::vector<Key> light_sensor_keys() {
       Key::table(
           "array",
           {noise("voltage_noise_V", "of a reading"), noise("current_noise_A", "of a reading"),
-           Key::number(
+           NumberKey(
                "tracker_step_V", Range::not_negative(),
-               "voltage step of the tracker; its recorded voltage is then an input of the model")
-               .usually_is("the tracker is assumed to hold the highest maximum")},
+               "voltage step of the tracker; its recorded voltage is then an input of the model",
+               {.usually = "the tracker is assumed to hold the highest maximum"})},
           "instruments of the array")};
 }
 

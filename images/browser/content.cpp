@@ -110,28 +110,24 @@ Json curve_json(const Plot::Curve& curve, size_t most_points) {
   return json;
 }
 
-Json panel_json(const std::string& y_label, const std::vector<Plot::Curve>& curves, bool y_log,
-                const std::vector<double>& levels, bool robust, const PageLimits& limits) {
-  Json list = Json::array();
-  for (const Plot::Curve& curve : curves) list.push_back(curve_json(curve, limits.curve_points));
-  Json lines = Json::array();
-  for (const double level : levels) lines.push_back(json_number(level));
-  return {{"y_label", clean_text(y_label)},
-          {"log", y_log},
-          {"robust", robust},
-          {"levels", std::move(lines)},
-          {"curves", std::move(list)}};
+Json panel_json(const Plot::Panel& panel, const PageLimits& limits) {
+  Json curves = Json::array();
+  for (const Plot::Curve& curve : panel.curves) {
+    curves.push_back(curve_json(curve, limits.curve_points));
+  }
+  Json levels = Json::array();
+  for (const double level : panel.levels) levels.push_back(json_number(level));
+  return {{"y_label", clean_text(panel.y_label)},
+          {"log", panel.y_log},
+          {"robust", panel.robust_range},
+          {"levels", std::move(levels)},
+          {"curves", std::move(curves)}};
 }
 
 Json plot_json(const Plot& of, const RunPage& page, const PageLimits& limits) {
   const Plot plot = in_readable_time(of);
   Json panels = Json::array();
-  panels.push_back(
-      panel_json(plot.y_label, plot.curves, plot.y_log, plot.levels, plot.robust_range, limits));
-  for (const Plot::Panel& panel : plot.below) {
-    panels.push_back(panel_json(panel.y_label, panel.curves, panel.y_log, panel.levels,
-                                panel.robust_range, limits));
-  }
+  for (const Plot::Panel& panel : panels_of(plot)) panels.push_back(panel_json(panel, limits));
   Json shaded = Json::array();
   for (const Plot::Interval& interval : plot.shaded) {
     shaded.push_back({json_number(interval.from), json_number(interval.to)});

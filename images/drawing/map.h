@@ -38,9 +38,9 @@ struct MapPicture {
 MapPicture map_picture(const Map& map, const Provenance& provenance,
                        PictureStyle style = PictureStyle::page);
 // As a page of vectors, on which the cells are an image.
-std::string map_svg(const Map& map, const Provenance& provenance, PictureStyle style);
-std::string map_pdf(const Map& map, const Provenance& provenance, const PdfText& text,
-                    PictureStyle style);
+std::string svg_of(const Map& map, const Provenance& provenance, PictureStyle style);
+std::string pdf_of(const Map& map, const Provenance& provenance, const PdfText& text,
+                   PictureStyle style);
 
 // A number on a contour line of a smooth map: the middle of it in pixels from the top left corner
 // of `columns` × `rows` ones, along the line, upright.

@@ -217,15 +217,15 @@ MapPicture map_picture(const Map& map, const Provenance& provenance, PictureStyl
   return result;
 }
 
-std::string map_svg(const Map& map, const Provenance& provenance, PictureStyle style) {
+std::string svg_of(const Map& map, const Provenance& provenance, PictureStyle style) {
   require_consistent(map);
   const MapLayout layout = map_layout(map, provenance, style);
   return map_file(Canvas::of_svg(layout.width, page_height(layout), Canvas::Letters::text), map,
                   layout);
 }
 
-std::string map_pdf(const Map& map, const Provenance& provenance, const PdfText& text,
-                    PictureStyle style) {
+std::string pdf_of(const Map& map, const Provenance& provenance, const PdfText& text,
+                   PictureStyle style) {
   require_consistent(map);
   const MapLayout layout = map_layout(map, provenance, style);
   return map_file(Canvas::of_pdf(layout.width, page_height(layout), text), map, layout);

@@ -406,15 +406,15 @@ Picture plot_picture(const Plot& plot, const Provenance& provenance, PictureStyl
   return canvas.finish_pixels();
 }
 
-std::string plot_svg(const Plot& plot, const Provenance& provenance, PictureStyle style) {
+std::string svg_of(const Plot& plot, const Provenance& provenance, PictureStyle style) {
   const PlotPage page = page_of(plot, provenance, style);
   Canvas canvas = Canvas::of_svg(page.width, page.height(), Canvas::Letters::text);
   draw_page(canvas, page);
   return canvas.finish_file();
 }
 
-std::string plot_pdf(const Plot& plot, const Provenance& provenance, const PdfText& text,
-                     PictureStyle style) {
+std::string pdf_of(const Plot& plot, const Provenance& provenance, const PdfText& text,
+                   PictureStyle style) {
   const PlotPage page = page_of(plot, provenance, style);
   Canvas canvas = Canvas::of_pdf(page.width, page.height(), text);
   draw_page(canvas, page);

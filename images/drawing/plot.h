@@ -53,10 +53,10 @@ double seconds_of_unit(const Plot& plot);
 // leave gaps. InputError if sizes disagree.
 Picture plot_picture(const Plot& plot, const Provenance& provenance,
                      PictureStyle style = PictureStyle::page);
-std::string plot_svg(const Plot& plot, const Provenance& provenance,
-                     PictureStyle style = PictureStyle::page);
-std::string plot_pdf(const Plot& plot, const Provenance& provenance, const PdfText& text,
-                     PictureStyle style = PictureStyle::page);
+std::string svg_of(const Plot& plot, const Provenance& provenance,
+                   PictureStyle style = PictureStyle::page);
+std::string pdf_of(const Plot& plot, const Provenance& provenance, const PdfText& text,
+                   PictureStyle style = PictureStyle::page);
 
 // Width of charts in HTML pages, in the page's own units: a style of full width scales them.
 inline constexpr double html_chart_width = 920.0;

@@ -44,7 +44,7 @@ std::string with_unit(const std::string& name, const std::string& unit) {
   return suffix.empty() ? name : name + "_" + suffix;
 }
 
-std::string map_csv(const Map& map, const Provenance& provenance) {
+std::string csv_of(const Map& map, const Provenance& provenance) {
   require_consistent(map);
   std::string text = preamble(map.title, provenance) + column_name(map.x_label) + "," +
                      column_name(map.y_label) + "," + with_unit("value", map.unit) + "," +
@@ -64,7 +64,7 @@ std::string map_csv(const Map& map, const Provenance& provenance) {
   return text;
 }
 
-std::string table_csv(const Table& table, const Provenance& provenance) {
+std::string csv_of(const Table& table, const Provenance& provenance) {
   require_consistent(table);
   std::string text = preamble(table.title, provenance);
   size_t rows = 0;
@@ -84,28 +84,17 @@ std::string table_csv(const Table& table, const Provenance& provenance) {
   return text;
 }
 
-class CsvWriter final : public Writer {
- public:
-  std::vector<std::filesystem::path> write(const Product& product, const Provenance& provenance,
-                                           const std::filesystem::path& folder) const override {
-    std::vector<std::filesystem::path> paths;
-    for (const Map& map : product.maps) {
-      paths.push_back(file_in(folder, map.name, "csv"));
-      write_file_whole(paths.back(), map_csv(map, provenance));
-    }
-    for (const Table& table : product.tables) {
-      paths.push_back(file_in(folder, table.name, "csv"));
-      write_file_whole(paths.back(), table_csv(table, provenance));
-    }
-    return paths;
-  }
-};
-
 }  // namespace
 
 WriterKind kind() {
   return {"csv", "Maps and tables as comma-separated values behind lines of provenance",
-          [] { return std::make_unique<CsvWriter>(); }};
+          [](const Product& product, const Provenance& provenance,
+             const std::filesystem::path& folder, PictureStyle) {
+            const auto put = [&](const auto& item, const std::filesystem::path& path) {
+              write_file_whole(path, csv_of(item, provenance));
+            };
+            return write_each(folder, "csv", put, product.maps, product.tables);
+          }};
 }
 
 }  // namespace photorque::kinds::csv

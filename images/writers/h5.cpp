@@ -56,13 +56,11 @@ void add_table(Hdf5File& file, const Table& table) {
   }
 }
 
-void add_axes(Hdf5File& file, const std::string& place, const std::string& y_label,
-              const std::vector<Plot::Curve>& curves) {
+void add_axes(Hdf5File& file, const std::string& place, const Plot::Panel& panel) {
   file.group(place);
-  file.attribute(place, "y_label", y_label);
-  for (size_t i = 0; i < curves.size(); ++i) {
-    const Plot::Curve& curve = curves[i];
-    const std::string own = place + "/" + std::to_string(i + 1);
+  file.attribute(place, "y_label", panel.y_label);
+  for (size_t i = 1; const Plot::Curve& curve : panel.curves) {
+    const std::string own = place + "/" + std::to_string(i++);
     file.group(own);
     file.attribute(own, "label", curve.label);
     for (const auto& [name, values] :
@@ -75,43 +73,37 @@ void add_axes(Hdf5File& file, const std::string& place, const std::string& y_lab
 void add_plot(Hdf5File& file, const Plot& plot) {
   require_consistent(plot);
   const std::string place = place_for(file, "/plots", plot.name);
-  add_axes(file, place + "/1", plot.y_label, plot.curves);
-  for (size_t i = 0; i < plot.below.size(); ++i) {
-    add_axes(file, place + "/" + std::to_string(i + 2), plot.below[i].y_label,
-             plot.below[i].curves);
+  for (size_t i = 1; const Plot::Panel& panel : panels_of(plot)) {
+    add_axes(file, place + "/" + std::to_string(i++), panel);
   }
   file.attribute(place, "title", plot.title);
   file.attribute(place, "x_label", plot.x_label);
 }
 
-class H5Writer final : public Writer {
- public:
-  std::vector<std::filesystem::path> write(const Product& product, const Provenance& provenance,
-                                           const std::filesystem::path& folder) const override {
-    if (product.quantities.empty() && product.maps.empty() && product.tables.empty() &&
-        product.plots.empty()) {
-      return {};
-    }
-    Hdf5File file;
-    for (const Quantity& figure : product.quantities) {
-      file.numbers(place_for(file, "/figures", figure.name),
-                   {figure.estimate.value, figure.estimate.standard_error}, {2});
-    }
-    for (const Map& map : product.maps) add_map(file, map);
-    for (const Table& table : product.tables) add_table(file, table);
-    for (const Plot& plot : product.plots) add_plot(file, plot);
-    file.stamp("/", provenance);
-    const std::filesystem::path path = file_in(folder, "run", "h5");
-    file.write(path);
-    return {path};
+std::vector<std::filesystem::path> write_run(const Product& product, const Provenance& provenance,
+                                             const std::filesystem::path& folder, PictureStyle) {
+  if (product.quantities.empty() && product.maps.empty() && product.tables.empty() &&
+      product.plots.empty()) {
+    return {};
   }
-};
+  Hdf5File file;
+  for (const Quantity& figure : product.quantities) {
+    file.numbers(place_for(file, "/figures", figure.name),
+                 {figure.estimate.value, figure.estimate.standard_error}, {2});
+  }
+  for (const Map& map : product.maps) add_map(file, map);
+  for (const Table& table : product.tables) add_table(file, table);
+  for (const Plot& plot : product.plots) add_plot(file, plot);
+  file.stamp("/", provenance);
+  const std::filesystem::path path = file_in(folder, "run", "h5");
+  file.write(path);
+  return {path};
+}
 
 }  // namespace
 
 WriterKind kind() {
-  return {"h5", "Everything of a run as one HDF5 file, for h5py and MATLAB",
-          [] { return std::make_unique<H5Writer>(); }};
+  return {"h5", "Everything of a run as one HDF5 file, for h5py and MATLAB", write_run};
 }
 
 }  // namespace photorque::kinds::h5

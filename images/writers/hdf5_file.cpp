@@ -97,6 +97,11 @@ struct Hdf5File::State {
         H5Acreate2(object.get(), name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     required(H5Awrite(attribute.get(), type, data));
   }
+  void put_list(const std::string& place, const std::string& name, hid_t type, hsize_t count,
+                const void* data) const {
+    const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+    put_attribute(place, name, type, space.get(), data);
+  }
 };
 
 Hdf5File::Hdf5File() : state_(std::make_unique<State>()) {}
@@ -160,16 +165,12 @@ void Hdf5File::attribute(const std::string& place, const std::string& name,
 
 void Hdf5File::attribute(const std::string& place, const std::string& name,
                          const std::vector<double>& values) {
-  const hsize_t count = values.size();
-  const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
-  state_->put_attribute(place, name, H5T_NATIVE_DOUBLE, space.get(), values.data());
+  state_->put_list(place, name, H5T_NATIVE_DOUBLE, values.size(), values.data());
 }
 
 void Hdf5File::attribute(const std::string& place, const std::string& name,
                          const std::vector<int>& values) {
-  const hsize_t count = values.size();
-  const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
-  state_->put_attribute(place, name, H5T_NATIVE_INT, space.get(), values.data());
+  state_->put_list(place, name, H5T_NATIVE_INT, values.size(), values.data());
 }
 
 void Hdf5File::stamp(const std::string& place, const Provenance& provenance) {

@@ -35,22 +35,20 @@ std::string summary_json(const Product& product, const Provenance& provenance,
 namespace kinds::json {
 namespace {
 
-class JsonWriter final : public Writer {
- public:
-  std::vector<std::filesystem::path> write(const Product& product, const Provenance& provenance,
-                                           const std::filesystem::path& folder) const override {
-    if (product.quantities.empty()) return {};
-    const std::filesystem::path path = file_in(folder, "summary", "json");
-    write_file_whole(path, summary_json(product, provenance));
-    return {path};
-  }
-};
+std::vector<std::filesystem::path> write_summary(const Product& product,
+                                                 const Provenance& provenance,
+                                                 const std::filesystem::path& folder,
+                                                 PictureStyle) {
+  if (product.quantities.empty()) return {};
+  const std::filesystem::path path = file_in(folder, "summary", "json");
+  write_file_whole(path, summary_json(product, provenance));
+  return {path};
+}
 
 }  // namespace
 
 WriterKind kind() {
-  return {"json", "Headline figures with their standard errors, as summary.json",
-          [] { return std::make_unique<JsonWriter>(); }};
+  return {"json", "Headline figures with their standard errors, as summary.json", write_summary};
 }
 
 }  // namespace kinds::json

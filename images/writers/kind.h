@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,23 +11,6 @@
 #include "images/drawing/style.h"
 
 namespace photorque {
-
-// One format. Writers are pure: equal arguments give equal bytes, and every file carries the
-// provenance in a form that people and programs can read.
-class Writer {
- public:
-  virtual ~Writer() = default;
-
-  PictureStyle style = PictureStyle::page;  // of drawings
-
-  // Writes what the format can express of `product` into `folder` (made if absent), one file per
-  // item, named after it; returns the paths in order. A format without content writes nothing. Each
-  // file appears whole or not at all. InputError when an item's sizes disagree or a file cannot be
-  // written.
-  virtual std::vector<std::filesystem::path> write(const Product& product,
-                                                   const Provenance& provenance,
-                                                   const std::filesystem::path& folder) const = 0;
-};
 
 // InputError that names the table if its columns differ in length.
 void require_consistent(const Table& table);
@@ -42,8 +24,32 @@ std::filesystem::path file_in(const std::filesystem::path& folder, const std::st
 struct WriterKind {
   std::string name;     // also the extension of its files
   std::string summary;  // one sentence, no full stop
-  std::function<std::unique_ptr<Writer>()> make;
+  // Writes what the format can express of `product` into `folder` (made if absent), one file per
+  // item, named after it; returns the paths in order. A format without content writes nothing. Each
+  // file appears whole or not at all. Equal arguments give equal bytes, and every file carries the
+  // provenance in a form that people and programs can read. InputError when an item's sizes
+  // disagree or a file cannot be written.
+  std::function<std::vector<std::filesystem::path>(
+      const Product& product, const Provenance& provenance, const std::filesystem::path& folder,
+      PictureStyle style)>
+      write;
 };
+
+// Calls `put(item, path)` for every item of the lists; returns the paths.
+template <class Put, class... Items>
+std::vector<std::filesystem::path> write_each(const std::filesystem::path& folder,
+                                              const std::string& extension, const Put& put,
+                                              const std::vector<Items>&... lists) {
+  std::vector<std::filesystem::path> paths;
+  const auto write = [&](const auto& list) {
+    for (const auto& item : list) {
+      paths.push_back(file_in(folder, item.name, extension));
+      put(item, paths.back());
+    }
+  };
+  (write(lists), ...);
+  return paths;
+}
 
 // Every kind named in images/CMakeLists.txt, in that order.
 std::vector<WriterKind> all_writer_kinds();

@@ -9,32 +9,24 @@
 #include "images/writers/metadata.h"
 
 namespace photorque::kinds::png {
-namespace {
-
-class PngWriter final : public Writer {
- public:
-  std::vector<std::filesystem::path> write(const Product& product, const Provenance& provenance,
-                                           const std::filesystem::path& folder) const override {
-    std::vector<std::filesystem::path> paths;
-    for (const Map& map : product.maps) {
-      paths.push_back(file_in(folder, map.name, "png"));
-      write_png(paths.back(), map_picture(map, provenance, style).picture,
-                map_metadata(map, provenance));
-    }
-    for (const Plot& plot : product.plots) {
-      paths.push_back(file_in(folder, plot.name, "png"));
-      write_png(paths.back(), plot_picture(plot, provenance, style),
-                picture_metadata(plot.title, provenance));
-    }
-    return paths;
-  }
-};
-
-}  // namespace
 
 WriterKind kind() {
   return {"png", "Maps with colour bar and plots, as pictures",
-          [] { return std::make_unique<PngWriter>(); }};
+          [](const Product& product, const Provenance& provenance,
+             const std::filesystem::path& folder, PictureStyle style) {
+            const auto put_map = [&](const Map& map, const std::filesystem::path& path) {
+              write_png(path, map_picture(map, provenance, style).picture,
+                        map_metadata(map, provenance));
+            };
+            const auto put_plot = [&](const Plot& plot, const std::filesystem::path& path) {
+              write_png(path, plot_picture(plot, provenance, style),
+                        picture_metadata(plot.title, provenance));
+            };
+            auto paths = write_each(folder, "png", put_map, product.maps);
+            std::ranges::move(write_each(folder, "png", put_plot, product.plots),
+                              std::back_inserter(paths));
+            return paths;
+          }};
 }
 
 }  // namespace photorque::kinds::png

@@ -5,7 +5,6 @@
 #include "core/errors.h"
 #include "core/settings/settings.h"
 #include "images/writers/kind.h"
-#include "images/writers/staged_files.h"
 
 namespace photorque {
 namespace {
@@ -71,22 +70,10 @@ std::vector<fs::path> write_formats(const Product& product, const Provenance& pr
   require_distinct_files(product);
   std::vector<fs::path> paths;
   for (const WriterKind& kind : kinds_named(formats)) {
-    const std::unique_ptr<Writer> writer = kind.make();
-    writer->style = style;
-    const std::vector<fs::path> written = writer->write(product, provenance, folder);
+    const std::vector<fs::path> written = kind.write(product, provenance, folder, style);
     paths.insert(paths.end(), written.begin(), written.end());
   }
   return paths;
-}
-
-std::vector<fs::path> write_product(const Product& product, const Provenance& provenance,
-                                    const fs::path& folder,
-                                    const std::vector<std::string>& formats) {
-  require_distinct_files(product);
-  kinds_named(formats);
-  StagedFiles staged(folder);
-  write_formats(product, provenance, staged.path(), formats);
-  return staged.publish();
 }
 
 }  // namespace photorque

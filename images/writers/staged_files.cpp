@@ -141,17 +141,6 @@ void StagedFiles::move(const std::string& name) const {
   }
 }
 
-std::vector<fs::path> StagedFiles::publish() {
-  std::vector<fs::path> places;
-  for (const std::string& name : names()) {
-    move(name);
-    places.push_back(folder_ / name);
-  }
-  published_ = true;
-  sync_folder(folder_);
-  return places;
-}
-
 std::vector<fs::path> StagedFiles::publish_as(const std::string& command,
                                               const Provenance& provenance) {
   const fs::path list_path = folder_ / list_name;

@@ -26,10 +26,8 @@ class StagedFiles {
   // Where to write.
   const std::filesystem::path& path() const { return path_; }
 
-  // Moves all files to where they belong and returns their paths, in the order of their names.
-  std::vector<std::filesystem::path> publish();
-
-  // Publishes the results of one command, which replace those of its last run in this folder:
+  // Moves all files to where they belong and returns their paths, in the order of their names. They
+  // are the results of one command, and replace those of its last run in this folder:
   // files.json lists the files of a command, and files of the list that were not written again go
   // away. What no command lists and has the name of a result is kept beside it as NAME~.
   // summary.json (of `diagnose`, diagnosis.json) goes first and comes last: where it exists, all

@@ -26,29 +26,18 @@ std::string with_metadata(const std::string& svg, const std::string& title,
   return svg.substr(0, end + 1) + elements + svg.substr(end + 1);
 }
 
-class SvgWriter final : public Writer {
- public:
-  std::vector<std::filesystem::path> write(const Product& product, const Provenance& provenance,
-                                           const std::filesystem::path& folder) const override {
-    std::vector<std::filesystem::path> paths;
-    const auto put = [&](const std::string& name, const std::string& title,
-                         const std::string& svg) {
-      paths.push_back(file_in(folder, name, "svg"));
-      write_file_whole(paths.back(), with_metadata(svg, title, provenance));
-    };
-    for (const Map& map : product.maps) put(map.name, map.title, map_svg(map, provenance, style));
-    for (const Plot& plot : product.plots) {
-      put(plot.name, plot.title, plot_svg(plot, provenance, style));
-    }
-    return paths;
-  }
-};
-
 }  // namespace
 
 WriterKind kind() {
   return {"svg", "Maps and plots as scalable pictures",
-          [] { return std::make_unique<SvgWriter>(); }};
+          [](const Product& product, const Provenance& provenance,
+             const std::filesystem::path& folder, PictureStyle style) {
+            const auto put = [&](const auto& item, const std::filesystem::path& path) {
+              const std::string svg = svg_of(item, provenance, style);
+              write_file_whole(path, with_metadata(svg, item.title, provenance));
+            };
+            return write_each(folder, "svg", put, product.maps, product.plots);
+          }};
 }
 
 }  // namespace photorque::kinds::svg

@@ -7,27 +7,17 @@
 #include "images/writers/metadata.h"
 
 namespace photorque::kinds::tiff {
-namespace {
-
-class TiffWriter final : public Writer {
- public:
-  std::vector<std::filesystem::path> write(const Product& product, const Provenance& provenance,
-                                           const std::filesystem::path& folder) const override {
-    std::vector<std::filesystem::path> paths;
-    for (const Map& map : product.maps) {
-      paths.push_back(file_in(folder, map.name, "tiff"));
-      write_tiff(paths.back(), map.width, map.height, map_channels(map),
-                 map_metadata(map, provenance));
-    }
-    return paths;
-  }
-};
-
-}  // namespace
 
 WriterKind kind() {
   return {"tiff", "Maps as TIFF images of 32-bit floats with their standard errors",
-          [] { return std::make_unique<TiffWriter>(); }};
+          [](const Product& product, const Provenance& provenance,
+             const std::filesystem::path& folder, PictureStyle) {
+            const auto put = [&](const Map& map, const std::filesystem::path& path) {
+              write_tiff(path, map.width, map.height, map_channels(map),
+                         map_metadata(map, provenance));
+            };
+            return write_each(folder, "tiff", put, product.maps);
+          }};
 }
 
 }  // namespace photorque::kinds::tiff

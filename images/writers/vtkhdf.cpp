@@ -67,25 +67,17 @@ void write_map(const Map& map, const Provenance& provenance, const std::filesyst
   file.stamp("/", provenance);
   file.write(path);
 }
-
-class VtkhdfWriter final : public Writer {
- public:
-  std::vector<std::filesystem::path> write(const Product& product, const Provenance& provenance,
-                                           const std::filesystem::path& folder) const override {
-    std::vector<std::filesystem::path> paths;
-    for (const Map& map : product.maps) {
-      paths.push_back(file_in(folder, map.name, "vtkhdf"));
-      write_map(map, provenance, paths.back());
-    }
-    return paths;
-  }
-};
-
 }  // namespace
 
 WriterKind kind() {
   return {"vtkhdf", "Maps as VTKHDF images with their standard errors, for ParaView",
-          [] { return std::make_unique<VtkhdfWriter>(); }};
+          [](const Product& product, const Provenance& provenance,
+             const std::filesystem::path& folder, PictureStyle) {
+            const auto put = [&](const Map& map, const std::filesystem::path& path) {
+              write_map(map, provenance, path);
+            };
+            return write_each(folder, "vtkhdf", put, product.maps);
+          }};
 }
 
 }  // namespace photorque::kinds::vtkhdf

@@ -6,31 +6,12 @@
 #include <numeric>
 #include <utility>
 
+#include "core/numerics/connected.h"
 #include "photovoltaics/array/keys.h"
 #include "receivers/surface_grid.h"
 
 namespace photorque {
 namespace {
-
-// A set of sets, joined pair by pair.
-class DisjointSets {
- public:
-  explicit DisjointSets(size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), size_t{0});
-  }
-  size_t root(size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  // The lower root stays, so that pieces keep the order of their first triangles.
-  void join(size_t a, size_t b) {
-    const size_t i = root(a), j = root(b);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
-
- private:
-  std::vector<size_t> parent_;
-};
 
 using FacePiece = std::vector<SurfaceFace>;
 

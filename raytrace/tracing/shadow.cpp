@@ -80,12 +80,7 @@ void find_in_packets(const TraceableScene::Data& scene, std::span<const ShadowRa
 std::vector<TriangleCorners> triangles_above(const Scene& scene, const Vec3& plane_point_m,
                                              const Vec3& plane_normal) {
   // A triangle below this height is in the plane, to single precision.
-  Eigen::AlignedBox3d box;
-  for (const Instance& instance : scene.instances) {
-    for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
-      box.extend(instance.body_from_mesh * vertex);
-    }
-  }
+  const Eigen::AlignedBox3d box = scene.box();
   const double min_m = box.isEmpty() ? 0.0 : 1e-6 * 0.5 * box.diagonal().norm();
   std::vector<TriangleCorners> above;
   for (const Instance& instance : scene.instances) {

@@ -113,12 +113,7 @@ void note_bsdfs(TraceableScene::Data& data) {
 }
 
 void bound(TraceableScene::Data& data) {
-  Eigen::AlignedBox3d box;
-  for (const Instance& instance : data.scene.instances) {
-    for (const Vec3& vertex : data.scene.meshes[instance.mesh].vertices_m) {
-      box.extend(instance.body_from_mesh * vertex);
-    }
-  }
+  const Eigen::AlignedBox3d box = data.scene.box();
   if (box.isEmpty()) return;
   data.centre_m = box.center();
   data.radius_m = 0.5 * box.diagonal().norm();

@@ -44,7 +44,7 @@ GltfWriterModel as_gltf(std::vector<cad::Part> parts, const CadConventions& conv
     const auto known = std::ranges::find(model.materials, part.material, &GltfWriterMaterial::name);
     const auto material = static_cast<int>(known - model.materials.begin());
     if (known == model.materials.end()) {
-      model.materials.push_back({part.material, Vec3::Constant(0.5), 0.0, 0.5, unknown_optics()});
+      model.materials.push_back({part.material, unknown_optics()});
     }
     GltfWriterNode node;
     node.name = part.name;

@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <cmath>
 #include <cstring>
 #include <optional>
 #include <unordered_map>
 
+#include "core/little_endian.h"
 #include "core/text/parse.h"
 #include "scenes/cad/part.h"
 
@@ -33,21 +35,6 @@ class CornerPool {
   std::unordered_map<std::string, uint32_t> places_;
 };
 
-uint32_t little_endian_32(std::string_view bytes, size_t at) {
-  uint32_t value = 0;
-  for (size_t i = 0; i < 4; ++i) {
-    value |= static_cast<uint32_t>(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
-  }
-  return value;
-}
-
-double float_at(std::string_view bytes, size_t at) {
-  const uint32_t bits = little_endian_32(bytes, at);
-  float value = 0.0f;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
-}
-
 // Whether the length is that of a binary file: many writers begin binary files with "solid", too.
 bool has_binary_length(std::string_view bytes) {
   if (bytes.size() < stl_header_bytes + count_bytes) return false;
@@ -72,7 +59,8 @@ std::vector<Part> read_binary(std::string_view bytes, const std::string& file,
       Vec3 at;
       for (size_t k = 0; k < 3; ++k) {
         // Behind the normal.
-        at[static_cast<Eigen::Index>(k)] = float_at(bytes, start + 12 + 12 * corner + 4 * k);
+        at[static_cast<Eigen::Index>(k)] =
+            std::bit_cast<float>(little_endian_32(bytes, start + 12 + 12 * corner + 4 * k));
       }
       if (!at.allFinite()) {
         throw InputError({file}, "facet " + std::to_string(facet + 1),

@@ -94,24 +94,6 @@ void widen(SettingsNode& source, double scale) {
   }
 }
 
-// An emitter with a fraction of the power of another one.
-class DimmedEmitter final : public Emitter {
- public:
-  DimmedEmitter(std::shared_ptr<const Emitter> full, double share)
-      : full_(std::move(full)), share_(share) {}
-  double power_W() const override { return share_ * full_->power_W(); }
-  void emit(const SampleBlock& samples, RayBlock& rays) const override {
-    full_->emit(samples, rays);
-  }
-  double relative_intensity(double angle_rad) const override {
-    return full_->relative_intensity(angle_rad);
-  }
-
- private:
-  std::shared_ptr<const Emitter> full_;
-  double share_;
-};
-
 // Notices for the user: one line for each effect that a trace does not include.
 std::vector<std::string> notices_of(const Experiment& experiment,
                                     const std::vector<Settings>& effects) {
@@ -145,7 +127,7 @@ std::vector<Beam> beams_under(const Experiment& experiment, const LightState& st
     if (!(share > 0.0)) continue;
     beam.lab_from_emitter = displaced_pose(beam, state.lamp_aim[l], state.shift_m);
     if (share != 1.0) {
-      beam.emitter = std::make_shared<const DimmedEmitter>(beam.emitter, share);
+      beam.emitter = std::make_shared<const ScaledEmitter>(beam.emitter, share);
       if (beam.aperture) beam.aperture->exitance_W_m2 *= share;
     }
     beams.push_back(std::move(beam));

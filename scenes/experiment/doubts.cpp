@@ -12,14 +12,6 @@ namespace {
 
 constexpr size_t max_named = 3;
 
-Eigen::AlignedBox3d box_of(const Scene& scene, const Instance& instance) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
-    box.extend(instance.body_from_mesh * vertex);
-  }
-  return box;
-}
-
 // Winding number of a closed surface about a point: 1 inside, 0 outside, 1/2 on a face. It is the
 // sum of the solid angles of its triangles divided by 4π.
 // Source: A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125, eq. 8.
@@ -56,7 +48,7 @@ void add_lamps_inside(const Scene& scene, std::span<const Beam> beams,
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     if (!mesh.encloses || !is_opaque(scene, instance)) continue;
-    const Eigen::AlignedBox3d box = box_of(scene, instance);
+    const Eigen::AlignedBox3d box = scene.box_of(instance);
     for (const Beam& beam : beams) {
       const Vec3 at_m = body_from_lab.point(beam.lab_from_emitter.translation_m);
       if (!box.contains(at_m) || mesh.triangles.size() > triangles_left) continue;
@@ -74,7 +66,7 @@ void add_unresolved_parts(const Scene& scene, std::vector<std::string>& lines) {
   Eigen::AlignedBox3d all;
   std::vector<double> size_m;
   for (const Instance& instance : scene.instances) {
-    const Eigen::AlignedBox3d box = box_of(scene, instance);
+    const Eigen::AlignedBox3d box = scene.box_of(instance);
     size_m.push_back(box.diagonal().norm());
     all.extend(box);
   }

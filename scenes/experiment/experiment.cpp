@@ -71,12 +71,7 @@ void require_sunlight_to_land(const ExperimentFile& file, const Scene& scene,
       })) {
     return;
   }
-  Eigen::AlignedBox3d box;
-  for (const Instance& instance : scene.instances) {
-    for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
-      box.extend(instance.body_from_mesh * vertex);
-    }
-  }
+  const Eigen::AlignedBox3d box = scene.box();
   const double size_m = box.isEmpty() ? 0.0 : 0.5 * box.diagonal().norm();
   if (scene.radius_m() <= most * size_m) return;
   std::ostringstream found;

@@ -1,11 +1,11 @@
 // The first step of reading an experiment: the text, without the scene.
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "core/constants.h"
 #include "core/files.h"
 #include "core/provenance.h"
+#include "core/text/parse.h"
 #include "scenes/experiment/experiment.h"
 #include "scenes/experiment/keys.h"
 #include "scenes/experiment/toml.h"
@@ -171,8 +171,7 @@ void require_model(const Settings& scene, const std::filesystem::path& file) {
     throw scene.error(scene_key::file, "no file " + file.string(),
                       "a model (glTF, GLB, STL or OBJ)");
   }
-  std::string ending = file.extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string ending = lower_case(file.extension().string());
   if (ending == ".gltf" || ending == ".glb") return;
   throw scene.error(scene_key::file, "\"" + file.filename().string() + "\"",
                     "a model that ends in .gltf, .glb, .stl or .obj");

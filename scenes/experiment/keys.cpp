@@ -33,7 +33,7 @@ Key scene_table() {
 }
 
 Key material_table() {
-  return Key::tables("material", joined({{Key::text("name", "of a glTF material")}, sheet_keys()}),
+  return Key::tables("material", joined({{TextKey("name", "of a glTF material")}, sheet_keys()}),
                      "optical properties instead of those in the model's file");
 }
 
@@ -41,9 +41,9 @@ Key source_table() {
   return Key::tables(
       "source",
       {Key::choice("kind", choices_of(all_source_kinds()), "what shines"),
-       Key::text("light",
-                 "name of a lamp in the glTF file, which supplies the keys that are not given")
-           .optional()},
+       TextKey("light",
+               "name of a lamp in the glTF file, which supplies the keys that are not given",
+               {.optional = true})},
       "a lamp, in lab axes");
 }
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/files.h"
+#include "core/little_endian.h"
 #include "core/text/parse.h"
 
 namespace photorque {
@@ -26,11 +27,7 @@ std::string json_of(const fs::path& path, const std::string& bytes) {
   constexpr size_t glb_head = 20;  // magic, version, length; length and type of the first chunk
   if (path.extension() == ".gltf") return bytes;
   if (path.extension() != ".glb" || bytes.size() < glb_head) return "";
-  size_t length = 0;
-  for (size_t i = 0; i < 4; ++i) {
-    length |= static_cast<size_t>(static_cast<unsigned char>(bytes[12 + i])) << (8 * i);
-  }
-  return bytes.substr(glb_head, length);
+  return bytes.substr(glb_head, little_endian_32(bytes, 12));
 }
 
 void collect_from(const SettingsNode& node, const fs::path& folder, std::set<fs::path>& files) {

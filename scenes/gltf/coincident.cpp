@@ -463,12 +463,7 @@ std::vector<std::string> lines_about(const Scene& scene, const std::vector<Pair>
 }  // namespace
 
 std::vector<std::string> separate_coincident_faces(Scene& scene) {
-  Eigen::AlignedBox3d box;
-  for (const Instance& instance : scene.instances) {
-    for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
-      box.extend(instance.body_from_mesh * vertex);
-    }
-  }
+  const Eigen::AlignedBox3d box = scene.box();
   if (box.isEmpty()) return {};
   const double size_m = 0.5 * box.diagonal().norm();
   std::vector<Pair> pairs = find_pairs(scene, box.center(), size_m);

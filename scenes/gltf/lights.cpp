@@ -119,7 +119,10 @@ double turn_towards(const Vec3& direction, const Vec3& across) {
 std::vector<GltfLight> placed_lights(const Document& document, double metres_per_unit,
                                      const GltfOpen& open, gltf::MemoryBudget* budget) {
   std::vector<GltfLight> all;
-  gltf::visit_nodes(document, [&](int node, const std::string& name, const Affine& world) {
+  gltf::visit_nodes(document, budget, [&](const gltf::NodeVisit& visit) {
+    const int node = visit.node;
+    const Affine& world = visit.world_from_node;
+    const std::string& name = document.model.nodes[static_cast<size_t>(node)].name;
     const auto place = [&](GltfLight light, const ListedLight& listed) {
       light.name = !name.empty() ? name : text_or(listed.light, "name");
       if (light.name.empty()) light.name = "light_" + std::to_string(listed.number);

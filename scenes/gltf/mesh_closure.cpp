@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <sstream>
 #include <vector>
+
+#include "core/numerics/connected.h"
 
 namespace photorque {
 namespace {
@@ -14,22 +15,6 @@ struct Edge {
   uint32_t low, high;
   auto operator<=>(const Edge&) const = default;
 };
-
-// For every vertex, the first one at the same position.
-std::vector<uint32_t> welded(const std::vector<Vec3>& vertices_m) {
-  std::vector<uint32_t> order(vertices_m.size()), first(vertices_m.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto less = [&](uint32_t a, uint32_t b) {
-    return std::lexicographical_compare(vertices_m[a].data(), vertices_m[a].data() + 3,
-                                        vertices_m[b].data(), vertices_m[b].data() + 3);
-  };
-  std::sort(order.begin(), order.end(), less);
-  for (size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && vertices_m[order[i]] == vertices_m[order[i - 1]];
-    first[order[i]] = same ? first[order[i - 1]] : order[i];
-  }
-  return first;
-}
 
 std::vector<Edge> edges_of(const Mesh& mesh, const std::vector<uint32_t>& first) {
   std::vector<Edge> edges;
@@ -88,7 +73,6 @@ void add(const Mesh& mesh, MeshClosure& closure) {
     while (end < edges.size() && edges[end] == edges[i]) ++end;
     ++distinct;
     if (end - i == 1) open.push_back(edges[i]);
-    if (end - i > 2) ++closure.forked_edges;
     i = end;
   }
   ++closure.meshes;

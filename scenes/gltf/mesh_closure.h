@@ -14,9 +14,8 @@ namespace photorque {
 // creases and seams of texture).
 struct MeshClosure {
   size_t meshes = 0;
-  size_t closed = 0;        // meshes whose every edge joins two triangles
-  size_t open_edges = 0;    // of one triangle only: rims of sheets, or cracks
-  size_t forked_edges = 0;  // of three triangles or more
+  size_t closed = 0;      // meshes whose every edge joins two triangles
+  size_t open_edges = 0;  // of one triangle only: rims of sheets, or cracks
   // Open edges on which a vertex of the same mesh lies: the triangles on both sides do not meet at
   // the same corners, so that rounding leaves gaps (T-junctions).
   size_t t_junctions = 0;

@@ -48,63 +48,6 @@ void refuse_deformation(const Document& document, int index) {
   }
 }
 
-// A node still to be visited.
-struct Visit {
-  int node;
-  size_t depth;
-  std::string parent_path;
-  Affine world_from_parent;
-};
-
-class Walk {
- public:
-  Walk(const Document& document, MemoryBudget* budget) : document_(document), budget_(budget) {}
-
-  std::vector<Placement> from(const std::vector<int>& roots) {
-    for (const int root : std::views::reverse(roots)) {
-      waiting_.push_back({root, 1, "", Affine::Identity()});
-    }
-    while (!waiting_.empty()) {
-      const Visit visit = std::move(waiting_.back());
-      waiting_.pop_back();
-      enter(visit);
-    }
-    return std::move(placements_);
-  }
-
- private:
-  void enter(const Visit& visit) {
-    const tinygltf::Node& node = document_.model.nodes[static_cast<size_t>(visit.node)];
-    const std::string where = pointer("nodes", visit.node);
-    if (visit.depth > deepest_hierarchy) {
-      throw document_.wrong(where, "a hierarchy deeper than " + std::to_string(deepest_hierarchy),
-                            "a shallower one");
-    }
-    std::string name = node.name.empty() ? "node_" + std::to_string(visit.node) : node.name;
-    std::string path = visit.parent_path.empty() ? name : visit.parent_path + "/" + name;
-    const Affine world_from_node = visit.world_from_parent * parent_from_node(node);
-    if (!is_invertible(world_from_node)) {
-      throw document_.wrong(where, "a product of transforms that is singular or overflows",
-                            "an invertible one");
-    }
-    budget_->charge(node.children.size(), sizeof(Visit) + path.size(), where);
-    for (const int child : std::views::reverse(node.children)) {
-      waiting_.push_back({child, visit.depth + 1, path, world_from_node});
-    }
-    if (node.mesh < 0) return;
-    refuse_deformation(document_, visit.node);
-    for (const Affine& node_from_mesh : gpu_instances(document_, visit.node, budget_)) {
-      budget_->charge(1, sizeof(Placement) + name.size() + path.size(), where);
-      placements_.push_back({visit.node, node.mesh, name, path, world_from_node * node_from_mesh});
-    }
-  }
-
-  const Document& document_;
-  MemoryBudget* budget_;
-  std::vector<Visit> waiting_;  // a stack: files decide how deep it gets
-  std::vector<Placement> placements_;
-};
-
 }  // namespace
 
 Affine parent_from_node(const tinygltf::Node& node) {
@@ -135,33 +78,51 @@ bool is_invertible(const Affine& transform) {
          std::abs(axes.determinant()) > 1e-12 * lengths;
 }
 
-void visit_nodes(const Document& document,
-                 const std::function<void(int node, const std::string& name,
-                                          const Affine& world_from_node)>& visit) {
-  std::vector<Visit> waiting;
-  const std::vector<int> roots = roots_of(document);
-  for (const int root : std::views::reverse(roots)) {
+void visit_nodes(const Document& document, MemoryBudget* budget,
+                 const std::function<void(const NodeVisit&)>& visit) {
+  std::vector<NodeVisit> waiting;  // a stack: files decide how deep it gets
+  for (const int root : std::views::reverse(roots_of(document))) {
     waiting.push_back({root, 1, "", Affine::Identity()});
   }
   while (!waiting.empty()) {
-    const Visit next = std::move(waiting.back());
+    NodeVisit next = std::move(waiting.back());
     waiting.pop_back();
     const tinygltf::Node& node = document.model.nodes[static_cast<size_t>(next.node)];
+    const std::string where = pointer("nodes", next.node);
     if (next.depth > deepest_hierarchy) {
-      throw document.wrong(pointer("nodes", next.node),
-                           "a hierarchy deeper than " + std::to_string(deepest_hierarchy),
+      throw document.wrong(where, "a hierarchy deeper than " + std::to_string(deepest_hierarchy),
                            "a shallower one");
     }
-    const Affine world_from_node = next.world_from_parent * parent_from_node(node);
-    visit(next.node, node.name, world_from_node);
-    for (const int child : std::views::reverse(node.children)) {
-      waiting.push_back({child, next.depth + 1, "", world_from_node});
+    if (!next.path.empty()) next.path += "/";
+    next.path += node.name.empty() ? "node_" + std::to_string(next.node) : node.name;
+    next.world_from_node = next.world_from_node * parent_from_node(node);
+    if (!is_invertible(next.world_from_node)) {
+      throw document.wrong(where, "a product of transforms that is singular or overflows",
+                           "an invertible one");
     }
+    budget->charge(node.children.size(), sizeof(NodeVisit) + next.path.size(), where);
+    for (const int child : std::views::reverse(node.children)) {
+      waiting.push_back({child, next.depth + 1, next.path, next.world_from_node});
+    }
+    visit(next);
   }
 }
 
 std::vector<Placement> place_meshes(const Document& document, MemoryBudget* budget) {
-  return Walk(document, budget).from(roots_of(document));
+  std::vector<Placement> placements;
+  visit_nodes(document, budget, [&](const NodeVisit& visit) {
+    const tinygltf::Node& node = document.model.nodes[static_cast<size_t>(visit.node)];
+    if (node.mesh < 0) return;
+    refuse_deformation(document, visit.node);
+    const std::string name = node.name.empty() ? "node_" + std::to_string(visit.node) : node.name;
+    for (const Affine& node_from_mesh : gpu_instances(document, visit.node, budget)) {
+      budget->charge(1, sizeof(Placement) + name.size() + visit.path.size(),
+                     pointer("nodes", visit.node));
+      placements.push_back(
+          {visit.node, node.mesh, name, visit.path, visit.world_from_node * node_from_mesh});
+    }
+  });
+  return placements;
 }
 
 namespace {

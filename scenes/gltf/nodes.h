@@ -30,11 +30,17 @@ struct Placement {
   Affine world_from_mesh = Affine::Identity();
 };
 
-// Calls `visit` with the index of every node of the default scene, its name as the file has it and
-// its transform into the world of the file, parents first. As place_meshes().
-void visit_nodes(const Document& document,
-                 const std::function<void(int node, const std::string& name,
-                                          const Affine& world_from_node)>& visit);
+// A node of the default scene on the way from the root.
+struct NodeVisit {
+  int node = 0;
+  size_t depth = 1;
+  std::string path;  // names from the root to the node, joined by "/"; "node_7" if it has none
+  Affine world_from_node = Affine::Identity();
+};
+
+// Calls `visit` for every node of the default scene, parents first. As place_meshes().
+void visit_nodes(const Document& document, MemoryBudget* budget,
+                 const std::function<void(const NodeVisit&)>& visit);
 
 // Every mesh of the default scene, in depth-first order: scene `scene`, else scene 0, else (no
 // scenes) everything below all root nodes. A node with EXT_mesh_gpu_instancing gives one placement

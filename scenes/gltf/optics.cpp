@@ -15,12 +15,6 @@ namespace {
 
 using nlohmann::json;
 
-// An object at `key`, or an empty one.
-json object_at(const json& parent, const char* key) {
-  const auto found = parent.find(key);
-  return found == parent.end() ? json::object() : *found;
-}
-
 // Rec. 709 luminance of linear RGB.
 double luminance(const std::vector<double>& rgb) {
   return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
@@ -32,20 +26,29 @@ struct Grey {
   double alpha = 1;
 };
 
-Grey from_metallic_roughness(const json& material) {
-  const json pbr = object_at(material, "pbrMetallicRoughness");
-  const json extensions = object_at(material, "extensions");
-  const auto color = pbr.value("baseColorFactor", std::vector<double>{1, 1, 1, 1});
-  const double metallic = pbr.value("metallicFactor", 1.0);
-  const double roughness = pbr.value("roughnessFactor", 1.0);
-  const double through =
-      object_at(extensions, "KHR_materials_transmission").value("transmissionFactor", 0.0);
-  const double index = object_at(extensions, "KHR_materials_ior").value("ior", 1.5);
-  const double fresnel = (index - 1) * (index - 1) / ((index + 1) * (index + 1));
-  const double mirror = (1 - metallic) * fresnel + metallic * luminance(color);
-  const double below = (1 - metallic) * (1 - fresnel) * luminance(color);
-  return {(1 - roughness) * mirror, roughness * mirror + (1 - through) * below, through * below,
-          color[3]};
+// The metallic-roughness model of glTF with the extensions for transmission and refraction.
+struct MetallicRoughness {
+  std::vector<double> color;  // red, green, blue, alpha
+  double metallic, roughness, transmission, index;
+
+  explicit MetallicRoughness(const json& material) {
+    const json pbr = material.value("pbrMetallicRoughness", json::object());
+    const json extensions = material.value("extensions", json::object());
+    color = pbr.value("baseColorFactor", std::vector<double>{1, 1, 1, 1});
+    metallic = pbr.value("metallicFactor", 1.0);
+    roughness = pbr.value("roughnessFactor", 1.0);
+    transmission = extensions.value("KHR_materials_transmission", json::object())
+                       .value("transmissionFactor", 0.0);
+    index = extensions.value("KHR_materials_ior", json::object()).value("ior", 1.5);
+  }
+};
+
+Grey from_metallic_roughness(const MetallicRoughness& m) {
+  const double fresnel = (m.index - 1) * (m.index - 1) / ((m.index + 1) * (m.index + 1));
+  const double mirror = (1 - m.metallic) * fresnel + m.metallic * luminance(m.color);
+  const double below = (1 - m.metallic) * (1 - fresnel) * luminance(m.color);
+  return {(1 - m.roughness) * mirror, m.roughness * mirror + (1 - m.transmission) * below,
+          m.transmission * below, m.color[3]};
 }
 
 Grey from_specular_glossiness(const json& values) {
@@ -67,31 +70,26 @@ double coverage(const json& material, double alpha) {
 // A dielectric that names its index and covers everything: glass over matt ground, or a clear pane.
 std::optional<OpticalSurface> derived_glass(const json& material, int bands,
                                             const std::string& name) {
-  const json extensions = object_at(material, "extensions");
-  const json pbr = object_at(material, "pbrMetallicRoughness");
-  if (!extensions.contains("KHR_materials_ior") || pbr.value("metallicFactor", 1.0) > 0.0 ||
+  const json extensions = material.value("extensions", json::object());
+  const MetallicRoughness m(material);
+  if (!extensions.contains("KHR_materials_ior") || m.metallic > 0.0 ||
       extensions.contains("KHR_materials_pbrSpecularGlossiness")) {
     return std::nullopt;
   }
-  const double index = extensions["KHR_materials_ior"].value("ior", 1.5);
-  const double through =
-      object_at(extensions, "KHR_materials_transmission").value("transmissionFactor", 0.0);
-  const double roughness = pbr.value("roughnessFactor", 1.0);
-  const auto color = pbr.value("baseColorFactor", std::vector<double>{1, 1, 1, 1});
-  const bool pane = through == 1.0 && roughness == 0.0;
-  if (index < 1.0 || index > 10.0 || (through > 0.0 && !pane) ||
-      coverage(material, color[3]) < 1.0) {
+  const bool pane = m.transmission == 1.0 && m.roughness == 0.0;
+  if (m.index < 1.0 || m.index > 10.0 || (m.transmission > 0.0 && !pane) ||
+      coverage(material, m.color[3]) < 1.0) {
     return std::nullopt;
   }
-  const double bright = std::min(luminance(color), 1.0);
+  const double bright = std::min(luminance(m.color), 1.0);
   OpticalSurface base;
   base.name = name;
   for (size_t band = 0; band < static_cast<size_t>(bands); ++band) {
     (pane ? base.transmitted : base.diffuse)[band] = bright;
     base.absorbed[band] = 1.0 - bright;
   }
-  const double alpha = roughness == 0.0 ? 0.0 : std::max(roughness * roughness, 1e-3);
-  return behind_glass(base, index, alpha);
+  const double alpha = m.roughness == 0.0 ? 0.0 : std::max(m.roughness * m.roughness, 1e-3);
+  return behind_glass(base, m.index, alpha);
 }
 
 // The extras' table, if there is one.
@@ -165,10 +163,11 @@ SettingsNode settings_from_json(const json& value, const InputLocation& where) {
 }
 
 OpticalSurface derived_surface(const json& material, int bands, std::string name) {
-  const json extensions = object_at(material, "extensions");
+  const json extensions = material.value("extensions", json::object());
   const auto glossy = extensions.find("KHR_materials_pbrSpecularGlossiness");
-  const Grey grey = glossy == extensions.end() ? from_metallic_roughness(material)
-                                               : from_specular_glossiness(*glossy);
+  const Grey grey = glossy == extensions.end()
+                        ? from_metallic_roughness(MetallicRoughness(material))
+                        : from_specular_glossiness(*glossy);
   const double covered = coverage(material, grey.alpha);
   if (const std::optional<OpticalSurface> glass = derived_glass(material, bands, name)) {
     return *glass;

@@ -153,10 +153,7 @@ class Assembly {
     double least_m = INFINITY;
     const Instance* smallest = nullptr;
     for (const Instance& instance : model_.scene.instances) {
-      Eigen::AlignedBox3d box;
-      for (const Vec3& vertex : model_.scene.meshes[instance.mesh].vertices_m) {
-        box.extend(instance.body_from_mesh * vertex);
-      }
+      const Eigen::AlignedBox3d box = model_.scene.box_of(instance);
       all.extend(box);
       const double size_m = box.diagonal().norm();
       if (size_m >= least_m) continue;
@@ -256,9 +253,7 @@ class Assembly {
         gltf::material_optics(document_, index, options_.bands.count(), overrides_, beside_model_);
     GltfMaterial material;
     if (index >= 0) {
-      const tinygltf::Material& from = document_.model.materials[static_cast<size_t>(index)];
-      material.name = from.name;
-      material.double_sided = from.doubleSided;
+      material.name = document_.model.materials[static_cast<size_t>(index)].name;
     }
     for (const std::string& line : optics.sheet.notices) {
       add_notice(in_quotes(material.name) + ": " + line);

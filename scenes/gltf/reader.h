@@ -70,7 +70,6 @@ struct GltfMaterial {
   std::string name;  // empty: primitives without a material, or a material without a name
   uint32_t front_surface = 0;
   uint32_t back_surface = 0;
-  bool double_sided = false;  // as in the file; recorded, without effect
   OpticsOrigin origin = OpticsOrigin::derived;
 };
 

@@ -41,11 +41,6 @@ Vec3 to_gltf_axes(const Vec3& body) {
   return {body.x(), body.z(), -body.y()};
 }
 
-// The last digits of sines and cosines differ between mathematical libraries; they are not needed.
-double stable(double x) {
-  return std::round(x * 1e9) / 1e9 + 0.0;
-}
-
 // The binary buffer and the views and accessors that cut it up.
 class Buffer {
  public:
@@ -98,15 +93,6 @@ size_t add_positions(Buffer& buffer, const std::vector<Vec3>& vertices_m) {
   return index;
 }
 
-size_t add_texture_coordinates(Buffer& buffer, const std::vector<Vec2>& uv) {
-  std::vector<float> numbers;
-  for (const Vec2& point : uv) {
-    numbers.push_back(static_cast<float>(point.x()));
-    numbers.push_back(static_cast<float>(point.y()));
-  }
-  return buffer.add(numbers, type_float, 2, target_vertices);
-}
-
 size_t add_indices(Buffer& buffer, const Mesh& mesh) {
   std::vector<uint32_t> wide;
   for (const auto& triangle : mesh.triangles)
@@ -121,39 +107,18 @@ size_t add_indices(Buffer& buffer, const Mesh& mesh) {
 
 Json primitive_json(Buffer& buffer, const Mesh& mesh, int material) {
   Json primitive = {{"attributes", {{"POSITION", add_positions(buffer, mesh.vertices_m)}}}};
-  if (!mesh.uv.empty()) {
-    primitive["attributes"]["TEXCOORD_0"] = add_texture_coordinates(buffer, mesh.uv);
-  }
   primitive["indices"] = add_indices(buffer, mesh);
   if (material >= 0) primitive["material"] = material;
   return primitive;
 }
 
 Json material_json(const GltfWriterMaterial& material) {
-  Json json = {
-      {"name", material.name},
-      {"pbrMetallicRoughness",
-       {{"baseColorFactor",
-         {material.base_colour.x(), material.base_colour.y(), material.base_colour.z(), 1.0}},
-        {"metallicFactor", material.metallic},
-        {"roughnessFactor", material.roughness}}}};
+  Json json = {{"name", material.name},
+               {"pbrMetallicRoughness",
+                {{"baseColorFactor", {0.5, 0.5, 0.5, 1.0}},
+                 {"metallicFactor", 0.0},
+                 {"roughnessFactor", 0.5}}}};
   if (material.optics) json["extras"]["photorque"] = to_json(*material.optics);
-  return json;
-}
-
-Json node_json(const GltfWriterNode& node) {
-  Json json = {{"name", node.name}};
-  const Vec3 translation_m = to_gltf_axes(node.parent_from_node.translation_m);
-  if (!translation_m.isZero(0.0)) {
-    json["translation"] = {stable(translation_m.x()), stable(translation_m.y()),
-                           stable(translation_m.z())};
-  }
-  const Quat& rotation = node.parent_from_node.rotation;
-  if (!rotation.vec().isZero(0.0)) {
-    const Vec3 axis = to_gltf_axes(rotation.vec());
-    json["rotation"] = {stable(axis.x()), stable(axis.y()), stable(axis.z()), stable(rotation.w())};
-  }
-  if (node.extras) json["extras"] = to_json(*node.extras);
   return json;
 }
 
@@ -163,7 +128,11 @@ void write_nodes(const GltfWriterModel& model, Json& document, Buffer& buffer) {
   Json nodes = Json::array(), meshes = Json::array(), roots = Json::array();
   for (size_t i = 0; i < model.nodes.size(); ++i) {
     const GltfWriterNode& node = model.nodes[i];
-    Json json = node_json(node);
+    const Vec3 translation_m = to_gltf_axes(node.translation_m);
+    Json json = {{"name", node.name}};
+    if (!translation_m.isZero(0.0)) {
+      json["translation"] = {translation_m.x(), translation_m.y(), translation_m.z()};
+    }
     if (node.mesh >= 0) {
       const auto [entry, is_new] =
           mesh_indices.try_emplace({node.mesh, node.material}, meshes.size());
@@ -191,8 +160,7 @@ void write_nodes(const GltfWriterModel& model, Json& document, Buffer& buffer) {
 
 std::string gltf_text(const GltfWriterModel& model) {
   Json document;
-  document["asset"] = {{"version", "2.0"}, {"generator", "photorque make_platform"}};
-  if (model.extras) document["asset"]["extras"] = to_json(*model.extras);
+  document["asset"] = {{"version", "2.0"}, {"generator", "photorque"}};
   Buffer buffer;
   write_nodes(model, document, buffer);
   Json materials = Json::array();

@@ -1,20 +1,6 @@
 // A lamp as its maker measured it: an IES LM-63, IES TM-33 or EULUMDAT file, or a table in the
-// experiment.
-//
-//   [[source]]
-//   kind = "ies"
-//   file = "lamp.ies"            # or lamp.ldt; beside the experiment
-//   power_W = 2.0                # radiant, > 0; the file gives the shape alone
-//   wavelength_nm = 730
-//   spectral_fwhm_nm = 30        # default 20
-//   position_m = [0, 0, 1.5]     # or positions_m = [[…], …]: one lamp at each
-//   aim_m = [0, 0, 0]            # or direction = [0, 0, -1]: where the file's nadir (γ = 0) looks
-//   turn_deg = 0                 # about the beam, right-handed about its direction
-//   aperture_diameter_m = 0.02   # default: the luminous opening of the file
-//
-// Instead of `file`: polar_deg = [0, 5, …, 90] and intensity = [1, 0.9, …, 0], even round the beam,
-// or with azimuth_deg = [0, 90, …] one row of intensities after the other. Such a table needs an
-// aperture_diameter_m or is a point.
+// experiment. They give the shape alone: the power is the experiment's. The file's nadir (γ = 0)
+// looks along the direction of the lamp.
 #include "sources/lamps/ies.h"
 
 #include <algorithm>

@@ -1,19 +1,10 @@
 // A TEM00 laser beam as rays.
 //
-//   [[source]]
-//   kind = "laser"
-//   name = "pointer"                       # default "laser"
-//   power_W = 0.005                        # > 0
-//   wavelength_nm = 633
-//   spectral_fwhm_nm = 0                   # default 0, a line
-//   waist_radius_m = 0.0005                # w0: intensity 1/e² of the axis
-//   divergence_half_angle_deg = 0.1        # Θ: far field, 1/e²; default tan Θ = λ/(π w0)
-//   position_m = [0, 0, 1.5]               # centre of the waist, lab frame
-//   direction = [0, 0, -1]                 # or aim_m = [0, 0, 0]
-//
 // The rays are drawn from the Wigner distribution of the beam: position in the waist and transverse
-// slope are independent Gaussians, w0/2 and tan Θ/2 in standard deviation along each axis. The
-// irradiance at any distance z is then Gaussian with w(z)² = w0² + (z tan Θ)², exactly.
+// slope are independent Gaussians, w0/2 and tan Θ/2 in standard deviation along each axis, with the
+// 1/e² radius w0 of the waist and the 1/e² half angle Θ of the far field. The irradiance at any
+// distance z is then Gaussian with w(z)² = w0² + (z tan Θ)², exactly; at the diffraction limit
+// tan Θ = λ/(π w0).
 // Source: R. Simon, N. Mukunda, E. C. G. Sudarshan, Phys. Rev. A 29 (1984) 3273; A. E. Siegman,
 // Lasers (1986), section 17.1, for w(z) and the diffraction limit.
 #include <cmath>

@@ -1,17 +1,4 @@
 // An LED with its lens: a round aperture that shines with a given angular profile.
-//
-//   [[source]]
-//   kind = "led"
-//   name = "lamp"              # default "led"
-//   power_W = 2.0              # radiant, > 0
-//   aperture_diameter_m = 0.02
-//   profile = "gaussian"       # and its angles: see settings.h
-//   fwhm_deg = 3.0
-//   wavelength_nm = 730
-//   spectral_fwhm_nm = 30      # default 20
-//   position_m = [0, 0, 1.5]   # centre of the aperture, lab frame
-//   aim_m = [0, 0, 0]          # or direction = [0, 0, -1]
-//   die_size_m = 0.001         # optional: warns of beams that no optics can make
 #include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 

@@ -1,29 +1,7 @@
 // LEDs of one kind on a plane, all parallel or all aimed at one point.
 //
-//   [[source]]
-//   kind = "led_array"
-//   name = "lamps"                   # default "led_array"; the LEDs are name[0], name[1], …
-//   layout = "grid"                  # arrangement of the LEDs:
-//   count = [10, 5]                  #   grid: columns along x and rows along y of the array,
-//   pitch_m = 0.03                   #         pitch_m apart (or [pitch x, pitch y])
-//   # layout = "ring"                #   ring: count LEDs evenly on ring_radius_m, from +x on
-//   # layout = "hexagonal"           #   hexagonal: count LEDs, close packed at pitch_m, the ring
-//                                    #         around the centre first
-//   # layout = "positions"           #   positions: positions_m, in the lab frame
-//   position_m = [0, 0, 1.5]         # centre of the array, lab frame (not for "positions")
-//   direction = [0, 0, -1]           # normal of the array's plane; its x and y axes are the lab's,
-//                                    # turned by the shortest rotation from the vertical (up or
-//                                    # down, whichever is nearer) to the direction
-//   aim = "parallel"                 # default: all look along `direction`, or from the centre
-//                                    #   at aim_m
-//   # aim = "converging"             # each looks at the point aim_m; `direction` may be left out;
-//                                    #   or at the point focus_m along `direction` from the centre,
-//                                    #   which turns with the panel
-//   power_W = 2.0                    # of each LED, or total_power_W
-//   power_spread = 0.03              # LEDs differ: the relative standard deviation of their powers
-//   aim_spread_deg = 0.2             # and of their axes, about each of two directions across
-//   spread_seed = 1                  # which panel of all that could be built so; 0: as drawn
-//   # aperture_diameter_m, profile, fwhm_deg, wavelength_nm, … as for "led"
+// The x and y axes of the plane are the lab's, turned by the shortest rotation from the vertical
+// (up or down, whichever is nearer) to its normal. The LEDs are called name[0], name[1], …
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -228,24 +206,6 @@ double read_power_of_each(const Settings& settings, size_t count) {
   if (!total) return settings.get(source_key::power);
   return settings.get(key::total_power) / static_cast<double>(count);
 }
-
-// An emitter that gives another power.
-class ScaledEmitter final : public Emitter {
- public:
-  ScaledEmitter(std::shared_ptr<const Emitter> one, double factor)
-      : one_(std::move(one)), factor_(factor) {}
-  double power_W() const override { return factor_ * one_->power_W(); }
-  void emit(const SampleBlock& samples, RayBlock& rays) const override {
-    one_->emit(samples, rays);
-  }
-  double relative_intensity(double angle_rad) const override {
-    return one_->relative_intensity(angle_rad);
-  }
-
- private:
-  std::shared_ptr<const Emitter> one_;
-  double factor_;
-};
 
 // Deviations of the LEDs of one panel from their stated values. Normal draws, by Box and Muller,
 // that belong to seed and LED: panels of different layouts are built from the same LEDs.

@@ -1,14 +1,5 @@
-// A lamp as a file of rays: IES TM-25, Zemax binary or LightTools text.
-//
-//   [[source]]
-//   kind = "ray_file"
-//   file = "lamp.tm25ray"        # beside the experiment
-//   power_W = 2.0                # radiant; default: the file's, if it states one
-//   wavelength_nm = 730          # default: the file's, if it states one
-//   spectral_fwhm_nm = 30        # default 20
-//   position_m = [0, 0, 1.5]     # of the file's origin; or positions_m = [[…], …]
-//   aim_m = [0, 0, 0]            # or direction = [0, 0, -1]: where the file's z axis looks
-//   turn_deg = 0                 # about the beam, right-handed about its direction
+// A lamp as a file of rays: IES TM-25, Zemax binary or LightTools text. The file's z axis looks
+// along the direction of the lamp.
 //
 // The fluxes of the rays are scaled to the power: their sum is often of another scale than the flux
 // that the file states, which is reported.

@@ -25,23 +25,13 @@ Vec3 read_direction_vector(const Settings& settings);
 Vec3 direction_to(const Settings& settings, std::string_view key, const Vec3& from_m,
                   const Vec3& to_m);
 
-// The directions of a lamp. What an angle means is in its key:
-//   profile = "gaussian"        fwhm_deg: full width at half of the maximum intensity, (0, 180)
-//   profile = "super_gaussian"  fwhm_deg, order: 2 (Gaussian) to 100 (nearly a disc)
-//   profile = "pillbox"         half_angle_deg: axis to edge, (0, 90];
-//                               pillbox_measure = "angle" | "solid_angle" | "projected"
-//   profile = "cosine_power"    exponent: 0 (isotropic) to 1e9
-//   halo_fraction, halo_fwhm_deg  optional: this fraction of the flux, [0, 1), in a Gaussian halo
+// The directions of a lamp: `profile` with its angles, and a halo.
 AngularDistribution read_angular_distribution(const Settings& settings);
 
 // wavelength_nm, and spectral_fwhm_nm with a default.
 Spectrum read_line_spectrum(const Settings& settings, double default_fwhm_m);
 
-// Spectrum and irradiance of the Sun and of solar simulators:
-//   spectrum = "blackbody"    temperature_K, default 5772
-//   spectrum = "AM0"          as above the atmosphere (ASTM G173-03)
-//   spectrum = "AM1.5G"       as on the ground (the same)
-//   irradiance_W_m2           > 0, default 1361; with AM1.5G 1000
+// Spectrum and irradiance of the Sun and of solar simulators.
 struct Sunlight {
   Spectrum spectrum;
   double irradiance_W_m2;

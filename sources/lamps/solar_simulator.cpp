@@ -1,18 +1,6 @@
 // A solar simulator: a bundle of limited width and collimation that lights a round field evenly, or
 // nearly so.
 //
-//   [[source]]
-//   kind = "solar_simulator"
-//   name = "simulator"                # default "solar_simulator"
-//   irradiance_W_m2 = 1361            # in the middle of the field, on a plane normal to the beam
-//   footprint_diameter_m = 0.6        # of the field; no light falls beside it
-//   collimation_half_angle_deg = 2    # axis to edge, [0, 45]; default 0.2665: the Sun's at 1 au
-//   nonuniformity = 0.02              # (max − min)/(max + min) over the field, [0, 1); default 0
-//   position_m = [0, 0, 0]            # middle of the field, lab frame
-//   direction = [0, 0, -1]            # in which the light travels
-//   spectrum = "AM0"                  # or "AM1.5G", or a "blackbody" (default)
-//   temperature_K = 5772              # of the blackbody
-//
 // Nonuniformity is that of IEC 60904-9. The irradiance falls from the middle as E(r) = E0 (1 − k
 // r²/R²) with k = 2u/(1 + u), which has that nonuniformity u. Every point of the field sees the
 // same disc of constant radiance, so that the field is sharp at its own plane and blurs in front of

@@ -1,16 +1,5 @@
 // The Sun: parallel light from every point of a small disc in the sky, and of its aureole.
 //
-//   [[source]]
-//   kind = "sun"
-//   name = "sun"                   # default "sun"
-//   irradiance_W_m2 = 1361         # on a plane normal to `direction`; default: mean at 1 au
-//   direction = [0, 0, -1]         # in which the light travels, lab frame
-//   spectrum = "AM0"               # or "AM1.5G", or a "blackbody" (default)
-//   temperature_K = 5772           # of the blackbody
-//   sun_shape = "disc"             # default; "gaussian", "buie", "table": see sun_shape.h
-//   angular_radius_deg = 0.2665    # of the disc, [0, 45]; 0: collimated; default: Sun at 1 au
-//   limb_darkening = [0.47, 0.23]  # of the disc; default: none
-//
 // A disc without limb darkening has the same radiance L all over: directions are even in solid
 // angle. For each direction the rays fill a disc of radius R normal to THAT direction and centred
 // on the lab origin, so that a sphere of radius R there is lit evenly. The irradiance on a plane

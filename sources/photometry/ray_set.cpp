@@ -41,7 +41,11 @@ void require_flux(const RaySet& set, const InputLocation& where) {
   }
 }
 
-void require_affordable(uint64_t rays, const InputLocation& where) {
+void require_affordable(uint64_t rays, uint64_t room_for, const InputLocation& where) {
+  if (rays > room_for) {
+    throw InputError(where, "number of rays", std::to_string(rays),
+                     "at most the " + std::to_string(room_for) + " that the file has room for");
+  }
   constexpr uint64_t most = 50'000'000;
   if (rays <= most) return;
   throw InputError(where, "number of rays", std::to_string(rays),

@@ -59,7 +59,7 @@ void require_sound(const RaySet::Ray& ray, size_t index, const InputLocation& wh
 // Throws InputError for a set without rays or without flux.
 void require_flux(const RaySet& set, const InputLocation& where);
 
-// Throws InputError for more rays than fit in memory kept for them.
-void require_affordable(uint64_t rays, const InputLocation& where);
+// Throws InputError for more rays than the file has room for, or than fit in memory kept for them.
+void require_affordable(uint64_t rays, uint64_t room_for, const InputLocation& where);
 
 }  // namespace photorque

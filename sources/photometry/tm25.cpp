@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/little_endian.h"
 #include "core/text/parse.h"
-#include "sources/photometry/little_endian.h"
 #include "sources/photometry/ray_set.h"
 
 namespace photorque {
@@ -151,11 +151,7 @@ RaySet read_tm25(const std::string& bytes, const std::string& name) {
   in.skip(static_cast<uint64_t>(header.more_columns) * column_name_bytes, "names of columns");
   in.skip(static_cast<uint64_t>(header.text_bytes), "text");
   const uint64_t there = in.left() / (4 * header.floats_per_ray);
-  if (header.rays > there) {
-    throw InputError({name}, "number of rays", std::to_string(header.rays),
-                     "at most the " + std::to_string(there) + " that the file has room for");
-  }
-  require_affordable(header.rays, {name});
+  require_affordable(header.rays, there, {name});
   set.flux_unit = header.has[radiant] ? RaySet::FluxUnit::watt : RaySet::FluxUnit::lumen;
   set.rays.reserve(header.rays);
   for (uint64_t i = 0; i < header.rays; ++i) {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "sources/photometry/little_endian.h"
+#include "core/little_endian.h"
 #include "sources/photometry/ray_set.h"
 
 namespace photorque {
@@ -67,11 +67,7 @@ RaySet read_zemax_rays(const std::string& bytes, const std::string& name) {
   set.format = "Zemax";
   const ZemaxHeader header = read_zemax_header(in, set);
   const uint64_t there = in.left() / (header.spectral ? 32 : 28);
-  if (header.rays > there) {
-    throw InputError({name}, "number of rays", std::to_string(header.rays),
-                     "at most the " + std::to_string(there) + " that the file has room for");
-  }
-  require_affordable(header.rays, {name});
+  require_affordable(header.rays, there, {name});
   set.rays.reserve(header.rays);
   for (uint32_t i = 0; i < header.rays; ++i) {
     RaySet::Ray ray;

@@ -23,6 +23,7 @@ const std::multimap<std::string, std::string> only_place = {
     {"cairo", "images/drawing"},
     {"CLI/", "tools"},
     {"zlib.h", "attitude/recordings"},
+    {"zlib.h", "images/writers"},
     {"pugixml", "sources/photometry"},
     {"pugixml", "attitude/recordings"},
     {"pugixml", "tools/fmi"},

@@ -1,7 +1,7 @@
 // Mistakes of keys beside a choice.
 #include <gmock/gmock.h>
 
-#include "core/settings/keys.h"
+#include "core/settings/typed_keys.h"
 
 namespace photorque {
 namespace {
@@ -11,10 +11,10 @@ using testing::HasSubstr;
 
 // A lamp is round with a radius or square with a side; both have a power.
 std::vector<Key> lamp_keys() {
-  return {Key::number("power_W", Range::positive(), "of all of it"),
+  return {NumberKey("power_W", Range::positive(), "of all of it"),
           Key::choice("kind",
-                      {{"round", "a disc", {Key::number("radius_m", Range::positive(), "its")}},
-                       {"square", "a tile", {Key::number("side_m", Range::positive(), "its")}}},
+                      {{"round", "a disc", {NumberKey("radius_m", Range::positive(), "its")}},
+                       {"square", "a tile", {NumberKey("side_m", Range::positive(), "its")}}},
                       "what it is")};
 }
 

@@ -15,7 +15,7 @@ class Hdf5Files : public FolderTest {
  protected:
   void SetUp() override {
     FolderTest::SetUp();
-    write_product(sample_product(), sample_provenance(), folder, {"vtkhdf", "h5"});
+    write_formats(sample_product(), sample_provenance(), folder, {"vtkhdf", "h5"});
   }
   hid_t open(const std::string& name) const {
     return H5Fopen((folder / name).c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);

@@ -21,7 +21,7 @@ class MapFiles : public FolderTest {
   fs::path written(const Map& map, const std::string& format) const {
     Product product;
     product.maps = {map};
-    return write_product(product, sample_provenance(), folder, {format}).at(0);
+    return write_formats(product, sample_provenance(), folder, {format}).at(0);
   }
 };
 
@@ -248,12 +248,12 @@ TEST(MapPicture, SmoothMapsAreDrawnBetweenTheirNodes) {
 
 TEST(MapPicture, IsAPageOfVectorsTooWhoseLettersAreText) {
   const Map map = sample_map();
-  const std::string page = map_svg(map, {}, PictureStyle::page);
+  const std::string page = svg_of(map, {}, PictureStyle::page);
   EXPECT_THAT(page, testing::HasSubstr(">" + map.title + "</text>"));
   EXPECT_THAT(page, testing::HasSubstr("data:image/png;base64,"));
-  EXPECT_THAT(map_svg(map, {}, PictureStyle::paper),
+  EXPECT_THAT(svg_of(map, {}, PictureStyle::paper),
               testing::Not(testing::HasSubstr(">" + map.title + "</text>")));
-  EXPECT_THAT(map_pdf(map, {}, {"a", "b", "c"}, PictureStyle::page), testing::StartsWith("%PDF"));
+  EXPECT_THAT(pdf_of(map, {}, {"a", "b", "c"}, PictureStyle::page), testing::StartsWith("%PDF"));
 }
 
 // Of the field x from 0 to 4: labels stand on their lines, apart, along them (upright lines).

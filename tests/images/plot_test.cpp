@@ -239,7 +239,7 @@ TEST(PlotPicture, SurvivesEveryDegeneratePlot) {
   for (const Plot& plot : {nothing, empty_curve, negative_on_log, one_point_on_log, huge, infinite,
                            rounded_on_log, ends_on_log, least_on_log}) {
     EXPECT_GT(plot_picture(plot, {}).height, 100);
-    EXPECT_THAT(plot_svg(plot, {}), ::testing::HasSubstr("</svg>"));
+    EXPECT_THAT(svg_of(plot, {}), ::testing::HasSubstr("</svg>"));
   }
 }
 
@@ -249,7 +249,7 @@ TEST(PlotSvg, StaysSmallForLongHistories) {
     plot.curves[0].x.push_back(1.0 + i);
     plot.curves[0].y.push_back(std::sin(1e-4 * i) + 0.01 * (i % 7));
   }
-  EXPECT_LT(plot_svg(plot, {}).size(), 300000u);
+  EXPECT_LT(svg_of(plot, {}).size(), 300000u);
 }
 
 TEST(PlotHtml, KeepsASpikeThatOneOfAHundredThousandSamplesHolds) {
@@ -398,7 +398,7 @@ TEST(Plot, ManyBarsStandOnEachOther) {
 TEST(Styles, PaperHasNoTitleAndRelativelyLargerLetters) {
   Plot plot = constant_plot();
   plot.title = "A long title";
-  const std::string page = plot_svg(plot, {}), paper = plot_svg(plot, {}, PictureStyle::paper);
+  const std::string page = svg_of(plot, {}), paper = svg_of(plot, {}, PictureStyle::paper);
   EXPECT_THAT(page, ::testing::HasSubstr(">" + plot.title + "</text>"));
   EXPECT_THAT(paper, ::testing::Not(::testing::HasSubstr(plot.title)));
   const auto width = [](const std::string& svg) {

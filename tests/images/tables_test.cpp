@@ -42,7 +42,7 @@ std::vector<Row> read_csv(const std::string& text) {
 class Csv : public FolderTest {
  protected:
   std::vector<Row> rows_of(const Product& product, const std::string& file) const {
-    write_product(product, sample_provenance(), folder, {"csv"});
+    write_formats(product, sample_provenance(), folder, {"csv"});
     return read_csv(read_file(folder / file));
   }
 };

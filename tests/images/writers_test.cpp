@@ -35,19 +35,19 @@ class Writers : public FolderTest {
 
 TEST_F(Writers, WriteExactlyTheFilesTheyName) {
   for (const WriterKind& kind : all_writer_kinds()) {
-    std::vector<fs::path> paths = kind.make()->write(sample_product(), {}, folder);
+    std::vector<fs::path> paths = kind.write(sample_product(), {}, folder, PictureStyle::page);
     EXPECT_FALSE(paths.empty()) << kind.name;
     for (const fs::path& path : paths) EXPECT_EQ(path.extension(), "." + kind.name);
     std::ranges::sort(paths);
     EXPECT_EQ(paths, entries()) << kind.name;
     for (const fs::path& path : paths) fs::remove(path);
-    EXPECT_THAT(kind.make()->write({}, {}, folder), IsEmpty()) << kind.name;
+    EXPECT_THAT(kind.write({}, {}, folder, PictureStyle::page), IsEmpty()) << kind.name;
   }
 }
 
 TEST_F(Writers, PutTheProvenanceInEveryFile) {
   const Provenance provenance = sample_provenance();
-  for (const fs::path& path : write_product(sample_product(), provenance, folder)) {
+  for (const fs::path& path : write_formats(sample_product(), provenance, folder)) {
     const std::string bytes = read_file(path);
     EXPECT_THAT(bytes, HasSubstr(provenance.version)) << path;
     EXPECT_THAT(bytes, HasSubstr(provenance.git_hash)) << path;
@@ -61,9 +61,9 @@ TEST_F(Writers, PutTheProvenanceInEveryFile) {
 
 // Long enough apart for a time of day to differ: OpenImageIO writes one unless it is disabled.
 TEST_F(Writers, WriteTheSameBytesASecondLater) {
-  const auto first = write_product(sample_product(), sample_provenance(), folder / "a");
+  const auto first = write_formats(sample_product(), sample_provenance(), folder / "a");
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));
-  const auto second = write_product(sample_product(), sample_provenance(), folder / "b");
+  const auto second = write_formats(sample_product(), sample_provenance(), folder / "b");
   ASSERT_EQ(first.size(), second.size());
   for (size_t i = 0; i < first.size(); ++i) {
     EXPECT_TRUE(read_file(first[i]) == read_file(second[i])) << first[i];
@@ -74,10 +74,12 @@ TEST_F(Writers, WriteTheSameBytesASecondLater) {
 // written.
 TEST_F(Writers, LeaveNothingWhenTheFileCannotAppear) {
   for (const WriterKind& kind : all_writer_kinds()) {
-    const std::vector<fs::path> paths = kind.make()->write(sample_product(), {}, folder);
+    const std::vector<fs::path> paths =
+        kind.write(sample_product(), {}, folder, PictureStyle::page);
     fs::remove_all(folder);
     fs::create_directories(paths.front() / "in the way");
-    EXPECT_THROW(kind.make()->write(sample_product(), {}, folder), InputError) << kind.name;
+    EXPECT_THROW(kind.write(sample_product(), {}, folder, PictureStyle::page), InputError)
+        << kind.name;
     EXPECT_EQ(entries(), std::vector<fs::path>{paths.front()}) << kind.name;
     EXPECT_TRUE(fs::exists(paths.front() / "in the way")) << kind.name;
   }
@@ -86,11 +88,12 @@ TEST_F(Writers, LeaveNothingWhenTheFileCannotAppear) {
 TEST_F(Writers, RefuseFoldersThatCannotBeWritten) {
   std::ofstream(folder / "file") << "no folder";
   for (const WriterKind& kind : all_writer_kinds()) {
-    EXPECT_THROW(kind.make()->write(sample_product(), {}, folder / "file"), InputError)
+    EXPECT_THROW(kind.write(sample_product(), {}, folder / "file", PictureStyle::page), InputError)
         << kind.name;
     // Read-only even for the administrator.
     if (!fs::is_directory("/proc/self")) continue;
-    EXPECT_THROW(kind.make()->write(sample_product(), {}, "/proc/self"), InputError) << kind.name;
+    EXPECT_THROW(kind.write(sample_product(), {}, "/proc/self", PictureStyle::page), InputError)
+        << kind.name;
   }
 }
 
@@ -117,14 +120,14 @@ class LongestFile {
 TEST_F(Writers, TellOfWritesThatFail) {
   for (const WriterKind& kind : all_writer_kinds()) {
     uintmax_t shortest = std::numeric_limits<uintmax_t>::max();
-    for (const fs::path& path : kind.make()->write(sample_product(), {}, folder)) {
+    for (const fs::path& path : kind.write(sample_product(), {}, folder, PictureStyle::page)) {
       shortest = std::min(shortest, fs::file_size(path));
       fs::remove(path);
     }
     for (const uintmax_t limit : {uintmax_t{0}, shortest / 2, shortest - 1}) {
       {
         const LongestFile longest(limit);
-        EXPECT_THROW(kind.make()->write(sample_product(), {}, folder), InputError)
+        EXPECT_THROW(kind.write(sample_product(), {}, folder, PictureStyle::page), InputError)
             << kind.name << ", " << limit;
       }
       EXPECT_THAT(entries(), IsEmpty()) << kind.name << ", " << limit;
@@ -136,7 +139,8 @@ TEST_F(Writers, RefuseReadOnlyFolders) {
   if (::geteuid() == 0) GTEST_SKIP() << "the administrator may write everywhere";
   fs::permissions(folder, fs::perms::owner_read | fs::perms::owner_exec);
   for (const WriterKind& kind : all_writer_kinds()) {
-    EXPECT_THROW(kind.make()->write(sample_product(), {}, folder), InputError) << kind.name;
+    EXPECT_THROW(kind.write(sample_product(), {}, folder, PictureStyle::page), InputError)
+        << kind.name;
   }
   fs::permissions(folder, fs::perms::owner_all);
   EXPECT_THAT(entries(), IsEmpty());
@@ -151,31 +155,31 @@ TEST_F(Writers, SurviveTextThatIsNotUtf8) {
   product.plots[0].title = product.plots[0].x_label = product.plots[0].curves[0].label = bad;
   product.quantities[0].name = bad;
   provenance.inputs[0].first = bad;
-  EXPECT_NO_THROW(write_product(product, provenance, folder));
+  EXPECT_NO_THROW(write_formats(product, provenance, folder));
 }
 
 TEST_F(Writers, RefuseItemsWhoseSizesDisagree) {
   Product map_too_short;
   map_too_short.maps = {sample_map()};
   map_too_short.maps[0].value.pop_back();
-  EXPECT_THROW(write_product(map_too_short, {}, folder), InputError);
+  EXPECT_THROW(write_formats(map_too_short, {}, folder), InputError);
   Product table_too_short;
   table_too_short.tables = sample_product().tables;
   table_too_short.tables[0].columns[1].values.pop_back();
-  EXPECT_THROW(write_product(table_too_short, {}, folder), InputError);
+  EXPECT_THROW(write_formats(table_too_short, {}, folder), InputError);
   Product plot_too_short;
   plot_too_short.plots = {sample_plot()};
   plot_too_short.plots[0].below[0].curves[0].y.pop_back();
-  EXPECT_THROW(write_product(plot_too_short, {}, folder), InputError);
+  EXPECT_THROW(write_formats(plot_too_short, {}, folder), InputError);
   EXPECT_THAT(entries(), IsEmpty());
 }
 
 TEST_F(Writers, NeverShareAFile) {
   Product product = sample_product();
   product.tables[0].name = product.maps[0].name;
-  EXPECT_THROW(write_product(product, {}, folder), InputError);
+  EXPECT_THROW(write_formats(product, {}, folder), InputError);
   product.tables[0].name = "irradiance plate";  // differs from the map, but not as a file
-  EXPECT_THROW(write_product(product, {}, folder), InputError);
+  EXPECT_THROW(write_formats(product, {}, folder), InputError);
   EXPECT_THAT(entries(), IsEmpty());
 }
 
@@ -187,7 +191,7 @@ TEST_F(Writers, StayInsideTheirFolder) {
 
 TEST_F(Writers, NameTheFormatsThatExist) {
   try {
-    write_product({}, {}, folder, {"jpeg"});
+    write_formats({}, {}, folder, {"jpeg"});
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("jpeg"));

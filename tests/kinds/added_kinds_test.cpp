@@ -70,7 +70,7 @@ TEST(AddedWriter, WritesEveryProduct) {
   product.quantities.push_back({"power_W", {1.0, 0.1}});
   const auto folder = std::filesystem::path(PHOTORQUE_BINARY_DIR) / "added_writer";
   std::filesystem::remove_all(folder);
-  const auto paths = write_product(product, build_provenance(), folder);
+  const auto paths = write_formats(product, build_provenance(), folder);
   EXPECT_THAT(paths, testing::Contains(folder / "names.added_writer"));
   EXPECT_EQ(std::filesystem::file_size(folder / "names.added_writer"), 8u);
 }

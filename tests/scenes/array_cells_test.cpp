@@ -26,13 +26,12 @@ std::string model_text() {
   for (Vec3& at : board.vertices_m) at = Vec3(10 * at.x() - 0.05, 5 * at.y() - 0.05, -0.001);
   model.meshes = {cell, board};
   model.materials.emplace_back().name = "cell";
-  model.nodes.push_back({"board", -1, {}, 1, 0, {}});
-  model.nodes.push_back({"cells", -1, {}, -1, -1, {}});
+  model.nodes.push_back({"board", -1, Vec3::Zero(), 1, 0});
+  model.nodes.push_back({"cells"});
   for (int i = cell_columns * cell_rows - 1; i >= 0; --i) {
-    RigidTransform place;
     const int column = i % cell_columns, row = i / cell_columns;
-    place.translation_m = Vec3(pitch_x_m * column, pitch_y_m * row, 0.0);
-    model.nodes.push_back({"cell" + std::to_string(i), 1, place, 0, 0, {}});
+    const Vec3 place_m(pitch_x_m * column, pitch_y_m * row, 0.0);
+    model.nodes.push_back({"cell" + std::to_string(i), 1, place_m, 0, 0});
   }
   return gltf_text(model);
 }

@@ -32,7 +32,7 @@ json lamp_file() {
   plate.triangles = {{0, 1, 2}, {0, 2, 3}};
   model.meshes = {plate};
   model.materials.emplace_back().name = "plate";
-  model.nodes.push_back({"plate", -1, {}, 0, 0, {}});
+  model.nodes.push_back({"plate", -1, Vec3::Zero(), 0, 0});
   json file = json::parse(gltf_text(model));
   const auto light = [](int number) { return json{{"KHR_lights_punctual", {{"light", number}}}}; };
   const double half = std::sqrt(0.5);

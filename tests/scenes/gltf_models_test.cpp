@@ -121,14 +121,6 @@ TEST(GltfModels, ShareTheMeshOfNodesThatShareIt) {
   EXPECT_EQ(scene.instances[0].mesh, scene.instances[1].mesh);
 }
 
-TEST(GltfModels, RecordDoubleSided) {
-  const auto file = models / "blender/01_single_vs_double_sided/01_single_vs_double_sided.gltf";
-  PHOTORQUE_NEEDS_THIRD_PARTY("models");
-  for (const GltfMaterial& material : read_gltf(file).materials) {
-    EXPECT_EQ(material.double_sided, material.name == "mat_double") << material.name;
-  }
-}
-
 // A satellite whose every mesh is packed by Draco. The counts and boxes are those that the file
 // states for its accessors, which is what went into the encoder; 14 bits of 17 m are 1 mm.
 TEST(GltfModels, UnpackASatelliteFromDraco) {

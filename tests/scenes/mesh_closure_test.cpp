@@ -71,12 +71,5 @@ TEST(MeshClosure, AFineSheetEnclosesNothing) {
   EXPECT_EQ(closure.encloses, std::vector<uint8_t>{0});
 }
 
-TEST(MeshClosure, CountsEdgesOfThreeTriangles) {
-  Mesh fork;
-  fork.vertices_m = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}};
-  fork.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}};
-  EXPECT_EQ(closure_of(scene_of(fork)).forked_edges, 1u);
-}
-
 }  // namespace
 }  // namespace photorque

@@ -36,7 +36,8 @@ Key effect_table() {
   std::vector<Key::Choice> kinds = light_effects();
   for (Key::Choice& of_module : module_effects()) add_choice(kinds, std::move(of_module));
   const auto said = [](const char* name, unsigned forms) {
-    return Key::other(name, forms, "further result of a diagnosis, without effect here").optional();
+    return OtherKey(name, forms, "further result of a diagnosis, without effect here",
+                    {.optional = true});
   };
   return Key::tables(
       "effect",

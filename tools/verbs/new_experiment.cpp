@@ -144,8 +144,7 @@ struct SceneWords {
 };
 
 SceneWords scene_words(const Options& options) {
-  std::string ending = options.scene->extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = lower_case(options.scene->extension().string());
   if (ending != ".gltf" && ending != ".glb" && !cad_format(*options.scene)) {
     throw InputError({options.scene->string()}, "", "a model \"" + ending + "\"",
                      "glTF, STL or OBJ (.gltf, .glb, .stl, .obj): others are converted to one of "

@@ -60,7 +60,7 @@ DisturbanceKind kind() {
                           {EffectKey::vector_not_negative(braking.name, 1e-3)},
                           true}}},
       .budget = {.paper_figure = "cfd_drag_at_1_rpm_N_m"},
-      .keys = {Key(braking).one_or_several().of_size(3), air_parts_key()}};
+      .keys = {Key(braking).one_or_several(3), air_parts_key()}};
 }
 
 }  // namespace photorque::kinds::air_pressure_drag

@@ -75,10 +75,10 @@ DisturbanceKind kind() {
           .budget = {.paper_figure = "stepper_torque_N_m"},
           .keys = joined(
               {moving_mass_keys(),
-               {Key::numbers("rounding_steps", {},
-                             "deviation of each mass from its target, in steps, ±0.5")
-                    .with_error()
-                    .usually_is("½ for the first along each direction, else 0: the worst case")}})};
+               {NumbersKey(
+                   "rounding_steps", {}, "deviation of each mass from its target, in steps, ±0.5",
+                   {.usually = "½ for the first along each direction, else 0: the worst case",
+                    .has_error = true})}})};
 }
 
 }  // namespace photorque::kinds::stepper_quantization

@@ -48,7 +48,7 @@ DisturbanceKind kind() {
                     {"the actuators give more or less torque than commanded, each axis its own",
                      {EffectKey::vector(common_gain.name, 0.2)}}},
                .needs = Requirement::command},
-          .keys = {Key(common_gain).one_or_several().of_size(3)}};
+          .keys = {Key(common_gain).one_or_several(3)}};
 }
 
 }  // namespace photorque::kinds::actuator_gain

@@ -53,7 +53,7 @@ DisturbanceKind kind() {
                                        .lowest = 0.0,
                                        .times_inertia = true}}}},
                .needs = Requirement::wheel},
-          .keys = {Key(common_inertia).one_or_several().of_size(3)}};
+          .keys = {Key(common_inertia).one_or_several(3)}};
 }
 
 }  // namespace photorque::kinds::wheel_momentum

@@ -1,6 +1,7 @@
 // The keys of a torque without a law, which shape.cpp reads: those of every variable and function.
 #include "attitude/disturbances/unknown/shape.h"
 #include "core/constants.h"
+#include "core/settings/typed_keys.h"
 
 namespace photorque {
 namespace {
@@ -20,56 +21,57 @@ constexpr double most_order = 200.0;
 
 void add_keys_of(const VariableKeys& variable, std::vector<Key>& keys) {
   const std::string name = variable.name, unit = "_" + std::string(variable.unit);
+  keys.push_back(UncertainNumberKey(name + "_exponent", Range::positive(),
+                                    "a power of the " + name + "; *or*", {.optional = true}));
+  keys.push_back(NumbersKey(name + "_powers", {variable.least_power, most_order},
+                            "whole powers of the " + name + ", rising, one term each; *or*",
+                            {.optional = true}));
+  keys.push_back(NumbersKey(name + "_knots" + unit, {},
+                            "a smooth table over the " + name +
+                                ": at least 4 knots, rising, one value for each, cubic in "
+                                "between, once continuously differentiable",
+                            {.optional = true}));
+  keys.push_back(NumberKey(name + "_reference" + unit, variable.reference_SI, Range::positive(),
+                           "where the powers are 1"));
   keys.push_back(
-      Key::uncertain(name + "_exponent", Range::positive(), "a power of the " + name + "; *or*")
-          .optional());
-  keys.push_back(Key::numbers(name + "_powers", {variable.least_power, most_order},
-                              "whole powers of the " + name + ", rising, one term each; *or*")
-                     .optional());
-  keys.push_back(Key::numbers(name + "_knots" + unit, {},
-                              "a smooth table over the " + name +
-                                  ": at least 4 knots, rising, one value for each, cubic in "
-                                  "between, once continuously differentiable")
-                     .optional());
-  keys.push_back(Key::number_or(name + "_reference" + unit, variable.reference_SI,
-                                Range::positive(), "where the powers are 1"));
-  keys.push_back(
-      Key::numbers(name + "_range" + unit, {},
-                   "[from, to], range of the measurement. Beyond it the variable is held constant, "
-                   "after a smooth transition of at most a twentieth of the range")
-          .of_size(2)
-          .usually_is("everywhere; of a table its knots"));
+      NumbersKey(name + "_range" + unit, {},
+                 "[from, to], range of the measurement. Beyond it the variable is held constant, "
+                 "after a smooth transition of at most a twentieth of the range",
+                 {.usually = "everywhere; of a table its knots", .size = 2}));
 }
 
 }  // namespace
 
 std::vector<Key> empirical_shape_keys() {
   std::vector<Key> keys = {
-      Key::texts(
+      TextsKey(
           "axes",
           "axes of the torque, each at most once: `\"body\"` x, y, z; `\"lab\"` x, y, z; "
           "`\"vertical\"`; `\"lean\"` (the tilt axis; positive: reduces the tilt); `\"rate\"` "
           "(against the rate if positive); `\"rate_by_axis\"` (the same about body x, y, z); "
           "`\"command\"`; `\"cross_talk\"` (of the command about the other axes: xy, xz, yx, yz, "
           "zx, zy)"),
-      Key::numbers("yaw_orders", {1.0, most_order},
-                   "whole, rising: cos nψ, sin nψ of the yaw ψ (azimuth of body x) for each n")
-          .optional()};
+      NumbersKey("yaw_orders", {1.0, most_order},
+                 "whole, rising: cos nψ, sin nψ of the yaw ψ (azimuth of body x) for each n",
+                 {.optional = true})};
   for (const VariableKeys& variable : shape_variables) add_keys_of(variable, keys);
   return joined(
       {keys,
-       {Key::uncertain("time_constant_s", Range::positive(), "exp(−t/τ); *or*").optional(),
-        Key::uncertain("time_period_s", Range::positive(), "with `time_orders`").optional(),
-        Key::numbers("time_orders", {0.0, most_order},
-                     "whole, rising: cos and sin of 2π n t/period for each n (0: a constant); *or*")
-            .optional(),
-        Key::number("time_span_s", Range::positive(), "with `time_cosines`").optional(),
-        Key::numbers("time_cosines", {0.0, most_order}, "whole, rising: cos(π n t/span) for each n")
-            .optional(),
-        Key::uncertain(empirical_coefficients, {},
-                       "term by term of the first function, of each all terms of the second, of "
-                       "each all components of the axes; 200 numbers at most are practical")
-            .one_or_several()}});
+       {UncertainNumberKey("time_constant_s", Range::positive(), "exp(−t/τ); *or*",
+                           {.optional = true}),
+        UncertainNumberKey("time_period_s", Range::positive(), "with `time_orders`",
+                           {.optional = true}),
+        NumbersKey("time_orders", {0.0, most_order},
+                   "whole, rising: cos and sin of 2π n t/period for each n (0: a constant); *or*",
+                   {.optional = true}),
+        NumberKey("time_span_s", Range::positive(), "with `time_cosines`", {.optional = true}),
+        NumbersKey("time_cosines", {0.0, most_order}, "whole, rising: cos(π n t/span) for each n",
+                   {.optional = true}),
+        UncertainNumberKey(
+            empirical_coefficients, {},
+            "term by term of the first function, of each all terms of the second, of "
+            "each all components of the axes; 200 numbers at most are practical",
+            {.several = true})}});
 }
 
 }  // namespace photorque

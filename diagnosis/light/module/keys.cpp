@@ -1,5 +1,6 @@
 #include "diagnosis/light/module/design.h"
 
+#include "core/settings/typed_keys.h"
 #include "photovoltaics/fit/rated_keys.h"
 
 namespace photorque {
@@ -8,19 +9,18 @@ namespace {
 constexpr int64_t most_cells = 10000;
 
 Key resistance_key(const std::string& what) {
-  return Key::number("resistance_ohm", Range::positive(), what);
+  return NumberKey("resistance_ohm", Range::positive(), what);
 }
 
 Key count_key() {
-  return Key::integer_or("count", 1, 1, most_cells, "of the cells, at most all")
-      .range_that_varies();
+  return IntegerKey("count", 1, 1, most_cells, "of the cells, at most all", {.varies = true});
 }
 
 // Reverse conduction of shaded and cracked cells.
 std::vector<Key> breakdown_keys() {
-  return {Key::number_or("breakdown_fraction", 0.0, {0.0, 7.0}, "a of the reverse conduction"),
-          Key::number_or("breakdown_V", -15.0, {-1e308, 0.0, false, true}, "V_br of it"),
-          Key::number_or("breakdown_exponent", 3.0, {1.0, 1e3}, "m of it")};
+  return {NumberKey("breakdown_fraction", 0.0, {0.0, 7.0}, "a of the reverse conduction"),
+          NumberKey("breakdown_V", -15.0, {-1e308, 0.0, false, true}, "V_br of it"),
+          NumberKey("breakdown_exponent", 3.0, {1.0, 1e3}, "m of it")};
 }
 
 }  // namespace
@@ -28,40 +28,39 @@ std::vector<Key> breakdown_keys() {
 Key module_table() {
   return Key::table(
       "module",
-      joined({{Key::integer("cells_in_series", 1, most_cells, "of the module"),
-               Key::integer_or("bypass_every", 0, 0, most_cells,
-                               "cells per bypass diode, at most all; 0: no diodes")
-                   .range_that_varies(),
-               Key::number_or("bypass_drop_V", 0.5, Range::positive(), "of a bypass diode"),
-               Key::other("reference_curve", Key::a_text | Key::an_array,
-                          "curves of the module as it was, one file or several; *or* "
-                          "`[[module.datasheet]]`")
-                   .optional(),
-               Key::tables("datasheet", rated_point_keys(), "the module as its maker rates it")},
-              rated_slope_keys(),
-              {Key::other("reference_temperature_K", Key::a_number | Key::an_array,
-                          "of the references, one for all or one for each")
-                   .usually_is("298.15, or the first of the datasheet"),
-               Key::other("reference_irradiance_W_m2", Key::a_number | Key::an_array,
-                          "that a sensor saw at the references, likewise")
-                   .optional(),
-               Key::uncertain("temperature_K", {1.0, 1000.0}, "of the curves that are diagnosed")
-                   .usually_is("as the references"),
-               Key::number_or("temperature_sigma_K", 2.0, Range::positive(),
-                              "how well temperatures are known"),
-               Key::number("current_noise_A", Range::positive(), "of a reading")
-                   .usually_is("found from second differences"),
-               Key::number_or("voltage_noise_V", 0.0, Range::not_negative(), "of a reading")}}),
+      joined(
+          {{IntegerKey("cells_in_series", 1, most_cells, "of the module"),
+            IntegerKey("bypass_every", 0, 0, most_cells,
+                       "cells per bypass diode, at most all; 0: no diodes", {.varies = true}),
+            NumberKey("bypass_drop_V", 0.5, Range::positive(), "of a bypass diode"),
+            OtherKey("reference_curve", Key::a_text | Key::an_array,
+                     "curves of the module as it was, one file or several; *or* "
+                     "`[[module.datasheet]]`",
+                     {.optional = true}),
+            Key::tables("datasheet", rated_point_keys(), "the module as its maker rates it")},
+           rated_slope_keys(),
+           {OtherKey("reference_temperature_K", Key::a_number | Key::an_array,
+                     "of the references, one for all or one for each",
+                     {.usually = "298.15, or the first of the datasheet"}),
+            OtherKey("reference_irradiance_W_m2", Key::a_number | Key::an_array,
+                     "that a sensor saw at the references, likewise", {.optional = true}),
+            UncertainNumberKey("temperature_K", {1.0, 1000.0}, "of the curves that are diagnosed",
+                               {.usually = "as the references"}),
+            NumberKey("temperature_sigma_K", 2.0, Range::positive(),
+                      "how well temperatures are known"),
+            NumberKey("current_noise_A", Range::positive(), "of a reading",
+                      {.usually = "found from second differences"}),
+            NumberKey("voltage_noise_V", 0.0, Range::not_negative(), "of a reading")}}),
       "a module in sunlight, whose curves are diagnosed");
 }
 
 std::vector<Key::Choice> module_effects() {
   std::vector<Key::Choice> kinds = {
       {"cell_shaded", "cells in the shade",
-       joined({{count_key(), Key::number("factor", Range::fraction(), "of the light")},
+       joined({{count_key(), NumberKey("factor", Range::fraction(), "of the light")},
                breakdown_keys()})},
       {"cell_cracked", "cells of which a part is reached through a resistance alone",
-       joined({{count_key(), Key::number("fraction", {0.0, 1.0, true, true}, "of the area"),
+       joined({{count_key(), NumberKey("fraction", {0.0, 1.0, true, true}, "of the area"),
                 resistance_key("in front of that part")},
                breakdown_keys()})},
       {"cell_shunted",
@@ -71,21 +70,21 @@ std::vector<Key::Choice> module_effects() {
       {"series_resistance", "a resistance in series", {resistance_key("of the module")}},
       {"temperature",
        "warmer or colder than stated",
-       {Key::number("change_K", {-150.0, 150.0}, "of all cells")}},
+       {NumberKey("change_K", {-150.0, 150.0}, "of all cells")}},
       {"bypass_shorted", "a bypass diode that conducts always", {}},
       {"bypass_open", "cells in the shade whose bypass diode is open",
-       joined({{count_key(), Key::number("factor", Range::fraction(), "of the light")},
+       joined({{count_key(), NumberKey("factor", Range::fraction(), "of the light")},
                breakdown_keys()})},
       {"substring_shaded",
        "cells of whole bypass diodes in the shade",
-       {Key::other("factor", Key::a_number | Key::an_array, "of the light, of each")}},
+       {OtherKey("factor", Key::a_number | Key::an_array, "of the light, of each")}},
       {"unsteady_light",
        "light that changes while the voltage rises",
-       {Key::number("change", {-1.0, 1.0}, "from the first point to the last"),
-        Key::number_or("bend", 0.0, {-1.0, 1.0}, "at the ends over the middle, two thirds of")}}};
+       {NumberKey("change", {-1.0, 1.0}, "from the first point to the last"),
+        NumberKey("bend", 0.0, {-1.0, 1.0}, "at the ends over the middle, two thirds of")}}};
   for (Key::Choice& kind : kinds) {
     kind.keys.push_back(
-        Key::text("curve", "the only curve on which the effect acts").usually_is("all curves"));
+        TextKey("curve", "the only curve on which the effect acts", {.usually = "all curves"}));
   }
   return kinds;
 }

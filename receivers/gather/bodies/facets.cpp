@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <vector>
 
+#include "core/numerics/connected.h"
 #include "receivers/surface_grid.h"
 
 namespace photorque {
@@ -85,24 +85,13 @@ void Facets::find_free(double scene_radius_m) {
 
 namespace {
 
-// Numbers the corners of all faces; corners at the same position have the same number.
-std::vector<std::array<uint32_t, 3>> welded(std::span<const SurfaceFace> faces) {
-  const auto at = [&](uint32_t corner) -> const Vec3& {
-    return faces[corner / 3].corner_body_m[corner % 3];
-  };
-  std::vector<uint32_t> order(3 * faces.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::sort(order, [&](uint32_t a, uint32_t b) {
-    return std::lexicographical_compare(at(a).data(), at(a).data() + 3, at(b).data(),
-                                        at(b).data() + 3);
-  });
-  std::vector<std::array<uint32_t, 3>> places(faces.size());
-  uint32_t place = 0;
-  for (size_t i = 0; i < order.size(); ++i) {
-    if (i > 0 && at(order[i]) != at(order[i - 1])) ++place;
-    places[order[i] / 3][order[i] % 3] = place;
+// The corners of all faces, three by three; those at the same position have the same number.
+std::vector<uint32_t> places_of(std::span<const SurfaceFace> faces) {
+  std::vector<Vec3> corners_m;
+  for (const SurfaceFace& face : faces) {
+    corners_m.insert(corners_m.end(), face.corner_body_m.begin(), face.corner_body_m.end());
   }
-  return places;
+  return welded(corners_m);
 }
 
 // Along an edge from its lower place to its higher, or back.
@@ -111,9 +100,10 @@ struct DirectedEdge {
   bool forward;
 };
 
-std::vector<DirectedEdge> edges_of(const std::vector<std::array<uint32_t, 3>>& places) {
+std::vector<DirectedEdge> edges_of(const std::vector<uint32_t>& places) {
   std::vector<DirectedEdge> edges;
-  for (const auto& p : places) {
+  for (size_t first = 0; first < places.size(); first += 3) {
+    const auto p = std::span(places).subspan(first, 3);
     // Two of its corners are one: it has no area, and the others meet without it.
     if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) continue;
     for (size_t k = 0; k < 3; ++k) {
@@ -139,37 +129,22 @@ bool is_without_gap(const std::vector<DirectedEdge>& edges) {
   return true;
 }
 
-// The bodies of a mesh: places that edges connect have one root.
-class Bodies {
- public:
-  Bodies(size_t places, const std::vector<DirectedEdge>& edges) : root_(places) {
-    std::iota(root_.begin(), root_.end(), 0U);
-    for (const DirectedEdge& edge : edges) root_[of(edge.low)] = of(edge.high);
-  }
-  uint32_t of(uint32_t place) {
-    while (root_[place] != place) place = root_[place] = root_[root_[place]];
-    return place;
-  }
-
- private:
-  std::vector<uint32_t> root_;
-};
-
 }  // namespace
 
 std::optional<bool> fronts_look_inwards(std::span<const SurfaceFace> faces) {
-  const auto places = welded(faces);
+  const std::vector<uint32_t> places = places_of(faces);
   const std::vector<DirectedEdge> edges = edges_of(places);
   if (!is_without_gap(edges)) return std::nullopt;
-  Bodies bodies(3 * faces.size(), edges);
+  DisjointSets bodies(places.size());
+  for (const DirectedEdge& edge : edges) bodies.join(edge.low, edge.high);
   struct Size {
     double volume_m3 = 0.0, area_m2 = 0.0, reach_m = 0.0;
   };
-  std::map<uint32_t, Size> sizes;
+  std::map<size_t, Size> sizes;
   const Vec3 origin_m = faces.front().corner_body_m[0];
   for (size_t f = 0; f < faces.size(); ++f) {
     const Vec3 to_m = faces[f].corner_body_m[0] - origin_m;
-    Size& size = sizes[bodies.of(places[f][0])];
+    Size& size = sizes[bodies.root(places[3 * f])];
     size.volume_m3 += faces[f].area_body_m2.dot(to_m) / 3.0;
     size.area_m2 += faces[f].area_body_m2.norm();
     size.reach_m = std::max(size.reach_m, to_m.norm());

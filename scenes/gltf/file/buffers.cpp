@@ -2,9 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 
 #include "core/provenance.h"
@@ -41,13 +39,6 @@ std::optional<std::string> base64_decoded(std::string_view text) {
     decoded += static_cast<char>(bits >> held & 0xFF);
   }
   return decoded;
-}
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
 }
 
 // A short piece of a URI for messages: data URIs can be megabytes.

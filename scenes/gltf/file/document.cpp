@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/errors.h"
+#include "core/little_endian.h"
 #include "core/text/parse.h"
 #include "scenes/gltf/file/compression.h"
 #include "scenes/gltf/file/fault.h"
@@ -33,13 +34,6 @@ constexpr uint32_t bin_chunk = 0x004E4942;   // "BIN\0"
 constexpr size_t header_bytes = 12;
 constexpr size_t chunk_header_bytes = 8;
 
-// Little-endian; the caller has checked that four bytes are there.
-uint32_t word(std::string_view bytes, size_t at) {
-  uint32_t value = 0;
-  for (size_t i = 4; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
-  return value;
-}
-
 std::string bytes_text(uint64_t count) {
   return std::to_string(count) + " bytes";
 }
@@ -56,9 +50,11 @@ std::string_view checked_body(std::string_view bytes, const std::string& file,
     return InputError({file}, "GLB header", found, expected);
   };
   if (bytes.size() < header_bytes) throw wrong(bytes_text(bytes.size()), "at least 12 bytes");
-  if (word(bytes, 0) != magic) throw wrong("no magic word", "a file that begins with \"glTF\"");
-  if (word(bytes, 4) != 2) throw wrong("version " + std::to_string(word(bytes, 4)), "version 2");
-  const size_t length = word(bytes, 8);
+  if (little_endian_32(bytes, 0) != magic)
+    throw wrong("no magic word", "a file that begins with \"glTF\"");
+  if (little_endian_32(bytes, 4) != 2)
+    throw wrong("version " + std::to_string(little_endian_32(bytes, 4)), "version 2");
+  const size_t length = little_endian_32(bytes, 8);
   if (length < header_bytes + chunk_header_bytes || length > bytes.size()) {
     throw wrong("a length of " + bytes_text(length) + " in a file of " + bytes_text(bytes.size()),
                 "the length of the file");
@@ -76,7 +72,7 @@ std::vector<Chunk> split(std::string_view body, const std::string& file) {
     if (body.size() < chunk_header_bytes) {
       throw InputError({file}, where, bytes_text(body.size()), "a chunk header of 8 bytes");
     }
-    const size_t length = word(body, 0);
+    const size_t length = little_endian_32(body, 0);
     if (length > body.size() - chunk_header_bytes) {
       throw InputError({file}, where, bytes_text(body.size() - chunk_header_bytes),
                        bytes_text(length) + " as its header says");
@@ -84,7 +80,7 @@ std::vector<Chunk> split(std::string_view body, const std::string& file) {
     if (length % 4 != 0) {
       throw InputError({file}, where, "a length of " + bytes_text(length), "a multiple of 4");
     }
-    chunks.push_back({word(body, 4), body.substr(chunk_header_bytes, length)});
+    chunks.push_back({little_endian_32(body, 4), body.substr(chunk_header_bytes, length)});
     body.remove_prefix(chunk_header_bytes + length);
   }
   return chunks;

@@ -34,7 +34,19 @@ enum class Shape {
   reference_maps,  // an array of those
 };
 
-struct Fields;
+struct Field;
+
+// The members of one kind of object.
+struct Fields {
+  const Field* first = nullptr;
+  size_t count = 0;
+
+  constexpr Fields() = default;
+  template <size_t n>
+  constexpr Fields(const Field (&list)[n]) : first(list), count(n) {}
+  const Field* begin() const;
+  const Field* end() const;
+};
 
 // One member of an object.
 struct Field {
@@ -49,40 +61,33 @@ struct Field {
   const char* target = nullptr;   // of references
   const char* beside = nullptr;   // legal only together with this member
   const char* without = nullptr;  // illegal together with this member
-  const Fields* inner = nullptr;  // of object and objects
+  Fields inner = {};              // of object and objects; empty: any members
   bool may_be_empty = false;      // of arrays: an empty one changes nothing
 };
 
-// The members of one kind of object.
-struct Fields {
-  const Field* first;
-  size_t count;
-  const Field* begin() const { return first; }
-  const Field* end() const { return first + count; }
-};
-
-template <size_t n>
-constexpr Fields fields(const Field (&list)[n]) {
-  return {list, n};
+const Field* Fields::begin() const {
+  return first;
+}
+const Field* Fields::end() const {
+  return first + count;
 }
 
 namespace properties {
 
 // Integers beyond 2^53 do not survive other JSON parsers (section 2.7).
-inline constexpr double largest_integer = 9007199254740992.0;
+constexpr double largest_integer = 9007199254740992.0;
 // tinygltf holds the members of sparse accessors as int.
-inline constexpr double largest_int = 2147483647.0;
-inline constexpr const char* index_types = "5121 5123 5125";
-inline constexpr const char* component_types = "5120 5121 5122 5123 5125 5126";
-inline constexpr const char* element_types = "SCALAR VEC2 VEC3 VEC4 MAT2 MAT3 MAT4";
+constexpr double largest_int = 2147483647.0;
+constexpr const char* index_types = "5121 5123 5125";
+constexpr const char* component_types = "5120 5121 5122 5123 5125 5126";
+constexpr const char* element_types = "SCALAR VEC2 VEC3 VEC4 MAT2 MAT3 MAT4";
 
-inline constexpr Field asset_list[] = {
+constexpr Field asset[] = {
     {.key = "version", .shape = Shape::text, .required = true},
     {.key = "minVersion", .shape = Shape::text},
 };
-inline constexpr Fields asset = fields(asset_list);
 
-inline constexpr Field buffer_list[] = {
+constexpr Field buffer[] = {
     {.key = "byteLength",
      .shape = Shape::integer,
      .required = true,
@@ -90,9 +95,8 @@ inline constexpr Field buffer_list[] = {
      .high = largest_integer},
     {.key = "uri", .shape = Shape::text},
 };
-inline constexpr Fields buffer = fields(buffer_list);
 
-inline constexpr Field buffer_view_list[] = {
+constexpr Field buffer_view[] = {
     {.key = "buffer", .shape = Shape::reference, .required = true, .target = "buffers"},
     {.key = "byteOffset", .shape = Shape::integer, .low = 0, .high = largest_integer},
     {.key = "byteLength",
@@ -103,29 +107,25 @@ inline constexpr Field buffer_view_list[] = {
     {.key = "byteStride", .shape = Shape::integer, .low = 4, .high = 252, .multiple = 4},
     {.key = "target", .shape = Shape::integer, .choices = "34962 34963"},
 };
-inline constexpr Fields buffer_view = fields(buffer_view_list);
 
-inline constexpr Field sparse_indices_list[] = {
+constexpr Field sparse_indices[] = {
     {.key = "bufferView", .shape = Shape::reference, .required = true, .target = "bufferViews"},
     {.key = "byteOffset", .shape = Shape::integer, .low = 0, .high = largest_int},
     {.key = "componentType", .shape = Shape::integer, .required = true, .choices = index_types},
 };
-inline constexpr Fields sparse_indices = fields(sparse_indices_list);
 
-inline constexpr Field sparse_values_list[] = {
+constexpr Field sparse_values[] = {
     {.key = "bufferView", .shape = Shape::reference, .required = true, .target = "bufferViews"},
     {.key = "byteOffset", .shape = Shape::integer, .low = 0, .high = largest_int},
 };
-inline constexpr Fields sparse_values = fields(sparse_values_list);
 
-inline constexpr Field sparse_list[] = {
+constexpr Field sparse[] = {
     {.key = "count", .shape = Shape::integer, .required = true, .low = 1, .high = largest_int},
-    {.key = "indices", .shape = Shape::object, .required = true, .inner = &sparse_indices},
-    {.key = "values", .shape = Shape::object, .required = true, .inner = &sparse_values},
+    {.key = "indices", .shape = Shape::object, .required = true, .inner = sparse_indices},
+    {.key = "values", .shape = Shape::object, .required = true, .inner = sparse_values},
 };
-inline constexpr Fields sparse = fields(sparse_list);
 
-inline constexpr Field accessor_list[] = {
+constexpr Field accessor[] = {
     {.key = "bufferView", .shape = Shape::reference, .target = "bufferViews"},
     {.key = "byteOffset",
      .shape = Shape::integer,
@@ -136,54 +136,47 @@ inline constexpr Field accessor_list[] = {
     {.key = "normalized", .shape = Shape::flag},
     {.key = "count", .shape = Shape::integer, .required = true, .low = 1, .high = largest_integer},
     {.key = "type", .shape = Shape::text, .required = true, .choices = element_types},
-    {.key = "sparse", .shape = Shape::object, .inner = &sparse},
+    {.key = "sparse", .shape = Shape::object, .inner = sparse},
 };
-inline constexpr Fields accessor = fields(accessor_list);
 
-inline constexpr Field metallic_roughness_list[] = {
+constexpr Field metallic_roughness[] = {
     {.key = "baseColorFactor", .shape = Shape::numbers, .low = 0, .high = 1, .length = 4},
     {.key = "metallicFactor", .shape = Shape::number, .low = 0, .high = 1},
     {.key = "roughnessFactor", .shape = Shape::number, .low = 0, .high = 1},
     {.key = "baseColorTexture", .shape = Shape::object},
 };
-inline constexpr Fields metallic_roughness = fields(metallic_roughness_list);
 
-inline constexpr Field specular_glossiness_list[] = {
+constexpr Field specular_glossiness[] = {
     {.key = "diffuseFactor", .shape = Shape::numbers, .low = 0, .high = 1, .length = 4},
     {.key = "specularFactor", .shape = Shape::numbers, .low = 0, .high = 1, .length = 3},
     {.key = "glossinessFactor", .shape = Shape::number, .low = 0, .high = 1},
     {.key = "diffuseTexture", .shape = Shape::object},
 };
-inline constexpr Fields specular_glossiness = fields(specular_glossiness_list);
 
-inline constexpr Field transmission_list[] = {
+constexpr Field transmission[] = {
     {.key = "transmissionFactor", .shape = Shape::number, .low = 0, .high = 1},
 };
-inline constexpr Fields transmission = fields(transmission_list);
 
-inline constexpr Field ior_list[] = {{.key = "ior", .shape = Shape::number, .low = 0}};
-inline constexpr Fields ior = fields(ior_list);
+constexpr Field ior[] = {{.key = "ior", .shape = Shape::number, .low = 0}};
 
-inline constexpr Field material_extensions_list[] = {
-    {.key = "KHR_materials_transmission", .shape = Shape::object, .inner = &transmission},
-    {.key = "KHR_materials_ior", .shape = Shape::object, .inner = &ior},
+constexpr Field material_extensions[] = {
+    {.key = "KHR_materials_transmission", .shape = Shape::object, .inner = transmission},
+    {.key = "KHR_materials_ior", .shape = Shape::object, .inner = ior},
     {.key = "KHR_materials_pbrSpecularGlossiness",
      .shape = Shape::object,
-     .inner = &specular_glossiness},
+     .inner = specular_glossiness},
 };
-inline constexpr Fields material_extensions = fields(material_extensions_list);
 
-inline constexpr Field material_list[] = {
+constexpr Field material[] = {
     {.key = "name", .shape = Shape::text},
-    {.key = "pbrMetallicRoughness", .shape = Shape::object, .inner = &metallic_roughness},
+    {.key = "pbrMetallicRoughness", .shape = Shape::object, .inner = metallic_roughness},
     {.key = "alphaMode", .shape = Shape::text, .choices = "OPAQUE MASK BLEND"},
     {.key = "alphaCutoff", .shape = Shape::number, .low = 0},
     {.key = "doubleSided", .shape = Shape::flag},
-    {.key = "extensions", .shape = Shape::object, .inner = &material_extensions},
+    {.key = "extensions", .shape = Shape::object, .inner = material_extensions},
 };
-inline constexpr Fields material = fields(material_list);
 
-inline constexpr Field primitive_list[] = {
+constexpr Field primitive[] = {
     {.key = "attributes", .shape = Shape::reference_map, .required = true, .target = "accessors"},
     {.key = "indices", .shape = Shape::reference, .target = "accessors"},
     {.key = "material", .shape = Shape::reference, .target = "materials"},
@@ -191,25 +184,21 @@ inline constexpr Field primitive_list[] = {
     {.key = "targets", .shape = Shape::reference_maps, .target = "accessors"},
     {.key = "extensions", .shape = Shape::object},
 };
-inline constexpr Fields primitive = fields(primitive_list);
 
-inline constexpr Field mesh_list[] = {
-    {.key = "primitives", .shape = Shape::objects, .required = true, .inner = &primitive},
+constexpr Field mesh[] = {
+    {.key = "primitives", .shape = Shape::objects, .required = true, .inner = primitive},
     {.key = "weights", .shape = Shape::numbers},
 };
-inline constexpr Fields mesh = fields(mesh_list);
 
-inline constexpr Field instancing_list[] = {
+constexpr Field instancing[] = {
     {.key = "attributes", .shape = Shape::reference_map, .required = true, .target = "accessors"},
 };
-inline constexpr Fields instancing = fields(instancing_list);
 
-inline constexpr Field node_extensions_list[] = {
-    {.key = "EXT_mesh_gpu_instancing", .shape = Shape::object, .inner = &instancing},
+constexpr Field node_extensions[] = {
+    {.key = "EXT_mesh_gpu_instancing", .shape = Shape::object, .inner = instancing},
 };
-inline constexpr Fields node_extensions = fields(node_extensions_list);
 
-inline constexpr Field node_list[] = {
+constexpr Field node[] = {
     {.key = "name", .shape = Shape::text},
     {.key = "children", .shape = Shape::references, .target = "nodes", .may_be_empty = true},
     {.key = "mesh", .shape = Shape::reference, .target = "meshes"},
@@ -220,27 +209,24 @@ inline constexpr Field node_list[] = {
     {.key = "translation", .shape = Shape::numbers, .length = 3, .without = "matrix"},
     {.key = "rotation", .shape = Shape::numbers, .length = 4, .without = "matrix"},
     {.key = "scale", .shape = Shape::numbers, .length = 3, .without = "matrix"},
-    {.key = "extensions", .shape = Shape::object, .inner = &node_extensions},
+    {.key = "extensions", .shape = Shape::object, .inner = node_extensions},
 };
-inline constexpr Fields node = fields(node_list);
 
-inline constexpr Field scene_list[] = {
+constexpr Field scene[] = {
     {.key = "nodes", .shape = Shape::references, .target = "nodes", .may_be_empty = true},
 };
-inline constexpr Fields scene = fields(scene_list);
 
-inline constexpr Field document_list[] = {
-    {.key = "asset", .shape = Shape::object, .required = true, .inner = &asset},
-    {.key = "buffers", .shape = Shape::objects, .inner = &buffer},
-    {.key = "bufferViews", .shape = Shape::objects, .inner = &buffer_view},
-    {.key = "accessors", .shape = Shape::objects, .inner = &accessor},
-    {.key = "materials", .shape = Shape::objects, .inner = &material},
-    {.key = "meshes", .shape = Shape::objects, .inner = &mesh},
-    {.key = "nodes", .shape = Shape::objects, .inner = &node},
-    {.key = "scenes", .shape = Shape::objects, .inner = &scene},
+constexpr Field document[] = {
+    {.key = "asset", .shape = Shape::object, .required = true, .inner = asset},
+    {.key = "buffers", .shape = Shape::objects, .inner = buffer},
+    {.key = "bufferViews", .shape = Shape::objects, .inner = buffer_view},
+    {.key = "accessors", .shape = Shape::objects, .inner = accessor},
+    {.key = "materials", .shape = Shape::objects, .inner = material},
+    {.key = "meshes", .shape = Shape::objects, .inner = mesh},
+    {.key = "nodes", .shape = Shape::objects, .inner = node},
+    {.key = "scenes", .shape = Shape::objects, .inner = scene},
     {.key = "scene", .shape = Shape::reference, .target = "scenes"},
 };
-inline constexpr Fields document = fields(document_list);
 
 }  // namespace properties
 
@@ -373,9 +359,9 @@ bool SchemaWalk::fits(const json& value, const Field& field) const {
 
 void SchemaWalk::check(const json& value, const std::string& where, const Field& field) const {
   if (!fits(value, field)) throw wrong(where, describe_json(value), expectation(field));
-  if (field.shape == Shape::object && field.inner != nullptr) members(value, where, *field.inner);
+  if (field.shape == Shape::object && field.inner.count > 0) members(value, where, field.inner);
   if (field.shape == Shape::objects) {
-    for (size_t i = 0; i < value.size(); ++i) members(value[i], where + pointer(i), *field.inner);
+    for (size_t i = 0; i < value.size(); ++i) members(value[i], where + pointer(i), field.inner);
   }
   if (field.shape == Shape::references || field.shape == Shape::reference_maps) {
     Field item = field;

@@ -11,6 +11,13 @@
 
 namespace photorque {
 
+// The four bytes at `at`, which are there, as a number.
+inline uint32_t little_endian_32(std::string_view bytes, size_t at) {
+  uint32_t value = 0;
+  for (size_t i = 4; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+  return value;
+}
+
 // Reads one number after the other; never beyond the end.
 class LittleEndianReader {
  public:
