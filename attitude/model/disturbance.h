@@ -19,16 +19,12 @@
 //     }
 //   };
 //
-//   Disturbance read(const Settings& settings, const DisturbanceContext&) {
-//     return make_disturbance<BearingDrag>({scalar_parameter(settings, coefficient)});
-//   }
-//
 //   }  // namespace
 //
 //   DisturbanceKind kind() {
 //     return {.name = "bearing_drag",
 //             .summary = "viscous drag of the bearing's air film, linear in the rate",
-//             .read = read,
+//             .read = read_law<BearingDrag, Stage::torque, coefficient>,
 //             .screening = {.parametrisations = {{"a sentence for the report",
 //                                                 {EffectKey::number(coefficient.name, 2e-5)}}}},
 //             .keys = {coefficient}};
@@ -203,8 +199,9 @@ struct KeyOf {
   }
 
   // As it is declared, where its numbers may have a sigma each.
-  operator Key() const requires(size <= 3) {
+  operator Key() const requires(size <= 6) {
     Key key = size == 3      ? Key::uncertain_vector(name, what)
+              : size > 1     ? Key::numbers(name, range, what).with_error().of_size(size)
               : otherwise_SI ? Key::uncertain_or(name, *otherwise_SI, range, what)
                              : Key::uncertain(name, range, what);
     return required ? key : std::move(key).optional();
@@ -357,6 +354,17 @@ PlacedParameters vector_parameter(const Settings& settings, const VectorKey& key
 // `size` numbers, e.g. the six of a symmetric matrix.
 PlacedParameters array_parameter(const Settings& settings, const std::string& key, size_t size,
                                  int first = 0);
+// The numbers of a key of any size.
+template <int size>
+PlacedParameters parameters_of(const Settings& settings, const KeyOf<size>& key) {
+  if constexpr (size == 1) {
+    return scalar_parameter(settings, key);
+  } else if constexpr (size == 3) {
+    return vector_parameter(settings, key);
+  } else {
+    return array_parameter(settings, key.name, size, key.first);
+  }
+}
 // How many numbers the user wrote for `key`: 0 for a single number, the length of an array, nine
 // for three rows of three; looks into { value = …, sigma = … }.
 size_t count_as_written(const Settings& settings, std::string_view key);

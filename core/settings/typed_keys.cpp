@@ -45,6 +45,12 @@ OtherKey::operator Key() const {
   return declared(Key::other(s(name), forms, s(what)));
 }
 
+Vec3 direction_of(const Settings& settings, const Vec3Key& key) {
+  const Vec3 direction = settings.get(key);
+  if (!(direction.norm() > 0.0)) throw settings.error(key, "a zero vector", "a direction");
+  return direction;
+}
+
 Key TableKey::of(std::vector<Key> keys) const {
   return declared(Key::table(s(name), std::move(keys), s(what)));
 }
