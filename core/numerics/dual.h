@@ -183,3 +183,12 @@ struct NumTraits<photorque::Lanes> : PhotorqueNumTraits<photorque::Lanes> {};
 template <>
 struct NumTraits<photorque::DualLanes> : PhotorqueNumTraits<photorque::DualLanes> {};
 }  // namespace Eigen
+
+namespace photorque {
+
+// One lane of a vector.
+inline Vec3Of<double> lane_of(const Vec3Of<Lanes>& v, int lane) {
+  return {v[0][lane], v[1][lane], v[2][lane]};
+}
+
+}  // namespace photorque
