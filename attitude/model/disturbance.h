@@ -289,35 +289,23 @@ class LawOf : public Law {
 //   template <class T> Vec3Of<T> torque(const ParametersAndStates<T>& own, const
 //   EvaluationContext<T>& now) const;
 template <class Derived>
-class TorqueLaw : public Law {
+class TorqueLaw : public LawOf<TorqueLaw<Derived>> {
  public:
-  void act(const ParametersAndStates<Lanes>& own, EvaluationContext<Lanes>& now) const final {
-    now.torque_body_N_m += self().torque(own, now);
+  template <class T>
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
+    now.torque_body_N_m += static_cast<const Derived&>(*this).torque(own, now);
   }
-  void act(const ParametersAndStates<DualLanes>& own,
-           EvaluationContext<DualLanes>& now) const final {
-    now.torque_body_N_m += self().torque(own, now);
-  }
-
- private:
-  const Derived& self() const { return static_cast<const Derived&>(*this); }
 };
 
 // The base of laws that are a force on a platform that slides: Derived has force() in place of
 // torque(), in lab axes.
 template <class Derived>
-class ForceLaw : public Law {
+class ForceLaw : public LawOf<ForceLaw<Derived>> {
  public:
-  void act(const ParametersAndStates<Lanes>& own, EvaluationContext<Lanes>& now) const final {
-    now.force_lab_N += self().force(own, now);
+  template <class T>
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
+    now.force_lab_N += static_cast<const Derived&>(*this).force(own, now);
   }
-  void act(const ParametersAndStates<DualLanes>& own,
-           EvaluationContext<DualLanes>& now) const final {
-    now.force_lab_N += self().force(own, now);
-  }
-
- private:
-  const Derived& self() const { return static_cast<const Derived&>(*this); }
 };
 
 // A disturbance that acts on the platform: plain data and the law that reads it. Copies share the
