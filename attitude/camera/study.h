@@ -30,6 +30,7 @@ struct CameraStudy {
 // Reads [camera_study], which may be absent; its keys are camera_study_table().
 CameraStudy read_camera_study(const Settings& root, const TrackingCamera& camera,
                               std::optional<double> tilt_limit_rad);
+Key camera_study_table();
 
 // Tables "markers" and "degradation" (by tilt: all markers, the worst one dark, error of
 // calibration, of distortion, both about the centre and free), "images" (predicted against

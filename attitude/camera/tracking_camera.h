@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/settings/settings.h"
+#include "core/settings/keys.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -80,6 +80,7 @@ struct TrackingCamera {
 // there are no `markers_m`. InputError for fewer markers than the pose needs, or a spot that fills
 // its pixels.
 std::optional<TrackingCamera> read_tracking_camera(const Settings& settings);
+std::vector<Key> tracking_camera_keys();
 
 // One marker as the camera sees it at an instant.
 struct MarkerView {

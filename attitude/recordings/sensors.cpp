@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/camera/keys.h"
 #include "core/numerics/random.h"
 #include "core/settings/typed_keys.h"
 #include "core/snapshot.h"

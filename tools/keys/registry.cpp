@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "attitude/camera/keys.h"
+#include "attitude/camera/study.h"
 #include "attitude/disturbances/kind.h"
 #include "attitude/environment/environment.h"
 #include "attitude/filtering/study.h"
