@@ -5,15 +5,11 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/numerics/median.h"
+
 namespace photorque::inference {
 
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Expected value of reading n: the median of predictions from both sides and from either side. A
 // single bad neighbour then has no influence, and a steadily growing residual is no outlier.
@@ -32,7 +28,7 @@ double expected(const std::vector<double>& r, size_t n) {
   if (n + 2 < r.size()) says.push_back(2.0 * r[n + 1] - r[n + 2]);
   if (n >= 2 && says.size() < 3) says.push_back(r[n - 2]);
   if (n + 2 < r.size() && says.size() < 3) says.push_back(r[n + 2]);
-  return median(says);
+  return upper_median(says);
 }
 
 }  // namespace
@@ -70,7 +66,7 @@ std::vector<size_t> outliers(const std::vector<double>& residuals,
   }
   // If most readings deviate by more than their noise, the cause is unmodelled motion, not
   // outliers.
-  const double scatter = std::max(1.0, median(off) / limits.usual_surprise);
+  const double scatter = std::max(1.0, upper_median(off) / limits.usual_surprise);
   for (size_t n = 0; n < off.size(); ++n) {
     if (off[n] > limits.outlier_sigma * scatter) found.push_back(n);
   }
@@ -90,7 +86,7 @@ double mean_sigma(std::vector<double> differences) {
     d = std::clamp(d, -largest, largest);
     sizes.push_back(std::abs(d));
   }
-  const double most = 3.0 * median(std::move(sizes));
+  const double most = 3.0 * upper_median(std::move(sizes));
   const auto n = static_cast<double>(differences.size());
   double sum = 0.0, squares = 0.0;
   for (double& d : differences) {

@@ -7,10 +7,45 @@
 
 #include "core/constants.h"
 #include "core/parallel.h"
+#include "core/settings/typed_keys.h"
 #include "core/transform.h"
 
 namespace photorque {
 namespace {
+
+namespace study_key {
+constexpr NumberKey max_tilt("max_tilt_deg", {0.0, 0.5 * pi, true, true},
+                             "largest tilt in the tables",
+                             {.usually = "the platform's stop, else 30"});
+constexpr Vec3Key rate("rate_rad_s", {0.0, 0.0, 0.0},
+                       "of the platform while images are taken, body axes");
+constexpr NumberKey calibration("calibration_px", Range::positive(),
+                                "calibration error assumed in the tables", {.optional = true});
+constexpr NumbersKey distortion_error(
+    "distortion_error", {-10.0, 10.0},
+    "uncalibrated distortion assumed in the tables: [k1, k2, p1, p2]",
+    {.usually = "[-0.1, 0, 1e-3, 1e-3]", .size = 4});
+constexpr IntegerKey images("images", 10, 1'000'000,
+                            "number of images simulated at each of four attitudes",
+                            {.optional = true});
+constexpr IntegerKey grid("grid", 5, 1000, "bins of the maps along a side", {.optional = true});
+constexpr NumbersKey focal_length("focal_length_mm", Range::positive(),
+                                  "[from, to] of the map over lens and board",
+                                  {.usually = "0.75 to 1.5 times the lens", .size = 2});
+constexpr NumbersKey board_scale("board_scale", Range::positive(), "[from, to] of the same map",
+                                 {.usually = "[0.5, 2]", .size = 2});
+constexpr TableKey camera_study("camera_study", "tables and maps of the command `camera`");
+}  // namespace study_key
+
+std::vector<double> read_study_span(const Settings& s, const NumbersKey& key, double low,
+                                    double high) {
+  if (!s.has(key)) return {low, high};
+  std::vector<double> span = s.get(key);
+  if (span.size() != 2 || !(span[0] < span[1])) {
+    throw s.error(key, std::to_string(span.size()) + " numbers", "[from, to]");
+  }
+  return span;
+}
 
 constexpr double unseen = std::numeric_limits<double>::quiet_NaN();
 
@@ -375,6 +410,45 @@ Product camera_product(const CameraStudy& study, const std::function<void(double
   product.plots.push_back(design_plot(design));
   product.maps.insert(product.maps.end(), design.begin(), design.end());
   return product;
+}
+
+Key camera_study_table() {
+  using namespace study_key;
+  const CameraStudy usual;
+  return camera_study.of({max_tilt, rate, calibration.with_default(usual.calibration_px),
+                          distortion_error, images.with_default(usual.images),
+                          grid.with_default(usual.grid), focal_length, board_scale});
+}
+
+CameraStudy read_camera_study(const Settings& root, const TrackingCamera& camera,
+                              std::optional<double> tilt_limit_rad) {
+  CameraStudy study;
+  study.camera = camera;
+  study.max_tilt_rad = tilt_limit_rad.value_or(study.max_tilt_rad);
+  study.focal_length_m = {0.75 * camera.focal_length_m, 1.5 * camera.focal_length_m};
+  study.board_scale = {0.5, 2.0};
+  if (!root.has(study_key::camera_study)) return study;
+  const Settings own(std::make_shared<const SettingsNode>(root.raw(study_key::camera_study)),
+                     root.get(study_key::camera_study).name());
+  study.max_tilt_rad = own.get_or(study_key::max_tilt, study.max_tilt_rad);
+  study.rate_body_rad_s = own.get(study_key::rate);
+  study.calibration_px = own.get_or(study_key::calibration, study.calibration_px);
+  if (own.has(study_key::distortion_error)) {
+    const std::vector<double> numbers = own.get(study_key::distortion_error);
+    if (numbers.size() != 4) {
+      throw own.error(study_key::distortion_error, std::to_string(numbers.size()) + " numbers",
+                      "[k1, k2, p1, p2]");
+    }
+    study.distortion_error = {numbers[0], numbers[1], numbers[2], numbers[3]};
+  }
+  study.images = static_cast<int>(own.get_or(study_key::images, study.images));
+  study.grid = static_cast<int>(own.get_or(study_key::grid, study.grid));
+  study.focal_length_m = read_study_span(own, study_key::focal_length, study.focal_length_m[0],
+                                         study.focal_length_m[1]);
+  study.board_scale =
+      read_study_span(own, study_key::board_scale, study.board_scale[0], study.board_scale[1]);
+  own.finish();
+  return study;
 }
 
 }  // namespace photorque

@@ -27,11 +27,10 @@ struct CameraStudy {
   std::vector<double> board_scale;     // likewise: factors on the markers' places
 };
 
-// Reads [camera_study], which may be absent: max_tilt_deg (the platform's stop, else 30),
-// rate_rad_s[3], calibration_px (0.1), distortion_error ([-0.1, 0, 1e-3, 1e-3]), images (1000),
-// grid (61), focal_length_mm = [from, to], board_scale = [from, to].
+// Reads [camera_study], which may be absent; its keys are camera_study_table().
 CameraStudy read_camera_study(const Settings& root, const TrackingCamera& camera,
                               std::optional<double> tilt_limit_rad);
+Key camera_study_table();
 
 // Tables "markers" and "degradation" (by tilt: all markers, the worst one dark, error of
 // calibration, of distortion, both about the centre and free), "images" (predicted against

@@ -2,13 +2,77 @@
 
 #include <cmath>
 
-#include "attitude/camera/keys.h"
 #include "attitude/camera/spot.h"
 #include "core/constants.h"
+#include "core/settings/typed_keys.h"
 #include "core/transform.h"
 
 namespace photorque {
 namespace {
+
+namespace tracking_key {
+constexpr Vec3sKey markers(
+    "markers_m",
+    "positions of the markers, body axes; at least two, four for a free pose. The noise then "
+    "follows from board, lens and sensor instead of `noise_arcsec`",
+    {.optional = true});
+constexpr Vec3Key marker_normal("marker_normal", {0.0, 0.0, 1.0},
+                                "direction of their emission, body axes, any length");
+constexpr Vec3sKey marker_error("marker_error_m",
+                                "one per marker: true position minus `markers_m`; affects "
+                                "recorded attitudes, but not the filter",
+                                {.usually = "none"});
+constexpr NumberKey intensity("intensity_W_sr", Range::positive(),
+                              "radiant intensity of a marker along its normal", {.optional = true});
+constexpr NumberKey half_angle(
+    "half_angle_deg", {0.0, 0.5 * pi, true, true},
+    "angle of half the intensity, which is a power of the cosine; 60 is Lambert's law",
+    {.optional = true});
+constexpr NumberKey wavelength("wavelength_nm", {1e-7, 2e-6}, "of the markers", {.optional = true});
+constexpr NumberKey focal_length("focal_length_mm", Range::positive(), "of the lens",
+                                 {.optional = true});
+constexpr NumberKey f_number("f_number", {0.5, 128.0}, "of the lens", {.optional = true});
+constexpr NumberKey transmittance("transmittance", {0.0, 1.0, true, false}, "of lens and filter",
+                                  {.optional = true});
+constexpr NumberKey spot("spot_px", {0.3, 50.0},
+                         "standard deviation of a spot besides diffraction and motion",
+                         {.optional = true});
+constexpr NumbersKey distortion("distortion", {-10.0, 10.0},
+                                "calibrated distortion of the lens: [k1, k2, p1, p2], radial and "
+                                "tangential, as OpenCV defines them",
+                                {.usually = "none", .size = 4});
+constexpr NumbersKey distortion_error(
+    "distortion_error", {-10.0, 10.0},
+    "true distortion minus `distortion`; affects recorded attitudes, but not the filter",
+    {.usually = "none", .size = 4});
+constexpr NumberKey pixel("pixel_um", {1e-7, 1e-3}, "of the sensor", {.optional = true});
+constexpr NumbersKey resolution("resolution", {8.0, 65536.0}, "of the sensor: [columns, rows]",
+                                {.optional = true, .size = 2});
+constexpr NumberKey exposure("exposure_s", Range::positive(),
+                             "no pixel may be beyond the full well at zero tilt",
+                             {.optional = true});
+constexpr NumberKey line_time("line_time_s", Range::not_negative(),
+                              "rolling shutter: delay of each row after the one above",
+                              {.optional = true});
+constexpr NumberKey quantum_efficiency("quantum_efficiency", {0.0, 1.0, true, false},
+                                       "of the sensor", {.optional = true});
+constexpr NumberKey read_noise_electrons("read_noise_electrons", Range::positive(), "of a pixel",
+                                         {.optional = true});
+constexpr NumberKey background_electrons("background_electrons", Range::not_negative(),
+                                         "of a pixel in an exposure", {.optional = true});
+constexpr NumberKey full_well_electrons("full_well_electrons", Range::positive(), "of a pixel",
+                                        {.optional = true});
+constexpr Vec3Key position("position_m", "of the camera, lab axes", {.optional = true});
+constexpr Vec3Key aim("aim_m", {0.0, 0.0, 0.0}, "where its optical axis passes, lab axes");
+constexpr ChoiceKey pose("pose",
+                         {{"about_centre", "the centre of rotation is known"},
+                          {"free", "the position is estimated too"}},
+                         0, "knowledge of the platform's position");
+constexpr ChoiceKey pose_weights("pose_weights",
+                                 {{"information", "by the Fisher information of their images"},
+                                  {"equal", "the same for all markers"}},
+                                 0, "weights of the markers in the pose");
+}  // namespace tracking_key
 
 // Cosine-power law with the given half angle: cosᵐ ε.
 double emission(double cosine, double half_angle_rad) {
@@ -132,6 +196,35 @@ Eigen::Matrix2d Distortion::slope(const Vec2& u) const {
   d(0, 1) += 2.0 * (p1 * u.x() + p2 * u.y());
   d(1, 0) += 2.0 * (p1 * u.x() + p2 * u.y());
   return d;
+}
+
+std::vector<Key> tracking_camera_keys() {
+  using namespace tracking_key;
+  const TrackingCamera usual;
+  return {markers,
+          marker_normal,
+          marker_error,
+          intensity,
+          half_angle.with_default(usual.half_angle_rad),
+          wavelength.with_default(usual.wavelength_m),
+          focal_length,
+          f_number.with_default(usual.f_number),
+          transmittance.with_default(usual.transmittance),
+          spot.with_default(usual.spot_px),
+          distortion,
+          distortion_error,
+          pixel,
+          resolution,
+          exposure,
+          line_time.with_default(usual.line_time_s),
+          quantum_efficiency.with_default(usual.quantum_efficiency),
+          read_noise_electrons.with_default(usual.read_noise_electrons),
+          background_electrons.with_default(usual.background_electrons),
+          full_well_electrons.with_default(usual.full_well_electrons),
+          position,
+          aim,
+          pose,
+          pose_weights};
 }
 
 std::optional<TrackingCamera> read_tracking_camera(const Settings& settings) {

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/settings/settings.h"
+#include "core/settings/keys.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -76,15 +76,11 @@ struct TrackingCamera {
   bool is_biased() const { return !marker_error_body_m.empty() || !distortion_error.is_none(); }
 };
 
-// Reads the geometry of [sensors.camera]; nothing where there are no `markers_m`. Keys: markers_m
-// (body axes), marker_normal ([0, 0, 1]), marker_error_m, intensity_W_sr, half_angle_deg (60),
-// wavelength_nm (630), focal_length_mm, f_number (4), transmittance (0.85), spot_px (0.6),
-// distortion ([k1, k2, p1, p2], none), distortion_error (likewise),
-// pixel_um, resolution, exposure_s, line_time_s (0), quantum_efficiency (0.5),
-// read_noise_electrons (10), background_electrons (0), full_well_electrons (10000), position_m
-// (lab), aim_m ([0, 0, 0]), pose ("about_centre", "free"), pose_weights ("information", "equal").
-// InputError for fewer markers than the pose needs, or a spot that fills its pixels.
+// Reads the geometry of [sensors.camera], whose keys are tracking_camera_keys(); nothing where
+// there are no `markers_m`. InputError for fewer markers than the pose needs, or a spot that fills
+// its pixels.
 std::optional<TrackingCamera> read_tracking_camera(const Settings& settings);
+std::vector<Key> tracking_camera_keys();
 
 // One marker as the camera sees it at an instant.
 struct MarkerView {

@@ -46,6 +46,12 @@ struct DisturbanceKind {
   std::vector<Key> keys = {};
 };
 
+// DisturbanceKind::read of a law that needs its keys alone.
+template <class LawType, Stage stage, const auto&... keys>
+Disturbance read_law([[maybe_unused]] const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<LawType>({parameters_of(settings, keys)...}, stage);
+}
+
 // All kinds, generated from CMakeLists.txt.
 std::vector<DisturbanceKind> all_disturbance_kinds();
 // All kinds, made once.

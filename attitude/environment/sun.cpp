@@ -267,11 +267,7 @@ SunPath read_sun(const Settings& settings) {
         read_time_series(path, {"sun_x", "sun_y", "sun_z"}, TimeSeries::Outside::hold),
         distance_au);
   }
-  const Vec3 direction = settings.get(sun_key::direction);
-  if (!(direction.norm() > 0.0)) {
-    throw settings.error(sun_key::direction, "a zero vector", "a direction");
-  }
-  return SunPath::fixed(distance_au * direction.normalized());
+  return SunPath::fixed(distance_au * direction_of(settings, sun_key::direction).normalized());
 }
 
 namespace {

@@ -10,6 +10,7 @@
 #include "attitude/estimation/free_inertia.h"
 #include "attitude/recordings/columns.h"
 #include "core/constants.h"
+#include "core/numerics/median.h"
 
 namespace photorque {
 namespace {
@@ -45,10 +46,7 @@ double usual_rate_rad_s(const Observation& seen) {
     rates.push_back(rotation_vector(seen.attitude[i - 1].conjugate() * seen.attitude[i]).norm() /
                     (seen.time_s[i] - seen.time_s[i - 1]));
   }
-  if (rates.empty()) return 0.0;
-  const auto middle = rates.begin() + static_cast<std::ptrdiff_t>(rates.size() / 2);
-  std::nth_element(rates.begin(), middle, rates.end());
-  return *middle;
+  return rates.empty() ? 0.0 : upper_median(std::move(rates));
 }
 
 // Pairs of attitudes that differ by about one second, or one radian if the body rotates faster, and

@@ -9,6 +9,7 @@
 #include "attitude/estimation/swing.h"
 #include "attitude/recordings/columns.h"
 #include "core/errors.h"
+#include "core/numerics/median.h"
 #include "core/text/format.h"
 
 namespace photorque {
@@ -38,24 +39,18 @@ double long_gap_s(const Recording& recording) {
   return longest_s;
 }
 
-double median_of(std::vector<double> sizes) {
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle;
-}
-
 // The size of most of these. Between the steps of an encoder nothing changes but by rounding: of
 // such readings, of those that do change.
 double usual_of(const std::vector<double>& sizes) {
   constexpr double rounding = 1e-6, fewest_steps = 0.005;
-  const double usual = median_of(sizes), least = rounding * std::ranges::max(sizes);
+  const double usual = upper_median(sizes), least = rounding * std::ranges::max(sizes);
   if (usual > least) return usual;
   std::vector<double> steps;
   for (const double size : sizes) {
     if (size > least) steps.push_back(size);
   }
   const double fewest = std::max(10.0, fewest_steps * static_cast<double>(sizes.size()));
-  return static_cast<double>(steps.size()) < fewest ? usual : median_of(steps);
+  return static_cast<double>(steps.size()) < fewest ? usual : upper_median(steps);
 }
 
 // For each value, the largest of three medians: of the values around it, before it and after it.
@@ -65,7 +60,7 @@ std::vector<double> usual_nearby(const std::vector<double>& sizes) {
   std::vector<double> medians;
   for (size_t s = 0; s < groups; ++s) {
     const auto first = sizes.begin() + static_cast<std::ptrdiff_t>(s * group);
-    medians.push_back(median_of({first, s + 1 < groups ? first + group : sizes.end()}));
+    medians.push_back(upper_median({first, s + 1 < groups ? first + group : sizes.end()}));
   }
   std::vector<double> usual;
   for (size_t i = 0; i < sizes.size(); ++i) {
@@ -327,9 +322,7 @@ std::vector<Break> breaks_of(const AxisRates& read, size_t window) {
   if (changes.empty()) return {};
   std::vector<double> sizes_rad_s2;
   for (const Break& b : changes) sizes_rad_s2.push_back(b.change_rad_s2());
-  const auto middle = sizes_rad_s2.begin() + static_cast<std::ptrdiff_t>(sizes_rad_s2.size() / 2);
-  std::nth_element(sizes_rad_s2.begin(), middle, sizes_rad_s2.end());
-  const double median_rad_s2 = *middle;
+  const double median_rad_s2 = upper_median(std::move(sizes_rad_s2));
   std::vector<Break> breaks;
   for (const Break& found : changes) {
     if (found.change_rad_s2() < least_share * found.larger_rad_s2() ||

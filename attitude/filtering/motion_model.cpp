@@ -335,8 +335,6 @@ MotionModel::Derivatives MotionModel::derivatives_of(const FilterState& state,
   Dynamics::Workspace room;
   for (int first = 0; first < variables; first += DualLanes::block) {
     Dynamics::Block block;
-    block.state.fill(-1);
-    block.parameter.fill(-1);
     const int count = std::min(DualLanes::block, variables - first);
     for (int k = 0; k < count; ++k) {
       const auto lane = static_cast<size_t>(k);
@@ -451,7 +449,7 @@ Vec3 MotionModel::inertial_rate_rad_s(const FilterState& state) const {
   const std::vector<Lanes> y = in_lanes(to_vector(mean));
   const auto held = in_all_lanes(model_.schedule.at(mean.time_s));
   const Dynamics::Instants now = dynamics.at(mean.time_s, held, y.data());
-  return {now.gyro_rad_s[0][0], now.gyro_rad_s[1][0], now.gyro_rad_s[2][0]};
+  return lane_of(now.gyro_rad_s, 0);
 }
 
 double MotionModel::camera_delay_s() const {

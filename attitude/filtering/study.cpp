@@ -5,17 +5,40 @@
 #include <cmath>
 #include <cstdio>
 
-#include "attitude/filtering/keys.h"
 #include "attitude/filtering/report.h"
 #include "attitude/observation/noise_levels.h"
 #include "attitude/observation/observation.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/parallel.h"
+#include "core/settings/typed_keys.h"
 
 namespace photorque {
 
 namespace {
+
+namespace estimate_key {
+constexpr ChoiceKey model("model",
+                          {{"disturbances", "the modelled torques"},
+                           {"gyro", "the gyro"},
+                           {"walk", "a random walk of the rate"}},
+                          0, "motion model between the readings of the written estimate");
+constexpr NumberKey rate_walk("rate_walk", Range::positive(),
+                              "random walk of the rate without torques, rad/s per √s",
+                              {.usually = "of maximum likelihood"});
+constexpr NumberKey disturbed_rate_walk("disturbed_rate_walk", Range::positive(),
+                                        "likewise, in addition to the modelled torques",
+                                        {.usually = "of maximum likelihood"});
+constexpr NumberKey rate_sigma("rate_sigma_rad_s", FilterSettings{}.rate_sigma_rad_s,
+                               Range::positive(),
+                               "standard deviation of the rate before the first reading");
+constexpr IntegerKey search_readings("search_readings", 2000, 50, 100'000'000,
+                                     "number of readings for the maximum-likelihood search");
+constexpr IntegerKey runs(
+    "runs", 20, 0, 100'000,
+    "number of simulated runs for the consistency test, if no recording is given");
+constexpr TableKey estimate("estimate", "how the attitude is estimated");
+}  // namespace estimate_key
 
 // Variance of the initial tilt if only an encoder measures the attitude: (0.01 rad)².
 constexpr double level_rad2 = 1e-4;
@@ -368,6 +391,11 @@ ConsistencyResult consistency_of(const EstimateStudy& study, const PropagationRu
   plot.below.push_back(below);
   result.product.plots.push_back(plot);
   return result;
+}
+
+Key estimate_table() {
+  using namespace estimate_key;
+  return estimate.of({model, rate_walk, disturbed_rate_walk, rate_sigma, search_readings, runs});
 }
 
 }  // namespace photorque

@@ -10,6 +10,7 @@
 #include "attitude/filtering/consistency.h"
 #include "attitude/propagation/run.h"
 #include "core/product.h"
+#include "core/settings/keys.h"
 
 namespace photorque {
 
@@ -24,8 +25,7 @@ struct EstimateStudy {
   int threads = 0;
 };
 
-// [estimate], which may be absent: model ("disturbances", "gyro", "walk"), rate_walk,
-// disturbed_rate_walk (rad/s per √s), rate_sigma_rad_s (1), search_readings (2000), runs (20).
+// [estimate], which may be absent; its keys are estimate_table().
 EstimateStudy read_estimate(const Settings& root);
 
 // InputError where an instrument of the model has no noise: a filter weighs by it.
@@ -83,5 +83,8 @@ struct ConsistencyResult {
 ConsistencyResult consistency_of(const EstimateStudy& study, const PropagationRun& run,
                                  const FilterSettings& settings,
                                  const std::function<void(double)>& progress = {});
+
+// [estimate] as it is declared.
+Key estimate_table();
 
 }  // namespace photorque

@@ -19,16 +19,12 @@
 //     }
 //   };
 //
-//   Disturbance read(const Settings& settings, const DisturbanceContext&) {
-//     return make_disturbance<BearingDrag>({scalar_parameter(settings, coefficient)});
-//   }
-//
 //   }  // namespace
 //
 //   DisturbanceKind kind() {
 //     return {.name = "bearing_drag",
 //             .summary = "viscous drag of the bearing's air film, linear in the rate",
-//             .read = read,
+//             .read = read_law<BearingDrag, Stage::torque, coefficient>,
 //             .screening = {.parametrisations = {{"a sentence for the report",
 //                                                 {EffectKey::number(coefficient.name, 2e-5)}}}},
 //             .keys = {coefficient}};
@@ -296,35 +292,23 @@ class LawOf : public Law {
 //   template <class T> Vec3Of<T> torque(const ParametersAndStates<T>& own, const
 //   EvaluationContext<T>& now) const;
 template <class Derived>
-class TorqueLaw : public Law {
+class TorqueLaw : public LawOf<TorqueLaw<Derived>> {
  public:
-  void act(const ParametersAndStates<Lanes>& own, EvaluationContext<Lanes>& now) const final {
-    now.torque_body_N_m += self().torque(own, now);
+  template <class T>
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
+    now.torque_body_N_m += static_cast<const Derived&>(*this).torque(own, now);
   }
-  void act(const ParametersAndStates<DualLanes>& own,
-           EvaluationContext<DualLanes>& now) const final {
-    now.torque_body_N_m += self().torque(own, now);
-  }
-
- private:
-  const Derived& self() const { return static_cast<const Derived&>(*this); }
 };
 
 // The base of laws that are a force on a platform that slides: Derived has force() in place of
 // torque(), in lab axes.
 template <class Derived>
-class ForceLaw : public Law {
+class ForceLaw : public LawOf<ForceLaw<Derived>> {
  public:
-  void act(const ParametersAndStates<Lanes>& own, EvaluationContext<Lanes>& now) const final {
-    now.force_lab_N += self().force(own, now);
+  template <class T>
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
+    now.force_lab_N += static_cast<const Derived&>(*this).force(own, now);
   }
-  void act(const ParametersAndStates<DualLanes>& own,
-           EvaluationContext<DualLanes>& now) const final {
-    now.force_lab_N += self().force(own, now);
-  }
-
- private:
-  const Derived& self() const { return static_cast<const Derived&>(*this); }
 };
 
 // A disturbance that acts on the platform: plain data and the law that reads it. Copies share the
@@ -361,6 +345,17 @@ PlacedParameters vector_parameter(const Settings& settings, const VectorKey& key
 // `size` numbers, e.g. the six of a symmetric matrix.
 PlacedParameters array_parameter(const Settings& settings, const std::string& key, size_t size,
                                  int first = 0);
+// The numbers of a key of any size.
+template <int size>
+PlacedParameters parameters_of(const Settings& settings, const KeyOf<size>& key) {
+  if constexpr (size == 1) {
+    return scalar_parameter(settings, key);
+  } else if constexpr (size == 3) {
+    return vector_parameter(settings, key);
+  } else {
+    return array_parameter(settings, key.name, size, key.first);
+  }
+}
 // How many numbers the user wrote for `key`: 0 for a single number, the length of an array, nine
 // for three rows of three; looks into { value = …, sigma = … }.
 size_t count_as_written(const Settings& settings, std::string_view key);

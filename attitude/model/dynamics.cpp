@@ -466,23 +466,22 @@ void Dynamics::reading_derivatives(const Lanes& time_s,
   put(now.camera_delay_s);
 }
 
+Dynamics::Instants Dynamics::at(const PlatformState& state) const {
+  const std::vector<double> numbers = to_vector(state);
+  const std::vector<Lanes> y(numbers.begin(), numbers.end());
+  std::array<ZeroOrderHold, Lanes::count> held;
+  held.fill(model_.schedule.at(state.time_s));
+  return at(state.time_s, held, y.data());
+}
+
 // The effect of every disturbance at one state, and the disturbance that holds the motion of a
 // planar platform.
 
 namespace {
 
-Dynamics::Instants instants_at(const AttitudeModel& model, const PlatformState& state) {
-  const Dynamics dynamics(model);
-  std::vector<Lanes> y;
-  for (const double x : to_vector(state)) y.emplace_back(x);
-  std::array<ZeroOrderHold, Lanes::count> held;
-  held.fill(model.schedule.at(state.time_s));
-  return dynamics.at(state.time_s, held, y.data());
-}
-
 std::vector<Vec3> vectors_of_first_lane(const std::vector<Vec3Of<Lanes>>& all) {
   std::vector<Vec3> vectors;
-  for (const Vec3Of<Lanes>& v : all) vectors.emplace_back(v[0][0], v[1][0], v[2][0]);
+  for (const Vec3Of<Lanes>& v : all) vectors.push_back(lane_of(v, 0));
   return vectors;
 }
 
@@ -490,11 +489,11 @@ std::vector<Vec3> vectors_of_first_lane(const std::vector<Vec3Of<Lanes>>& all) {
 
 std::vector<Vec3> disturbance_torques_body_N_m(const AttitudeModel& model,
                                                const PlatformState& state) {
-  return vectors_of_first_lane(instants_at(model, state).torque_body_N_m);
+  return vectors_of_first_lane(Dynamics(model).at(state).torque_body_N_m);
 }
 
 std::vector<Vec3> disturbance_forces_lab_N(const AttitudeModel& model, const PlatformState& state) {
-  return vectors_of_first_lane(instants_at(model, state).force_lab_N);
+  return vectors_of_first_lane(Dynamics(model).at(state).force_lab_N);
 }
 
 namespace {

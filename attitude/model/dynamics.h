@@ -75,6 +75,11 @@ class Dynamics {
   struct Block {
     std::array<int, DualLanes::block> state;
     std::array<int, DualLanes::block> parameter;
+
+    Block() {
+      state.fill(-1);
+      parameter.fill(-1);
+    }
   };
   // Room for an evaluation with derivatives. Who asks often keeps it from one to the next.
   struct Workspace {
@@ -109,6 +114,8 @@ class Dynamics {
   };
   Instants at(const Lanes& time_s, const std::array<ZeroOrderHold, Lanes::count>& held,
               const Lanes* y) const;
+  // At one state, in all lanes, with the commands of the model's schedule.
+  Instants at(const PlatformState& state) const;
 
   // The offsets of noiseless instruments from the platform's rate and attitude, where that does not
   // depend on the motion.

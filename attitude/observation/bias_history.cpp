@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "attitude/observation/camera_noise.h"
+#include "core/numerics/median.h"
 
 namespace photorque {
 
@@ -88,10 +89,9 @@ void drop_far_ones(std::vector<double>& values) {
     if (std::isfinite(x)) distances.push_back(std::abs(x));
   }
   if (distances.empty()) return;
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
+  const double usual = upper_median(std::move(distances));
   for (double& x : values) {
-    if (std::abs(x) > far * *middle) x = NAN;
+    if (std::abs(x) > far * usual) x = NAN;
   }
 }
 
@@ -100,10 +100,7 @@ double usual_rate_rad_s(const Observation& seen) {
   for (size_t i = 0; i < seen.blocks(); ++i) {
     if (seen.gyro_rows[i].minCoeff() > 0.0) rates.push_back(seen.gyro_rad_s[i].norm());
   }
-  if (rates.empty()) return 0.0;
-  const auto middle = rates.begin() + static_cast<std::ptrdiff_t>(rates.size() / 2);
-  std::nth_element(rates.begin(), middle, rates.end());
-  return *middle;
+  return rates.empty() ? 0.0 : upper_median(std::move(rates));
 }
 
 // Whether the rotation between two blocks is small enough for the linear model.

@@ -142,12 +142,6 @@ BlockInstants::Rule BlockInstants::rule_of(size_t block) const {
 
 namespace {
 
-Quat turned_by(const Vec3& rotation_rad) {
-  const double angle = rotation_rad.norm();
-  if (angle == 0.0) return Quat::Identity();
-  return Quat(Eigen::AngleAxisd(angle, rotation_rad / angle));
-}
-
 // Rows [first, last) of an observation, which become one block.
 struct BlockRows {
   const Observation& from;
@@ -270,7 +264,7 @@ struct BlockRows {
                    (all.back().since_s - all.front().since_s);
     }
     const auto moved = [&](const Turned& one) {
-      return one.attitude * turned_by(-one.since_s * rate_rad_s);
+      return one.attitude * turn_by(-one.since_s * rate_rad_s);
     };
     Quat reference = moved(all.front());
     // The remaining trend decreases each time by the square of the rotation angle.
@@ -287,7 +281,7 @@ struct BlockRows {
     for (const Turned& one : all) {
       sum += one.rows * rotation_vector(reference.conjugate() * moved(one));
     }
-    return (reference * turned_by(sum / rows)).normalized();
+    return (reference * turn_by(sum / rows)).normalized();
   }
 
   void append_to(Observation& seen) const {
@@ -352,7 +346,7 @@ class Straightened {
       const Vec3 bent = curvature_of<Vec3>({turn_rad(block_ - 1) / before_s(), before_s()},
                                            {turn_rad(block_) / after_s(), after_s()});
       to.attitude.front() =
-          (all_.attitude[block_] * turned_by(-0.5 * over.attitude_s * over.attitude_s * bent))
+          (all_.attitude[block_] * turn_by(-0.5 * over.attitude_s * over.attitude_s * bent))
               .normalized();
     }
     const double half_s2 = 0.5 * over.readings_s * over.readings_s;

@@ -9,10 +9,6 @@ namespace photorque {
 // The parts of the one class of this file.
 namespace expected {
 
-Vec3 in_lane(const Vec3Of<Lanes>& v, int lane) {
-  return {v[0][lane], v[1][lane], v[2][lane]};
-}
-
 // The delay of the attitude that a camera reports. Body axes; the angular acceleration is assumed
 // constant during the delay, which is accurate to the square of delay over period of the motion.
 struct Delay {
@@ -86,7 +82,7 @@ class AccelerationSlopes {
                            partials.data());
     };
     for (size_t first = 0; first < size; first += width) {
-      Dynamics::Block block = nothing();
+      Dynamics::Block block;
       for (size_t k = 0; k < width && first + k < size; ++k) {
         block.state[k] = static_cast<int>(first + k);
       }
@@ -103,7 +99,7 @@ class AccelerationSlopes {
     for (size_t v = 0; v < count_; ++v) {
       const Variable& variable = sensitivity.variables()[v];
       if (variable.parameter < 0) continue;
-      Dynamics::Block block = nothing();
+      Dynamics::Block block;
       block.parameter[0] = dynamics.first_parameter(variable.disturbance) + variable.parameter;
       evaluate(block);
       for (size_t a = 0; a < 3; ++a) all_[a * count_ + v] += partial(component::rate + a, 0);
@@ -115,13 +111,6 @@ class AccelerationSlopes {
   }
 
  private:
-  static Dynamics::Block nothing() {
-    Dynamics::Block block;
-    block.state.fill(-1);
-    block.parameter.fill(-1);
-    return block;
-  }
-
   size_t count_;
   std::vector<Lanes> all_;
 };
@@ -275,9 +264,9 @@ ExpectedInstant ExpectedReadings::at(int lane) const {
   ExpectedInstant instant;
   instant.state = to_state(p.samples.time_s[lane], p.y);
   const expected::Delay delay{p.sight.delay_s[lane], instant.state.rate_body_rad_s,
-                              expected::in_lane(p.sight.acceleration_rad_s2, lane)};
-  instant.camera_offset_body = expected::in_lane(p.sight.camera_error_rad, lane) - delay.turn_rad();
-  instant.gyro_rad_s = expected::in_lane(p.sight.gyro_rad_s, lane);
+                              lane_of(p.sight.acceleration_rad_s2, lane)};
+  instant.camera_offset_body = lane_of(p.sight.camera_error_rad, lane) - delay.turn_rad();
+  instant.gyro_rad_s = lane_of(p.sight.gyro_rad_s, lane);
   if (p.has_fields) instant.fields = p.fields.at(instant.state, delay.acceleration_rad_s2);
   for (int k = 0; p.place >= 0 && k < 4; ++k) {
     instant.place[k] = p.y[static_cast<size_t>(p.place + k)];

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/constants.h"
+#include "core/numerics/median.h"
 
 namespace photorque {
 
@@ -89,10 +90,8 @@ double robust_level(const std::vector<Deviations>& runs) {
     for (const double x : run.size) sizes.push_back(std::abs(x));
   }
   if (sizes.empty()) return 0.0;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
   // The median of |x| of a normal distribution is 0.6745 σ.
-  return *middle / 0.6745;
+  return upper_median(std::move(sizes)) / 0.6745;
 }
 
 bool are_independent(const std::vector<Deviations>& runs, double level) {
@@ -267,8 +266,6 @@ void move(Observation& seen, size_t block, int channel, double by) {
     seen.gyro_rad_s[block][channel - 3] += by;
     return;
   }
-  Vec3 turn = Vec3::Zero();
-  turn[channel] = by;
   seen.attitude[block] =
       (Quat(Eigen::AngleAxisd(by, Vec3::Unit(channel))) * seen.attitude[block]).normalized();
 }

@@ -16,21 +16,10 @@ struct Turning {
   Vec3 rate_lab_rad_s;
 };
 
-Mat3 cross_of(const Vec3& v) {
-  Mat3 m;
-  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return m;
-}
-
-Quat rotated_by(const Vec3& rotation_rad) {
-  const double angle = rotation_rad.norm();
-  return angle > 0.0 ? Quat(Eigen::AngleAxisd(angle, rotation_rad / angle)) : Quat::Identity();
-}
-
 // The rate of exp(φ) in lab axes is J(φ) dφ/dt (the left Jacobian of the rotations).
 Mat3 left_jacobian(const Vec3& phi) {
   const double angle = phi.norm();
-  const Mat3 cross = cross_of(phi);
+  const Mat3 cross = skew(phi);
   if (angle < 1e-4) return Mat3::Identity() + 0.5 * cross;
   return Mat3::Identity() + (1.0 - std::cos(angle)) / (angle * angle) * cross +
          (angle - std::sin(angle)) / (angle * angle * angle) * cross * cross;
@@ -72,7 +61,7 @@ class SmoothMotion {
     const Vec3 third = slope_a + slope_b - 2.0 * end, second = 3.0 * end - 2.0 * slope_a - slope_b;
     const Vec3 phi = x * (slope_a + x * (second + x * third));
     const Vec3 slope = (slope_a + x * (2.0 * second + 3.0 * x * third)) / span_s;
-    return {rotated_by(phi) * a.lab_from_body, left_jacobian(phi) * slope};
+    return {turn_by(phi) * a.lab_from_body, left_jacobian(phi) * slope};
   }
 
  private:
@@ -89,7 +78,7 @@ class SmoothMotion {
     }
     const Mat3 fitted = matrix.ldlt().solve(right);
     time_s_.push_back(at_s);
-    knot_.push_back({rotated_by(fitted.row(0).transpose()) * middle, fitted.row(1).transpose()});
+    knot_.push_back({turn_by(fitted.row(0).transpose()) * middle, fitted.row(1).transpose()});
   }
 
   std::vector<size_t> at_;

@@ -6,6 +6,7 @@
 
 #include "attitude/observation/prediction.h"
 #include "core/constants.h"
+#include "core/numerics/median.h"
 
 namespace photorque {
 
@@ -68,12 +69,6 @@ double difference(const std::vector<ReadingAt>& x, size_t first, size_t order) {
   return sum / std::sqrt(squares);
 }
 
-double median(std::vector<double>& of) {
-  const auto middle = of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2);
-  std::nth_element(of.begin(), middle, of.end());
-  return *middle;
-}
-
 // Whether the `order` + 1 readings from `first` on are equal to the last digit. A counter that
 // stands still contains no information on its noise. If it mostly does, its step gives the noise.
 bool stands_still(const std::vector<ReadingAt>& x, size_t first, size_t order) {
@@ -97,7 +92,7 @@ void collect_steps(const std::vector<ReadingAt>& x, std::vector<double>& steps) 
   }
   constexpr double of_largest = 1e-5, of_usual = 1e-2;
   const double rounding =
-      firsts.empty() ? 0.0 : std::min(of_largest * largest, of_usual * median(firsts));
+      firsts.empty() ? 0.0 : std::min(of_largest * largest, of_usual * upper_median(firsts));
   for (size_t i = 1; i < x.size(); ++i) {
     const double step = x[i].value - x[i - 1].value;
     if (std::abs(step) > rounding) steps.push_back(std::abs(step));
@@ -129,13 +124,13 @@ std::optional<double> reading_level(const std::vector<Observation>& runs, int ch
   if (windows < fewest) return std::nullopt;
   // The median of |x| of a Gaussian is 0.6745 σ.
   const bool moves = 2 * sizes[lowest_order].size() > windows;
-  double level = moves ? median(sizes[lowest_order]) / 0.6745 : 0.0;
+  double level = moves ? upper_median(sizes[lowest_order]) / 0.6745 : 0.0;
   // White noise is alike at every order. Where the next is clearly quieter, what this one holds is
   // motion that the readings follow too coarsely: with six readings a period the ratio is 0.53.
   constexpr double quieter = 0.7;
   for (size_t order = lowest_order + 1; order <= highest_order; ++order) {
     if (sizes[order].size() < fewest) break;
-    const double next = median(sizes[order]) / 0.6745;
+    const double next = upper_median(sizes[order]) / 0.6745;
     if (!(next < quieter * level)) break;
     level = next;
   }

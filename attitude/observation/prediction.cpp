@@ -8,6 +8,7 @@
 #include "attitude/propagation/sampling.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/numerics/median.h"
 
 namespace photorque {
 
@@ -32,10 +33,7 @@ double reading_interval_s(const Observation& seen, int channel) {
     last_s = seen.time_s[i];
     last_rows = rows;
   }
-  if (intervals_s.empty()) return 0.0;
-  const auto middle = intervals_s.begin() + static_cast<std::ptrdiff_t>(intervals_s.size() / 2);
-  std::nth_element(intervals_s.begin(), middle, intervals_s.end());
-  return *middle;
+  return intervals_s.empty() ? 0.0 : upper_median(std::move(intervals_s));
 }
 
 Whitening::Whitening(const Observation& seen, int channel, Eigen::Index width) {

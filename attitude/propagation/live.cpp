@@ -5,13 +5,6 @@
 #include <vector>
 
 namespace photorque {
-namespace {
-
-Vec3 first_lane(const Vec3Of<Lanes>& v) {
-  return {v[0][0], v[1][0], v[2][0]};
-}
-
-}  // namespace
 
 Quat attitude_before(const PlatformState& state, double before_s) {
   const Vec3 turn_rad = state.rate_body_rad_s * before_s;
@@ -66,15 +59,15 @@ LiveRow LiveInstruments::read(double time_s, std::span<const double> y, const Ze
   row.index = next_++;
   row.time_s = time_s;
   row.truth = to_state(time_s, y);
-  row.command_body_N_m = first_lane(now.command_body_N_m);
+  row.command_body_N_m = lane_of(now.command_body_N_m, 0);
   row.battery_current_A = power ? power->battery_current_A : now.battery_current_A[0];
   row.array_power_W = power ? power->array_power_W : now.array_power_W[0];
   recorder_.add({.time_s = time_s,
                  .lab_from_body_seen = seen(row.truth),
                  .rate_body_rad_s = row.truth.rate_body_rad_s,
                  .yaw_rad = yaw_rad(row.truth),
-                 .gyro_rad_s = first_lane(now.gyro_rad_s),
-                 .camera_error_rad = first_lane(now.camera_error_rad),
+                 .gyro_rad_s = lane_of(now.gyro_rad_s, 0),
+                 .camera_error_rad = lane_of(now.camera_error_rad, 0),
                  .command_body_N_m = row.command_body_N_m,
                  .battery_current_A = row.battery_current_A,
                  .array_power_W = row.array_power_W});

@@ -55,10 +55,6 @@ Propagator::Commander live_commander(const PropagationRun& run, const Propagator
   };
 }
 
-Vec3 in_lane(const Vec3Of<Lanes>& v, int lane) {
-  return {v[0][lane], v[1][lane], v[2][lane]};
-}
-
 // Every how many rows of the recording the history has one, so that with the last row, which it
 // always has, it is no longer than `history_rows` (2 at least).
 size_t thinning(size_t rows, size_t history_rows) {
@@ -174,10 +170,10 @@ void RecordedRun::record(const Look& look, const std::vector<double>& y, const P
                  .rate_body_rad_s = state.rate_body_rad_s,
                  .yaw_rad = yaw_rad(state),
                  .place_m_m_s = place_of(dynamics_, y),
-                 .gyro_rad_s = in_lane(now.gyro_rad_s, lane),
-                 .camera_error_rad = in_lane(now.camera_error_rad, lane),
-                 .command_body_N_m = in_lane(now.command_body_N_m, lane),
-                 .command_lab_N = in_lane(now.command_lab_N, lane),
+                 .gyro_rad_s = lane_of(now.gyro_rad_s, lane),
+                 .camera_error_rad = lane_of(now.camera_error_rad, lane),
+                 .command_body_N_m = lane_of(now.command_body_N_m, lane),
+                 .command_lab_N = lane_of(now.command_lab_N, lane),
                  .battery_current_A = now.battery_current_A[lane],
                  .array_power_W = now.array_power_W[lane]});
   const bool is_last = states_.size() + 1 == rows_;

@@ -154,10 +154,6 @@ std::vector<Disturbance> read_own_disturbances(const Settings& root,
   return disturbances;
 }
 
-std::filesystem::path beside_experiment(const Settings& settings, const std::string& name) {
-  return std::filesystem::path(settings.where().file).parent_path() / name;
-}
-
 Vec3 in_plane(const Settings& command, const NumbersKey& key) {
   if (!command.has(key)) return Vec3::Zero();
   const std::vector<double> two = command.get(key);
@@ -171,10 +167,10 @@ Schedule read_schedule(const Settings& settings) {
       throw settings.error(propagate_key::command, "[[propagate.command]] beside commands",
                            "one of the two");
     }
-    const std::string name = settings.get(propagate_key::commands);
-    const std::filesystem::path path = beside_experiment(settings, name);
+    const std::filesystem::path path = file_of(settings, propagate_key::commands);
     if (!std::filesystem::is_regular_file(path)) {
-      throw settings.error(propagate_key::commands, "\"" + name + "\"",
+      throw settings.error(propagate_key::commands,
+                           "\"" + settings.get(propagate_key::commands) + "\"",
                            "a file beside the experiment");
     }
     return read_command_file(path);

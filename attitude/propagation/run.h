@@ -51,17 +51,7 @@ struct NominalModel {
 };
 NominalModel read_attitude_model(const Settings& root);
 
-// Reads the model and [propagate], which may be absent:
-//   duration_s (default 600); output_rate_Hz (of the recording; default 10, less where that gives
-//   more than 45000 rows); history_rows (of the
-//     time history at most, default 5000); tolerance (default 1e-8); longest_step_s; seed (1);
-//   tick_rate_Hz (default 0, none): a step ends at every tick, as in a run in real time;
-//   initial_attitude = [w, x, y, z], or initial_tilt_deg and initial_heading_deg (default 0), see
-//     lab_from_body_at(); initial_rate_rad_s[3] (default 0); initial_charge_Ah (drawn, default 0);
-//   initial_time_s (default 0): the time of the first row;
-//   commands: a CSV with t_s and command_x_N_m … or battery_current_A (relative to the experiment),
-//     or [[propagate.command]] with time_s, torque_N_m[3], battery_current_A (rising times);
-//   epoch (default "2000-01-01T00:00:00").
+// Reads the model and [propagate], which may be absent; its keys are propagate_table().
 PropagationRun read_propagation(const Settings& root);
 Key propagate_table();
 

@@ -14,13 +14,6 @@ namespace {
 
 constexpr int max_sweeps = 100;
 
-Dynamics::Block empty_block() {
-  Dynamics::Block block;
-  block.state.fill(-1);
-  block.parameter.fill(-1);
-  return block;
-}
-
 bool only_reads(const Dynamics& dynamics, const Variable& variable) {
   return variable.initial < 0 &&
          dynamics.model().disturbances[variable.disturbance].stage == Stage::measurement;
@@ -134,7 +127,7 @@ void Sensitivity::make_blocks() {
       const Variable& variable = variables_[v];
       if (variable.initial >= 0 || kind(variable) != wanted) continue;
       if (k == DualLanes::block) {
-        parameter_blocks_.push_back({empty_block(), {}});
+        parameter_blocks_.emplace_back();
         parameter_blocks_.back().variable.fill(-1);
         k = 0;
       }

@@ -10,8 +10,6 @@ std::vector<Dynamics::Block> state_blocks(const Dynamics& dynamics) {
   std::vector<Dynamics::Block> blocks;
   for (int first = 0; first < dynamics.size(); first += DualLanes::block) {
     Dynamics::Block block;
-    block.state.fill(-1);
-    block.parameter.fill(-1);
     for (int k = 0; k < DualLanes::block && first + k < dynamics.size(); ++k) {
       block.state[static_cast<size_t>(k)] = first + k;
     }

@@ -199,7 +199,6 @@ TimeHistory::TimeHistory(const Dynamics& dynamics) {
         [&](const Disturbance& other) { return other.kind == d.kind; });
     labels.push_back(same == 0 ? d.kind : d.kind + "_" + std::to_string(same + 1));
   }
-  first_extra_ = columns_.size();
   for (size_t d = 0; d < disturbances.size(); ++d) {
     for (const ExtraState& state : disturbances[d].states) {
       columns_.push_back({labels[d] + "_" + state.name});

@@ -30,7 +30,6 @@ class TimeHistory {
   std::vector<size_t> acting_;       // their indices
   std::vector<Table::Column> columns_;
   size_t first_torque_ = 0;  // column of the first disturbance's x torque
-  size_t first_extra_ = 0;
 };
 
 }  // namespace photorque

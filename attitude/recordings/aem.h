@@ -24,10 +24,7 @@ struct AttitudeEphemeris {
   struct Row {
     std::string epoch;           // as written
     std::vector<double> values;  // in the order of the file
-    int line = 0;                // in the file; not compared
-    bool operator==(const Row& other) const {
-      return epoch == other.epoch && values == other.values;
-    }
+    int line = 0;                // in the file
   };
   struct Segment {
     std::string object_name, object_id, center_name;
@@ -43,7 +40,6 @@ struct AttitudeEphemeris {
     std::string interpolation_method, interpolation_degree;
     std::vector<std::string> comments;
     std::vector<Row> rows;
-    bool operator==(const Segment&) const = default;
 
     struct Sample {
       double time_s;  // since the first row
@@ -59,7 +55,6 @@ struct AttitudeEphemeris {
   std::string creation_date, originator;
   std::vector<std::string> comments;
   std::vector<Segment> segments;
-  bool operator==(const AttitudeEphemeris&) const = default;
 };
 
 // Whether a frame is one of the body or of what is fixed to it.

@@ -96,11 +96,6 @@ constexpr std::array<ChannelTraits, channel_count> all_traits = {{
      Measures::speed, "velocity_y_m_s"},
 }};
 
-Quat turned(const Vec3& rotation_lab, const Quat& q) {
-  const double angle = rotation_lab.norm();
-  return angle > 0.0 ? Quat(Eigen::AngleAxisd(angle, rotation_lab / angle)) * q : q;
-}
-
 double of_attitude(Scalar scalar, const Quat& q) {
   switch (scalar) {
     case Scalar::tilt:
@@ -141,8 +136,8 @@ ScalarReading scalar_reading(Scalar scalar, const Quat& lab_from_body,
   reading.value = of_attitude(scalar, lab_from_body);
   constexpr double step_rad = 1e-5;  // central: good to 1e-10
   for (int k = 0; k < 3; ++k) {
-    const double after = of_attitude(scalar, turned(step_rad * Vec3::Unit(k), lab_from_body)),
-                 before = of_attitude(scalar, turned(-step_rad * Vec3::Unit(k), lab_from_body));
+    const double after = of_attitude(scalar, turn_by(step_rad * Vec3::Unit(k)) * lab_from_body),
+                 before = of_attitude(scalar, turn_by(-step_rad * Vec3::Unit(k)) * lab_from_body);
     reading.by_rotation_lab[k] = scalar_difference(scalar, after, before) / (2.0 * step_rad);
   }
   return reading;

@@ -115,11 +115,6 @@ void append(std::string& text, const KvnItem& block) {
 
 }  // namespace
 
-bool KvnItem::operator==(const KvnItem& other) const {
-  return kind == other.kind && key == other.key && value == other.value && unit == other.unit &&
-         items == other.items;
-}
-
 const std::string* KvnItem::find(std::string_view name) const {
   for (const KvnItem& item : items) {
     if (item.kind == Kind::assignment && item.key == name) return &item.value;

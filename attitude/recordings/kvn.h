@@ -18,9 +18,7 @@ struct KvnItem {
   std::string value;           // of an assignment; text of a comment; a data line
   std::string unit;            // of an assignment, without brackets; empty: none
   std::vector<KvnItem> items;  // of a block
-  int line = 0;                // in the file; not compared
-
-  bool operator==(const KvnItem& other) const;
+  int line = 0;                // in the file
 
   // The value of the first assignment of `name` in this block, or null.
   const std::string* find(std::string_view name) const;

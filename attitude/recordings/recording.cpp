@@ -7,7 +7,6 @@
 
 #include "attitude/recordings/aem.h"
 #include "attitude/recordings/cleaning.h"
-#include "attitude/recordings/keys.h"
 #include "attitude/recordings/named_columns.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/files.h"
@@ -391,43 +390,8 @@ Schedule Recording::schedule() const {
   return schedule;
 }
 
-RecordingOptions read_recording_options(const Settings& settings) {
-  RecordingOptions options;
-  if (settings.has(recording_key::columns)) {
-    const Settings columns = settings.table(recording_key::columns);
-    for (const std::string& channel : columns.keys()) {
-      options.columns[channel] = columns.text(channel);
-    }
-  }
-  options.remove_outliers = settings.get(recording_key::remove_outliers);
-  const size_t sequence = settings.get(recording_key::angle_sequence);
-  if (sequence > 0) options.angle_sequence = recording_key::angle_sequence.words[sequence].name;
-  return options;
-}
-
 Recording read_recording(const std::filesystem::path& path, const RecordingOptions& options) {
   return RecordingReader(path, options).read();
-}
-
-void refuse_absent_columns(const Settings& settings, const std::vector<const Recording*>& of) {
-  std::vector<std::set<std::string>> absent_columns;
-  for (const Recording* one : of) absent_columns.push_back(one->report.absent_columns);
-  refuse_absent_columns(settings, absent_columns);
-}
-
-void refuse_absent_columns(const Settings& recording,
-                           const std::vector<std::set<std::string>>& absent_columns) {
-  if (!recording.has(recording_key::columns)) return;
-  const Settings columns = recording.table(recording_key::columns);
-  for (const std::string& channel : columns.keys()) {
-    const std::string written = columns.text(channel);
-    const bool absent = std::ranges::all_of(
-        absent_columns, [&](const std::set<std::string>& one) { return one.contains(written); });
-    if (absent) {
-      throw columns.error(channel, in_quotes(written) + ", which the recording has not",
-                          "one of its columns");
-    }
-  }
 }
 
 std::string header_cell_text(std::string_view cell) {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "attitude/model/schedule.h"
-#include "core/settings/settings.h"
+#include "core/settings/keys.h"
 
 namespace photorque {
 
@@ -126,5 +126,8 @@ class LampCurrent {
 // Straight lines between means over neighbouring rows, so many that what lies between is straight,
 // and no more: each begins a step of the propagation. Of `wheel_x_rad_s` …; empty without any.
 std::vector<WheelSpeeds> wheel_speeds(const Recording& recording);
+
+// [recording] as it is declared.
+Key recording_table();
 
 }  // namespace photorque

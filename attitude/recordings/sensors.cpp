@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/camera/keys.h"
 #include "core/numerics/random.h"
 #include "core/settings/typed_keys.h"
 #include "core/snapshot.h"
@@ -82,11 +81,6 @@ Vec3 gaussian_vector(uint64_t seed, Stream stream, uint64_t index) {
           gaussian(seed, stream, index, 2)};
 }
 
-Quat turn(const Vec3& rotation_rad) {
-  const double angle = rotation_rad.norm();
-  return angle == 0.0 ? Quat::Identity() : Quat(Eigen::AngleAxisd(angle, rotation_rad / angle));
-}
-
 // The errors of an instrument, each switched on by the key that its kind screens.
 void read_errors(const Settings& settings, const DisturbanceContext& context,
                  const std::string& instrument, std::vector<Disturbance>& errors) {
@@ -122,7 +116,7 @@ void read_camera_noise(const Settings& s, Sensors::Camera& camera) {
 // Rotation of the reading by wrong marker positions and distortion.
 Quat marker_bias(const TrackingCamera& geometry, const Pose& pose) {
   if (!geometry.is_biased()) return Quat::Identity();
-  return turn(marker_bias_lab_rad(geometry, pose).value_or(Vec3::Zero()));
+  return turn_by(marker_bias_lab_rad(geometry, pose).value_or(Vec3::Zero()));
 }
 
 Pose pose_of(const Quat& lab_from_body, const Vec3& rate_body_rad_s) {
@@ -231,14 +225,14 @@ void Recorder::add_camera(const Truth& truth) {
   const Vec3 draw = gaussian_vector(seed_, camera_noise, row);
   if (due && !camera.geometry) {
     const Vec3 noise_rad = camera.noise_rad.cwiseProduct(draw);
-    seen = turn(noise_rad) * truth.lab_from_body_seen * turn(truth.camera_error_rad);
+    seen = turn_by(noise_rad) * truth.lab_from_body_seen * turn_by(truth.camera_error_rad);
   } else if (due) {
     const Pose pose = pose_of(truth.lab_from_body_seen, truth.rate_body_rad_s);
     // If too few markers are visible, there is no reading.
     if (const auto covariance = attitude_covariance_lab_rad2(*camera.geometry, pose)) {
       const Vec3 noise_rad = Eigen::LLT<Mat3>(*covariance).matrixL() * draw;
-      seen = turn(noise_rad) * marker_bias(*camera.geometry, pose) * truth.lab_from_body_seen *
-             turn(truth.camera_error_rad);
+      seen = turn_by(noise_rad) * marker_bias(*camera.geometry, pose) * truth.lab_from_body_seen *
+             turn_by(truth.camera_error_rad);
     }
   }
   if (std::isfinite(seen.w())) {

@@ -86,17 +86,7 @@ struct Sensors {
   std::vector<Disturbance> errors;
 };
 
-// Reads [sensors]:
-//   camera: noise_arcsec[3] or the keys of read_tracking_camera(), rate_Hz, latency_s,
-//     misalignment_rad[3];
-//   gyro: noise_rad_s, bias_rad_s[3], bias_drift (rad/s per √s), scale[3], misalignment_rad[3],
-//     rate_Hz;
-//   accelerometer: noise_m_s2, position_m[3], bias_m_s2[3];
-//   magnetometer: noise_T, bias_T[3];
-//   position: noise_m, noise_m_s;
-//   encoder: resolution_arcsec;
-//   power: current_noise_A, power_noise_W;
-//   noise_is: "found" (diagnose looks for the noise in the recording) or "stated".
+// Reads [sensors], whose keys are sensor_keys().
 Sensors read_sensors(const Settings& settings, const DisturbanceContext& context);
 // A camera and a gyro without errors, the default.
 Sensors perfect_sensors();
@@ -154,5 +144,9 @@ class Recorder {
   size_t column_ = 0;
   Vec3 bias_walk_rad_s_ = Vec3::Zero();
 };
+
+// The instruments of the attitude in [sensors]; those of light and power are in
+// diagnosis/light/model.
+std::vector<Key> sensor_keys();
 
 }  // namespace photorque

@@ -107,12 +107,6 @@ Fit fit_with_discrepancy(const Fit& fitted, std::vector<Observation> segments) {
   return fit(fitted.best, segments, convergent_settings());
 }
 
-Mat3 cross_matrix(const Vec3& v) {
-  Mat3 m;
-  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return m;
-}
-
 // Attitude and rate of the rows that have both; the rate from the gyro or from attitudes half an
 // interval before and after.
 struct Row {
@@ -215,7 +209,7 @@ Vec3 offset_from_momentum_m(const Platform& platform, const Vec3& gravity_lab_m_
       const Vec3 known =
           inertia * (rows[last].rate_rad_s - rows[first].rate_rad_s) + gyroscopic - command;
       Eigen::Matrix<double, 3, 4> slope;
-      slope << -platform.mass_kg * cross_matrix(gravity), -angle;
+      slope << -platform.mass_kg * skew(gravity), -angle;
       matrix += slope.transpose() * slope;
       right += slope.transpose() * known;
       ++intervals;
@@ -369,6 +363,10 @@ Product balance_product(const BalanceRun& run, const BalanceResult& result) {
                 {"About z [arcsec]", {residuals(2)}, false}};
   product.plots.push_back(std::move(plot));
   return product;
+}
+
+Key balance_table() {
+  return Key::table("balance", moving_mass_keys(), "the masses that balance the platform");
 }
 
 }  // namespace photorque

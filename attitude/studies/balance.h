@@ -10,7 +10,7 @@
 #include "attitude/disturbances/mass/moving_masses.h"
 #include "attitude/estimation/fit.h"
 #include "core/product.h"
-#include "core/settings/settings.h"
+#include "core/settings/keys.h"
 
 namespace photorque {
 
@@ -56,5 +56,8 @@ BalanceResult balance(const BalanceRun& run);
 // Tables "balance" (by axis, beside the paper's 1.79e-7 m) and "moving_masses", the residuals of
 // the fit as a plot, headline figures.
 Product balance_product(const BalanceRun& run, const BalanceResult& result);
+
+// [balance] as it is declared.
+Key balance_table();
 
 }  // namespace photorque

@@ -137,14 +137,10 @@ struct Snapshot {
   Vec3 angular_acceleration_rad_s2;
 };
 Snapshot snapshot(const Dynamics& dynamics, const PlatformState& state) {
-  std::vector<Lanes> y;
-  for (const double x : to_vector(state)) y.emplace_back(x);
-  std::array<ZeroOrderHold, Lanes::count> held;
-  held.fill(dynamics.model().schedule.at(state.time_s));
-  const Dynamics::Instants now = dynamics.at(state.time_s, held, y.data());
+  const Dynamics::Instants now = dynamics.at(state);
   Snapshot result;
   for (const Vec3Of<Lanes>& torque : now.torque_body_N_m) {
-    result.torques_body_N_m.emplace_back(torque[0][0], torque[1][0], torque[2][0]);
+    result.torques_body_N_m.push_back(lane_of(torque, 0));
   }
   for (int k = 0; k < 3; ++k) {
     result.angular_acceleration_rad_s2[k] = now.rates[component::rate + static_cast<size_t>(k)][0];

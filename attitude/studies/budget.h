@@ -7,7 +7,7 @@
 #include "attitude/model/dynamics.h"
 #include "attitude/studies/paper_figures.h"
 #include "core/product.h"
-#include "core/settings/settings.h"
+#include "core/settings/keys.h"
 
 namespace photorque {
 
@@ -35,19 +35,9 @@ struct Budget {
   std::vector<AirPart> air_parts;  // of the experiment's air_friction and air_pressure_drag
 };
 
-// Reads the experiment and [budget]:
-//   tilt_deg, heading_deg (default 0): lab_from_body_at();
-//   spin_rpm (default 0): about the lab's vertical; rate_rad_s[3] (body, default 0) adds to it;
-//   state_of_charge (default 1): needs platform.battery_capacity_Ah below 1; or charge_drawn_Ah;
-//   time_s (default 0);
-//   [[budget.bearing]]: a catalogue's bearings, for the paper's comparison with data sheets: name,
-//     radius_m, half_angle_deg, gap_m, inlet_Pa (absolute), load_N, drag_N_m (0), drag_rate_rpm
-//     (30);
-//   [budget.light]: what power printed of the scene, for the comparison with the paper:
-//     source_to_cell, conversion (fractions), power_W, power_at_30_deg_W, torque_at_30_deg_N_m[3].
-// Only with one of the last two are the paper's figures reported: other platforms are not its own.
-// The load on the bearing is the platform's weight. InputError for missing or unknown keys in these
-// tables.
+// Reads the experiment and [budget], whose keys are budget_table(). Only with [[budget.bearing]] or
+// [budget.light] are the paper's figures reported: other platforms are not its own. The load on the
+// bearing is the platform's weight. InputError for missing or unknown keys in these tables.
 Budget read_budget(const Settings& root);
 
 // The budget from values.
@@ -59,5 +49,8 @@ Budget make_budget(AttitudeModel model, const PlatformState& state);
 // deg without one, towards the state's heading) and the paper's figure 5, and as quantities the
 // total torque and, with a catalogue, its comparison.
 Product budget_product(const Budget& budget);
+
+// [budget] as it is declared.
+Key budget_table();
 
 }  // namespace photorque

@@ -73,6 +73,22 @@ struct DualLanes {
   friend bool operator==(const DualLanes& a, const DualLanes& b) { return a.value == b.value; }
 };
 
+// The same for values without derivatives, which need no slopes: for formulas of either type.
+inline Lanes chain(const Lanes& /*x*/, const Lanes& f, const Lanes& /*slope*/) {
+  return f;
+}
+inline Lanes chain(const Lanes& /*x*/, const Lanes& /*y*/, const Lanes& f, const Lanes& /*slope_x*/,
+                   const Lanes& /*slope_y*/) {
+  return f;
+}
+inline DualLanes chain(const DualLanes& x, const Lanes& f, const Lanes& slope) {
+  return DualLanes::chain(x, f, slope);
+}
+inline DualLanes chain(const DualLanes& x, const DualLanes& y, const Lanes& f, const Lanes& slope_x,
+                       const Lanes& slope_y) {
+  return DualLanes::chain(x, y, f, slope_x, slope_y);
+}
+
 inline DualLanes sqrt(const DualLanes& x) {
   const Lanes root = sqrt(x.value);
   return DualLanes::chain(x, root, 0.5 / root);
@@ -167,3 +183,12 @@ struct NumTraits<photorque::Lanes> : PhotorqueNumTraits<photorque::Lanes> {};
 template <>
 struct NumTraits<photorque::DualLanes> : PhotorqueNumTraits<photorque::DualLanes> {};
 }  // namespace Eigen
+
+namespace photorque {
+
+// One lane of a vector.
+inline Vec3Of<double> lane_of(const Vec3Of<Lanes>& v, int lane) {
+  return {v[0][lane], v[1][lane], v[2][lane]};
+}
+
+}  // namespace photorque

@@ -70,6 +70,12 @@ OtherKey::operator Key() const {
   return key;
 }
 
+Vec3 direction_of(const Settings& settings, const Vec3Key& key) {
+  const Vec3 direction = settings.get(key);
+  if (!(direction.norm() > 0.0)) throw settings.error(key, "a zero vector", "a direction");
+  return direction;
+}
+
 Key TableKey::of(std::vector<Key> keys) const {
   Key key = declared(Key::Type::table);
   key.required = false;

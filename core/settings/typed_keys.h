@@ -225,6 +225,9 @@ struct Vec3Key : TypedKey<Vec3Key> {
   operator Key() const;
 };
 
+// Three numbers that are not all zero, of any length; InputError for a zero vector.
+Vec3 direction_of(const Settings& settings, const Vec3Key& key);
+
 struct NumbersKey : TypedKey<NumbersKey> {
   Range range;
 

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/constants.h"
+#include "core/numerics/median.h"
 
 namespace photorque {
 
@@ -94,10 +95,9 @@ std::vector<Where::ChannelMisfit> misfits(const std::vector<Prediction>& residua
     }
     if (squares.empty()) continue;
     const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
-    const auto middle = squares.begin() + static_cast<ptrdiff_t>(squares.size() / 2);
-    std::ranges::nth_element(squares, middle);
-    result.push_back({channel_traits(static_cast<int>(k)).name,
-                      sum / static_cast<double>(squares.size()), *middle / median_of_chi2_of_one});
+    const auto count = static_cast<double>(squares.size());
+    result.push_back({channel_traits(static_cast<int>(k)).name, sum / count,
+                      upper_median(std::move(squares)) / median_of_chi2_of_one});
   }
   std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) {
     return a.chi2_per_sample > b.chi2_per_sample;

@@ -43,26 +43,6 @@ std::vector<Key> place_keys(LightEffectKind::Index index) {
 
 }  // namespace
 
-std::vector<Key> light_sensor_keys() {
-  const auto noise = [](const char* name, const char* what) {
-    return NumberKey(name, 0.0, Range::not_negative(), what);
-  };
-  return {
-      Key::table(
-          "irradiance",
-          {noise("noise_W_m2", "standard deviation of a reading"),
-           noise("relative_noise", "standard deviation as a fraction of the reading, added")},
-          "instrument of scans of the light"),
-      Key::table(
-          "array",
-          {noise("voltage_noise_V", "of a reading"), noise("current_noise_A", "of a reading"),
-           NumberKey(
-               "tracker_step_V", Range::not_negative(),
-               "voltage step of the tracker; its recorded voltage is then an input of the model",
-               {.usually = "the tracker is assumed to hold the highest maximum"})},
-          "instruments of the array")};
-}
-
 std::vector<Key::Choice> light_effects() {
   std::vector<Key::Choice> all;
   for (const LightEffectKind& kind : all_light_effect_kinds()) {

@@ -7,8 +7,6 @@
 
 namespace photorque {
 
-// Keys of the instruments of light and power in [sensors].
-std::vector<Key> light_sensor_keys();
 // The kinds of [[effect]] on light and power, from their registry. Kinds with equal names form one
 // choice with the keys of all.
 std::vector<Key::Choice> light_effects();

@@ -154,11 +154,8 @@ std::map<double, Quat> attitudes_of(const Diagnosis& motion, const std::string& 
     const AttitudeSeries& seen = series.attitude;
     for (size_t i = 0; i < seen.time_s.size(); ++i) {
       const Vec3& off = seen.off_after_rad[i];
-      const double angle = off.norm();
-      if (!std::isfinite(angle)) continue;
-      const Quat back(angle > 0.0 ? Eigen::AngleAxisd(-angle, off / angle)
-                                  : Eigen::AngleAxisd::Identity());
-      at[seen.time_s[i]] = (back * seen.measured[i]).normalized();
+      if (!off.allFinite()) continue;
+      at[seen.time_s[i]] = (turn_by(-off) * seen.measured[i]).normalized();
     }
   }
   return at;
@@ -168,11 +165,6 @@ Vec3 turn(const Quat& from, const Quat& to) {
   const Eigen::AngleAxisd by(from.conjugate() * to);
   const double angle = by.angle() > pi ? by.angle() - 2.0 * pi : by.angle();
   return angle * by.axis();
-}
-
-Quat turned(const Quat& from, const Vec3& by) {
-  const double angle = by.norm();
-  return angle > 0.0 ? Quat(from * Quat(Eigen::AngleAxisd(angle, by / angle))) : from;
 }
 
 // Cubic interpolation with slopes from the neighbouring points; nothing outside or in a gap.
@@ -191,7 +183,7 @@ std::optional<Quat> between(const std::map<double, Quat>& all, double time_s, do
              slope_next = turn(last->second, after->second) / (after->first - last->first);
   const double t = (time_s - last->first) / h, u = 1.0 - t;
   const Vec3 by = t * t * (3.0 - 2.0 * t) * step + h * t * u * (u * slope_last - t * slope_next);
-  return turned(last->second, by);
+  return last->second * turn_by(by);
 }
 
 template <class T>

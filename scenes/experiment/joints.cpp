@@ -37,9 +37,7 @@ constexpr IntegerKey positions("positions", 5, 2, most_positions,
 }  // namespace joint_key
 
 Vec3 read_direction(const Settings& joint, const Vec3Key& key) {
-  const Vec3 direction = joint.get(key);
-  if (!(direction.norm() > 0.0)) throw joint.error(key, "a zero vector", "a direction");
-  return direction.normalized();
+  return direction_of(joint, key).normalized();
 }
 
 std::vector<std::string> read_nodes(const Settings& joint) {

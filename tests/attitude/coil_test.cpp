@@ -1,4 +1,4 @@
-// Current loops, the cage, and the field along an orbit.
+// Current loops, and the field along an orbit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,15 +10,6 @@
 
 namespace photorque {
 namespace {
-
-std::vector<Vec3> circle(double radius_m, int corners, const Vec3& centre_m) {
-  std::vector<Vec3> points;
-  for (int i = 0; i < corners; ++i) {
-    const double a = 2 * pi * i / corners;
-    points.emplace_back(centre_m + radius_m * Vec3(std::cos(a), std::sin(a), 0));
-  }
-  return points;
-}
 
 TEST(CurrentLoop, AreaOfAPolygonDoesNotDependOnTheOrigin) {
   const std::vector<Vec3> here = {{0, 0, 0}, {0.3, 0, 0}, {0.3, 0.2, 0}, {0, 0.2, 0}};
@@ -54,77 +45,6 @@ TEST(CurrentLoop, SettingsTakeAreasOrCorners) {
   const Settings two = settings_of(table(
       {{"current_A", node(1)}, {"corners_m", list({numbers({0, 0, 0}), numbers({0, 1, 0})})}}));
   EXPECT_THROW(read_current_loops({two}), InputError);
-}
-
-// B = μ₀ I R² / (2 (R² + z²)^{3/2}) on the axis of a circle (any textbook).
-TEST(CurrentLoop, FieldOnTheAxisOfACircle) {
-  const std::vector<Vec3> loop = circle(0.5, 2000, Vec3::Zero());
-  for (const double z : {0.0, 0.3, 2.0}) {
-    const double expected =
-        vacuum_permeability_N_A2 * 3.0 * 0.25 / (2 * std::pow(0.25 + z * z, 1.5));
-    const Vec3 field = polygon_field_T(loop, 3.0, {0, 0, z});
-    EXPECT_NEAR(field.z() / expected, 1.0, 1e-5);
-    EXPECT_LT(field.head<2>().norm(), 1e-12 * expected);
-  }
-}
-
-// Ampère: ∮ B·dl around the wire is μ₀ I, once the loop is closed.
-TEST(CurrentLoop, FieldObeysAmpere) {
-  const std::vector<Vec3> loop = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-  double circulation = 0;
-  constexpr int n = 4000;
-  for (int i = 0; i < n; ++i) {
-    const double a = 2 * pi * (i + 0.5) / n;
-    // A circle around the side x = 1, right-handed about its current (+y).
-    const Vec3 at(1 + 0.4 * std::cos(a), 0.2, -0.4 * std::sin(a));
-    const Vec3 dl = 2 * pi / n * 0.4 * Vec3(-std::sin(a), 0, -std::cos(a));
-    circulation += polygon_field_T(loop, 5.0, at).dot(dl);
-  }
-  EXPECT_NEAR(circulation / (vacuum_permeability_N_A2 * 5.0), 1.0, 1e-6);
-}
-
-// The classical pair of circles a radius apart: B = (4/5)^{3/2} μ₀ n I / R.
-TEST(CurrentLoop, HelmholtzPairOfCircles) {
-  const double R = 0.8;
-  Vec3 field = Vec3::Zero();
-  for (const double z : {-0.5 * R, 0.5 * R})
-    field += polygon_field_T(circle(R, 2000, {0, 0, z}), 1.0, Vec3::Zero());
-  EXPECT_NEAR(field.z() / (std::pow(0.8, 1.5) * vacuum_permeability_N_A2 / R), 1.0, 1e-5);
-}
-
-CoilCage cage() {
-  const CoilPair pair{1.2, square_pair_spacing * 1.2, 40};
-  return {{pair, {1.3, square_pair_spacing * 1.3, 40}, {1.4, square_pair_spacing * 1.4, 40}}};
-}
-
-TEST(CoilCage, CurrentsMakeTheWantedField) {
-  const Vec3 wanted_T(2e-5, -1e-5, 4.5e-5);
-  const Vec3 currents_A = cage().currents_A(wanted_T);
-  EXPECT_LT((cage().field_lab_T(currents_A, Vec3::Zero()) - wanted_T).norm(), 1e-18);
-}
-
-// Square pairs: B = 1.629 μ₀ n I / side · … at the published optimum spacing; here from the closed
-// form of a square's axis field, 4 μ₀I a²/(2π (a² + z²) √(2a² + z²)) with a half the side.
-TEST(CoilCage, CentreFieldIsThatOfTwoSquares) {
-  const double a = 0.6, z = 0.5 * square_pair_spacing * 1.2;
-  const double expected = 2 * 40 * 4 * vacuum_permeability_N_A2 * a * a /
-                          (2 * pi * (a * a + z * z) * std::sqrt(2 * a * a + z * z));
-  EXPECT_NEAR(cage().field_lab_T({1, 0, 0}, Vec3::Zero()).x() / expected, 1.0, 1e-12);
-}
-
-// At the named spacing the second derivative on the axis vanishes: the field is flat to fourth
-// order.
-TEST(CoilCage, NamedSpacingIsTheFlattest) {
-  const auto curvature = [](double spacing_over_side) {
-    const CoilPair pair{1.0, spacing_over_side, 1};
-    const CoilCage c{{pair, pair, pair}};
-    const auto field = [&](double x) { return c.field_lab_T({1, 0, 0}, {x, 0, 0}).x(); };
-    return (field(0.01) - 2 * field(0) + field(-0.01)) / field(0) / 1e-4;
-  };
-  EXPECT_LT(std::abs(curvature(square_pair_spacing)), 3e-3);
-  EXPECT_GT(std::abs(curvature(1.05 * square_pair_spacing)), 0.05);
-  EXPECT_LT(cage().nonuniformity(0.2), 0.01);
-  EXPECT_GT(cage().nonuniformity(0.6), cage().nonuniformity(0.2));
 }
 
 // Kepler: the field comes back after one period only for a non-rotating Earth; over the poles of a

@@ -187,7 +187,6 @@ TEST_P(EveryDisturbance, IsFiniteAtRestUprightAndUpsideDown) {
     std::vector<Lanes> lanes(y.begin(), y.end());
     std::vector<Lanes> derivatives(y.size() * DualLanes::block, Lanes(0.0));
     Dynamics::Block block;
-    block.parameter.fill(-1);
     for (int k = 0; k < DualLanes::block; ++k) block.state[k] = k;
     dynamics.derivatives(Lanes(17.3), model.schedule.at(17.3), lanes.data(), block,
                          derivatives.data());
@@ -211,8 +210,6 @@ std::vector<double> exact_column(const Dynamics& dynamics, double time_s,
                                  const std::vector<double>& y, int component, int parameter) {
   const std::vector<Lanes> lanes(y.begin(), y.end());
   Dynamics::Block block;
-  block.state.fill(-1);
-  block.parameter.fill(-1);
   block.state[0] = component;
   block.parameter[0] = parameter;
   std::vector<Lanes> all(y.size() * DualLanes::block, Lanes(0.0));

@@ -4,15 +4,17 @@
 #include <set>
 #include <string>
 
-#include "attitude/camera/keys.h"
+#include "attitude/camera/study.h"
 #include "attitude/disturbances/kind.h"
 #include "attitude/environment/environment.h"
-#include "attitude/filtering/keys.h"
+#include "attitude/filtering/study.h"
 #include "attitude/model/platform.h"
 #include "attitude/propagation/run.h"
-#include "attitude/recordings/keys.h"
-#include "attitude/studies/keys.h"
+#include "attitude/recordings/sensors.h"
+#include "attitude/studies/balance.h"
+#include "attitude/studies/budget.h"
 #include "diagnosis/light/keys.h"
+#include "diagnosis/light/model/lab.h"
 #include "diagnosis/light/module/design.h"
 #include "scenes/experiment/keys.h"
 #include "tools/coupling/light_model.h"

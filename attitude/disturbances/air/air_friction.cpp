@@ -21,15 +21,9 @@ struct AirFriction final : TorqueLaw<AirFriction> {
   }
 };
 
-PlacedParameters coefficient(const Settings& settings, const Environment& environment) {
-  if (!settings.has("part")) return scalar_parameter(settings, braking);
-  const Air air{environment.air_density_kg_m3, environment.air_viscosity_Pa_s};
-  const double k = air_coefficients(read_air_parts(settings.tables("part")), air).friction_N_m_s1_5;
-  return fixed_parameter(braking.name, {&k, 1});
-}
-
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
-  return make_disturbance<AirFriction>({coefficient(settings, context.environment)});
+  return make_disturbance<AirFriction>({coefficient_of_air(settings, context.environment, braking,
+                                                           &AirCoefficients::friction_N_m_s1_5)});
 }
 
 }  // namespace

@@ -32,18 +32,12 @@ struct AxisDrag final : TorqueLaw<AxisDrag> {
   }
 };
 
-PlacedParameters coefficient(const Settings& settings, const Environment& environment) {
-  if (!settings.has("part")) return scalar_parameter(settings, braking);
-  const Air air{environment.air_density_kg_m3, environment.air_viscosity_Pa_s};
-  const double k = air_coefficients(read_air_parts(settings.tables("part")), air).form_N_m_s2;
-  return fixed_parameter(braking.name, {&k, 1});
-}
-
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   if (settings.has(braking.name) && count_as_written(settings, braking.name) > 0) {
     return make_disturbance<AxisDrag>({vector_parameter(settings, braking_by_axis)});
   }
-  return make_disturbance<AirPressureDrag>({coefficient(settings, context.environment)});
+  return make_disturbance<AirPressureDrag>(
+      {coefficient_of_air(settings, context.environment, braking, &AirCoefficients::form_N_m_s2)});
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "attitude/model/platform.h"
+#include "attitude/model/disturbance.h"
 #include "core/product.h"
 #include "core/settings/typed_keys.h"
 
@@ -92,5 +92,10 @@ Table air_table(const std::vector<AirPart>& parts, const Air& air, double rate_r
 
 // [[disturbance.part]] as read_air_parts() reads it.
 Key air_parts_key();
+
+// The coefficient of a disturbance: the user's, or where there are parts, `of` their sum in the
+// environment's air.
+PlacedParameters coefficient_of_air(const Settings& settings, const Environment& environment,
+                                    const ScalarKey& key, double AirCoefficients::*of);
 
 }  // namespace photorque

@@ -16,16 +16,12 @@ struct RoomDraft final : TorqueLaw<RoomDraft> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<RoomDraft>({vector_parameter(settings, torque_lab)});
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "room_draft",
           .summary = "a steady draught: a torque constant in the lab",
-          .read = read,
+          .read = read_law<RoomDraft, Stage::torque, torque_lab>,
           .screening = {.parametrisations =
                             {{"a steady draught exerts a torque that is constant in the laboratory",
                               {EffectKey::vector(torque_lab.name, 5e-6)}}},

@@ -16,16 +16,12 @@ struct TurbineTorque final : TorqueLaw<TurbineTorque> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<TurbineTorque>({scalar_parameter(settings, torque_up)});
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "turbine_torque",
           .summary = "swirling exhaust of the bearing turns the platform about the vertical",
-          .read = read,
+          .read = read_law<TurbineTorque, Stage::torque, torque_up>,
           .screening = {.parametrisations = {{"the bearing's exhaust drives the platform about the "
                                               "vertical with a constant torque",
                                               {EffectKey::number(torque_up.name, 5e-6)}}},

@@ -1,7 +1,6 @@
-// Currents as magnets: their dipole, their field, and cages of coils. Source: eq. 26–28.
+// Currents as magnets (eq. 26–28), and the field along an orbit that a cage applies.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <span>
 #include <vector>
@@ -33,38 +32,6 @@ Vec3 dipole_A_m2(std::span<const CurrentLoop> loops);
 // polygon, at least three).
 std::vector<CurrentLoop> read_current_loops(const std::vector<Settings>& loops);
 std::vector<Key> current_loop_keys();
-
-// Field of a current that flows along a straight wire from `from_m` to `to_m` [T]; a closed path of
-// such wires is physical, one alone is not. Singular on the wire.
-Vec3 straight_wire_field_T(const Vec3& from_m, const Vec3& to_m, double current_A,
-                           const Vec3& at_m);
-
-// Field of a closed polygon [T].
-Vec3 polygon_field_T(std::span<const Vec3> corners_m, double current_A, const Vec3& at_m);
-
-// A Helmholtz cage: three pairs of square coils around the platform, and the required field. The
-// fields are those of straight wires, exact everywhere off the wires.
-
-// Two equal square coils about a lab axis through the centre, one on each side of it.
-struct CoilPair {
-  double side_m = 0.0;     // > 0
-  double spacing_m = 0.0;  // between the coils; most uniform at square_pair_spacing · side
-  double turns = 1.0;      // of one coil
-};
-// Spacing over side at which the second derivative of the field on the axis vanishes.
-inline constexpr double square_pair_spacing = 0.544506;
-
-struct CoilCage {
-  std::array<CoilPair, 3> pairs;  // about lab x, y and z
-
-  // Field of all coils at a point of the lab [T], with these currents in the three pairs.
-  Vec3 field_lab_T(const Vec3& currents_A, const Vec3& at_lab_m) const;
-  // Currents that make this field at the centre [A].
-  Vec3 currents_A(const Vec3& field_lab_T) const;
-  // Largest deviation of the field from that at the centre over the corners and faces of a cube of
-  // this edge, relative, for the worst of the three pairs: what a platform of this size feels.
-  double nonuniformity(double edge_m) const;
-};
 
 // A circular orbit about the Earth's centre, in inertial axes whose z is the Earth's.
 struct CircularOrbit {

@@ -22,16 +22,12 @@ struct EddyDamping final : TorqueLaw<EddyDamping> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<EddyDamping>({scalar_parameter(settings, damping)});
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "eddy_damping",
           .summary = "eddy currents brake a rotation across the ambient field",
-          .read = read,
+          .read = read_law<EddyDamping, Stage::torque, damping>,
           .screening = {.parametrisations =
                             {{"eddy currents brake rotation across the ambient magnetic field",
                               {EffectKey::not_negative(damping.name, 2e4)}}},

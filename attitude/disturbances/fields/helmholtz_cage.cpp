@@ -8,8 +8,7 @@
 //     phase_deg (0), greenwich_angle_deg (0), interval_s (20)}: IGRF along a circular orbit, the
 //     lab axes standing for inertial ones (coil_cage.h).
 // gain_error (default 0): the coils give 1 + gain_error of the difference to the environment's
-// field. The field is assumed to be uniform over the platform; CoilCage::nonuniformity() returns
-// the deviation.
+// field. The field is assumed to be uniform over the platform.
 #include "attitude/disturbances/fields/coil_cage.h"
 #include "attitude/disturbances/kind.h"
 #include "core/text/parse.h"

@@ -125,11 +125,7 @@ class Orbit final : public LawOf<Orbit<Path>> {
 
 std::optional<SunPath> read_sun_path(const Settings& settings, const DisturbanceContext& context) {
   if (!settings.has(key::sun_direction)) return context.environment.sun;
-  const Vec3 direction = settings.get(key::sun_direction);
-  if (!(direction.norm() > 0.0)) {
-    throw settings.error(key::sun_direction, "a zero vector", "a direction");
-  }
-  return SunPath::fixed(direction.normalized());
+  return SunPath::fixed(direction_of(settings, key::sun_direction).normalized());
 }
 
 Disturbance read_circle(const Settings& settings, const DisturbanceContext& context) {

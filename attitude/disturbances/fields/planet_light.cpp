@@ -132,11 +132,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   if (settings.has(key::date_year)) {
     options.season = season_cosine(settings.get(key::date_year));
   }
-  options.to_sun = settings.get(key::sun_direction);
-  if (!(options.to_sun.norm() > 0.0)) {
-    throw settings.error(key::sun_direction, "a zero vector", "a direction");
-  }
-  options.to_sun.normalize();
+  options.to_sun = direction_of(settings, key::sun_direction).normalized();
   options.irradiance_W_m2 = settings.get(key::irradiance);
   options.table_W_m2 = settings.get(key::table_irradiance);
   std::optional<TorqueSurface> infrared;

@@ -66,22 +66,12 @@ constexpr Vec3Key sun_direction_lab(
     {.optional = true});
 }  // namespace key
 
-// Converts lanes of values to the type of the time, with its derivatives if it has any.
-Lanes moved(const Lanes&, const Lanes& value, const Lanes&) {
-  return value;
-}
-DualLanes moved(const DualLanes& time_s, const Lanes& value, const Lanes& slope) {
-  DualLanes result(value);
-  for (int k = 0; k < DualLanes::block; ++k) result.partial[k] = slope * time_s.partial[k];
-  return result;
-}
-
 // The vector from the spacecraft to the Sun [au], lab axes.
 template <class T>
 Vec3Of<T> towards_sun(const SunPath& sun, const T& time_s) {
   const auto [value, slope] = sun.at(values(time_s));
-  return {moved(time_s, value[0], slope[0]), moved(time_s, value[1], slope[1]),
-          moved(time_s, value[2], slope[2])};
+  return {chain(time_s, value[0], slope[0]), chain(time_s, value[1], slope[1]),
+          chain(time_s, value[2], slope[2])};
 }
 
 class SunPressure final : public TorqueLaw<SunPressure> {
@@ -123,10 +113,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   const TorqueSurface surface(read_wrench_table(file_of(settings, key::table)));
   Vec3 sun_direction_lab = Vec3::UnitZ();
   if (surface.angles() == WrenchTable::Angles::azimuth_elevation) {
-    sun_direction_lab = settings.get(key::sun_direction_lab);
-    if (!(sun_direction_lab.norm() > 0.0)) {
-      throw settings.error(key::sun_direction_lab, "a zero vector", "a direction");
-    }
+    sun_direction_lab = direction_of(settings, key::sun_direction_lab);
   }
   return make_disturbance<RadiationPressure>({scalar_parameter(settings, factor)}, Stage::torque,
                                              {}, surface, sun_direction_lab.normalized());

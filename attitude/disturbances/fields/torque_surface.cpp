@@ -14,13 +14,9 @@ namespace photorque {
 
 namespace {
 
-struct Cubic {
-  Vec3 value, slope;
-};
-
 // The cubic through f[1] and f[2] whose slopes there are those of the parabolas through three
 // neighbours, at x[1] ≤ at ≤ x[2].
-Cubic cubic_between(const std::array<double, 4>& x, const std::array<Vec3, 4>& f, double at) {
+Vec3 cubic_between(const std::array<double, 4>& x, const std::array<Vec3, 4>& f, double at) {
   const auto slope_at = [&](int i) -> Vec3 {
     const double before = x[i] - x[i - 1], after = x[i + 1] - x[i];
     return (after * (f[i] - f[i - 1]) / before + before * (f[i + 1] - f[i]) / after) /
@@ -29,8 +25,7 @@ Cubic cubic_between(const std::array<double, 4>& x, const std::array<Vec3, 4>& f
   const double h = x[2] - x[1], t = (at - x[1]) / h;
   const Vec3 from = h * slope_at(1), to = h * slope_at(2), rise = f[2] - f[1];
   const Vec3 bend = 3.0 * rise - 2.0 * from - to, twist = from + to - 2.0 * rise;
-  return {f[1] + t * (from + t * (bend + t * twist)),
-          (from + t * (2.0 * bend + 3.0 * t * twist)) / h};
+  return f[1] + t * (from + t * (bend + t * twist));
 }
 
 // Index of the interval that holds x, which may lie up to one interval outside: then `x` becomes
@@ -94,9 +89,8 @@ TorqueSurface::Patch TorqueSurface::fit_patch(size_t polar, size_t around) const
   for (size_t j = 0; j < 4; ++j) {
     for (size_t i = 0; i < 4; ++i) {
       values[4 * j + i] =
-          through_nodes({polar_rad + height_rad * static_cast<double>(j) / 3.0,
-                         table_.around_rad[around] + width_rad * static_cast<double>(i) / 3.0})
-              .torque_body_N_m;
+          through_nodes(polar_rad + height_rad * static_cast<double>(j) / 3.0,
+                        table_.around_rad[around] + width_rad * static_cast<double>(i) / 3.0);
     }
   }
   patch.fill(Vec3::Zero());
@@ -153,7 +147,7 @@ TorqueSurface::Sample TorqueSurface::at(const TableAngles& angles) const {
 }
 
 // One row of nodes of equal polar angle, interpolated around.
-TorqueSurface::Row TorqueSurface::row_at(size_t polar, double around_rad) const {
+Vec3 TorqueSurface::row_at(size_t polar, double around_rad) const {
   const std::vector<double>& nodes = table_.around_rad;
   const auto n = static_cast<std::ptrdiff_t>(nodes.size());
   std::ptrdiff_t low = 0;
@@ -181,8 +175,7 @@ TorqueSurface::Row TorqueSurface::row_at(size_t polar, double around_rad) const 
              table_.torque_body_N_m[table_.node(inner, polar)];
     }
   }
-  const Cubic cubic = cubic_between(x, f, around_rad);
-  return {cubic.value, cubic.slope};
+  return cubic_between(x, f, around_rad);
 }
 
 bool TorqueSurface::beyond_is_pole(bool below) const {
@@ -194,38 +187,29 @@ bool TorqueSurface::beyond_is_pole(bool below) const {
 
 // The row beyond the first (last): across a pole lie the angles of the opposite side; elsewhere the
 // edge is extended linearly.
-TorqueSurface::Row TorqueSurface::ghost_row(bool below, double around_rad,
-                                            double* polar_rad) const {
+Vec3 TorqueSurface::ghost_row(bool below, double around_rad, double* polar_rad) const {
   const std::vector<double>& nodes = table_.polar_rad;
   const size_t edge = below ? 0 : nodes.size() - 1, inner = below ? 1 : nodes.size() - 2;
   *polar_rad = 2.0 * nodes[edge] - nodes[inner];
   if (beyond_is_pole(below)) return row_at(inner, around_rad + pi);
-  const Row at_edge = row_at(edge, around_rad), at_inner = row_at(inner, around_rad);
-  return {2.0 * at_edge.value - at_inner.value, 2.0 * at_edge.slope - at_inner.slope};
+  return 2.0 * row_at(edge, around_rad) - row_at(inner, around_rad);
 }
 
-TorqueSurface::Sample TorqueSurface::through_nodes(const TableAngles& angles) const {
+Vec3 TorqueSurface::through_nodes(double polar_rad, double around_rad) const {
   const std::vector<double>& nodes = table_.polar_rad;
-  double polar_rad = angles.polar_rad;
   const size_t low = interval(nodes, polar_rad, "tilt or elevation");
   std::array<double, 4> x{};
-  std::array<Vec3, 4> value, slope;
+  std::array<Vec3, 4> value;
   for (size_t k = 0; k < 4; ++k) {
     const bool below = low + k == 0, above = low + k > nodes.size();
-    Row row;
     if (below || above) {
-      row = ghost_row(below, angles.around_rad, &x[k]);
+      value[k] = ghost_row(below, around_rad, &x[k]);
     } else {
       x[k] = nodes[low + k - 1];
-      row = row_at(low + k - 1, angles.around_rad);
+      value[k] = row_at(low + k - 1, around_rad);
     }
-    value[k] = row.value;
-    slope[k] = row.slope;
   }
-  const bool held = polar_rad != angles.polar_rad;
-  const Cubic by_polar = cubic_between(x, value, polar_rad);
-  const Cubic by_around = cubic_between(x, slope, polar_rad);
-  return {by_polar.value, held ? Vec3::Zero() : by_polar.slope, by_around.value};
+  return cubic_between(x, value, polar_rad);
 }
 
 namespace {

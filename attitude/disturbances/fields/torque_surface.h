@@ -10,16 +10,6 @@
 
 namespace photorque {
 
-// f(x, y) with its derivatives, from lanes of numbers.
-inline Lanes combine_slopes(const Lanes&, const Lanes&, const Lanes& f, const Lanes&,
-                            const Lanes&) {
-  return f;
-}
-inline DualLanes combine_slopes(const DualLanes& x, const DualLanes& y, const Lanes& f,
-                                const Lanes& by_x, const Lanes& by_y) {
-  return DualLanes::chain(x, y, f, by_x, by_y);
-}
-
 // Cubic Hermite interpolation of a table's torque in both angles: continuous with its slopes, exact
 // at the nodes and for a torque linear in the angles. (core's wrench_at() is bilinear: its kinks
 // would shorten every step of an integrator.)
@@ -40,18 +30,15 @@ class TorqueSurface {
   WrenchTable::Angles angles() const { return table_.angles; }
 
  private:
-  struct Row {
-    Vec3 value, slope;
-  };
   // Coefficients of one cell between nodes: Σ c[4 j + i] s^j t^i, with s and t the position within
   // the cell (0 to 1) along the polar angle and the azimuth.
   using Patch = std::array<Vec3, 16>;
   Patch fit_patch(size_t polar, size_t around) const;
   double width_around_rad(size_t around) const;
   size_t cell_around(double& around_rad, bool* held) const;
-  Sample through_nodes(const TableAngles& angles) const;
-  Row row_at(size_t polar, double around_rad) const;
-  Row ghost_row(bool below, double around_rad, double* polar_rad) const;
+  Vec3 through_nodes(double polar_rad, double around_rad) const;
+  Vec3 row_at(size_t polar, double around_rad) const;
+  Vec3 ghost_row(bool below, double around_rad, double* polar_rad) const;
   bool beyond_is_pole(bool below) const;
 
   WrenchTable table_;
@@ -79,7 +66,7 @@ Vec3Of<T> look_up(const TorqueSurface& surface, const T& polar_rad, const T& aro
   }
   Vec3Of<T> torque;
   for (int k = 0; k < 3; ++k) {
-    torque[k] = combine_slopes(polar_rad, around_rad, value[k], by_polar[k], by_around[k]);
+    torque[k] = chain(polar_rad, around_rad, value[k], by_polar[k], by_around[k]);
   }
   return torque;
 }

@@ -13,17 +13,12 @@ struct AttitudeLatency final : LawOf<AttitudeLatency> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<AttitudeLatency>({scalar_parameter(settings, latency)},
-                                           Stage::measurement);
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "attitude_latency",
           .summary = "the camera reports a past attitude",
-          .read = read,
+          .read = read_law<AttitudeLatency, Stage::measurement, latency>,
           .screening = {.parametrisations = {{"the camera reports a past attitude",
                                               {EffectKey::not_negative(latency.name, 0.1)}}}},
           .budget = {.reason_against = "an error of an instrument: no torque"},

@@ -15,17 +15,12 @@ struct CameraMisalignment final : LawOf<CameraMisalignment> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<CameraMisalignment>({vector_parameter(settings, turn)},
-                                              Stage::measurement);
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "camera_misalignment",
           .summary = "the camera's target is mounted at a small angle to the body axes",
-          .read = read,
+          .read = read_law<CameraMisalignment, Stage::measurement, turn>,
           .screening = {.parametrisations =
                             {{"the camera's target is mounted at a small angle to the body axes",
                               {EffectKey::vector(turn.name, 5e-3)}}}},

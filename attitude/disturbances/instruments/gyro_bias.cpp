@@ -13,17 +13,13 @@ struct GyroBias final : LawOf<GyroBias> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<GyroBias>({vector_parameter(settings, bias)}, Stage::measurement);
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {
       .name = "gyro_bias",
       .summary = "the gyro reads a constant rate at rest",
-      .read = read,
+      .read = read_law<GyroBias, Stage::measurement, bias>,
       .screening = {.parametrisations =
                         {{"the gyro reads a constant rate at rest, beyond the uncertainty stated",
                           {EffectKey::vector(bias.name, 5e-3)}}},

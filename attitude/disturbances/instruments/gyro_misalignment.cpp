@@ -15,17 +15,13 @@ struct GyroMisalignment final : LawOf<GyroMisalignment> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<GyroMisalignment>({vector_parameter(settings, turn)}, Stage::measurement);
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {
       .name = "gyro_misalignment",
       .summary = "the gyro is mounted at a small angle to the body axes",
-      .read = read,
+      .read = read_law<GyroMisalignment, Stage::measurement, turn>,
       .screening = {.parametrisations = {{"the gyro is mounted at a small angle to the body axes",
                                           {EffectKey::vector(turn.name, 0.01)}}}},
       .budget = {.reason_against = "an error of an instrument: no torque"},

@@ -16,17 +16,13 @@ struct GyroScale final : LawOf<GyroScale> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<GyroScale>({vector_parameter(settings, scale)}, Stage::measurement);
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {
       .name = "gyro_scale",
       .summary = "the gyro's axes read too much or too little, in proportion to the rate",
-      .read = read,
+      .read = read_law<GyroScale, Stage::measurement, scale>,
       .screening = {.parametrisations =
                         {{"the gyro's axes read too much or too little in proportion to the rate",
                           {EffectKey::vector(scale.name, 0.02)}}}},

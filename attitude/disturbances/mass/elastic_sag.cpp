@@ -56,9 +56,8 @@ struct MatrixSag final : LawOf<MatrixSag> {
 Mat3 read_compliance_s2(const Settings& settings, double platform_mass_kg) {
   if (settings.has(key::dumbbell)) {
     const Settings s = settings.get(key::dumbbell);
-    const DumbbellArms arms{s.get(key::axis), s.get(key::length), s.get(key::end_mass),
+    const DumbbellArms arms{direction_of(s, key::axis), s.get(key::length), s.get(key::end_mass),
                             s.get(key::beam_mass), s.get(key::bending_stiffness)};
-    if (!(arms.axis_body.norm() > 0.0)) throw s.error(key::axis, "a zero vector", "a direction");
     return sag_compliance_s2(arms, platform_mass_kg);
   }
   if (settings.has(key::tabletop)) {

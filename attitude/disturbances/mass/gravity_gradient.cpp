@@ -14,16 +14,12 @@ struct GravityGradient final : TorqueLaw<GravityGradient> {
   }
 };
 
-Disturbance read(const Settings&, const DisturbanceContext&) {
-  return make_disturbance<GravityGradient>({});
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "gravity_gradient",
           .summary = "gravity decreases with height and turns the long axis towards the vertical",
-          .read = read,
+          .read = read_law<GravityGradient, Stage::torque>,
           .screening = {
               .parametrisations = {
                   {"gravity weakens with height and turns the longest axis towards the vertical",

@@ -6,18 +6,12 @@
 namespace photorque::kinds::gravity_tilt {
 namespace {
 
-constexpr ScalarKey about_x("tilt_rad");
-
-namespace key {
-constexpr NumbersKey tilt("tilt_rad", {}, "[about x, about y], lab axes: turns lab −z into gravity",
-                          {.has_error = true, .size = 2});
-}  // namespace key
-constexpr ScalarKey about_y(about_x.name, about_x.end());
+constexpr KeyOf<2> tilt("tilt_rad", "[about x, about y], lab axes: turns lab −z into gravity");
 
 struct GravityTilt final : LawOf<GravityTilt> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
-    const Vec3Of<T> turn(own[about_x], own[about_y], T(0.0));
+    const Vec3Of<T> turn(own.element(tilt, 0), own.element(tilt, 1), T(0.0));
     const T angle = length(turn);
     const Vec3Of<T> axis = turn / angle;
     const T cosine = cos(angle), sine = sin(angle);
@@ -28,23 +22,18 @@ struct GravityTilt final : LawOf<GravityTilt> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<GravityTilt>({array_parameter(settings, about_x.name, 2)},
-                                       Stage::conditions);
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "gravity_tilt",
           .summary = "the camera that defines the vertical is not level",
-          .read = read,
+          .read = read_law<GravityTilt, Stage::conditions, tilt>,
           .screening =
               {.parametrisations =
                    {{"gravity does not point along the camera's vertical: the camera is not level",
-                     {{about_x.name, {0.0, 0.0}, 5e-3}}}},
+                     {{tilt.name, {0.0, 0.0}, 5e-3}}}},
                .needs = Requirement::gravity},
-          .keys = {key::tilt}};
+          .keys = {tilt}};
 }
 
 }  // namespace photorque::kinds::gravity_tilt

@@ -6,15 +6,9 @@
 namespace photorque::kinds::inertia_error {
 namespace {
 
-// xx, yy, zz, xy, xz, yz.
-constexpr KeyOf<6> delta{"delta_kg_m2"};
-
-namespace key {
-constexpr NumbersKey delta(
-    "delta_kg_m2", {},
-    "[xx, yy, zz, xy, xz, yz], about the centre of rotation; the sum must be an inertia tensor",
-    {.has_error = true, .size = 6});
-}  // namespace key
+constexpr KeyOf<6> delta(
+    "delta_kg_m2",
+    "[xx, yy, zz, xy, xz, yz], about the centre of rotation; the sum must be an inertia tensor");
 
 template <class T>
 Mat3Of<T> symmetric(const T& xx, const T& yy, const T& zz, const T& xy, const T& xz, const T& yz) {
@@ -40,13 +34,12 @@ Mat3 inertia_change_kg_m2(const Disturbance& error) {
 }
 
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
-  const std::string key = delta.name;
-  const PlacedParameters six = array_parameter(settings, key, 6);
+  const PlacedParameters six = parameters_of(settings, delta);
   const Mat3 delta_kg_m2 = as_matrix(six.parameters);
   // [platform] was checked alone.
   if (!delta_kg_m2.isZero()) {
-    check_inertia(context.platform.inertia_kg_m2 + delta_kg_m2, settings.raw(key).where,
-                  settings.name() + "." + key + " with the platform's inertia");
+    check_inertia(context.platform.inertia_kg_m2 + delta_kg_m2, settings.raw(delta).where,
+                  settings.name() + "." + delta.name + " with the platform's inertia");
   }
   return make_disturbance<InertiaError>({six}, Stage::conditions);
 }
@@ -64,7 +57,7 @@ DisturbanceKind kind() {
                                        .scale = 0.03,
                                        .times_inertia = true}}}},
                .inertia_change_kg_m2 = inertia_change_kg_m2},
-          .keys = {key::delta}};
+          .keys = {delta}};
 }
 
 }  // namespace photorque::kinds::inertia_error

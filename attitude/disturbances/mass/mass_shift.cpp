@@ -26,18 +26,13 @@ struct MassShift final : LawOf<MassShift> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<MassShift>(
-      {scalar_parameter(settings, start), vector_parameter(settings, offset)}, Stage::mass);
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {
       .name = "mass_shift",
       .summary = "the centre of mass jumps at one instant",
-      .read = read,
+      .read = read_law<MassShift, Stage::mass, start, offset>,
       .screening =
           {.parametrisations =
                {{"a part of the platform moved at one instant and took the centre of mass with it",

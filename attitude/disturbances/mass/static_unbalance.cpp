@@ -18,16 +18,12 @@ struct StaticUnbalance final : LawOf<StaticUnbalance> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<StaticUnbalance>({vector_parameter(settings, offset)}, Stage::mass);
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "static_unbalance",
           .summary = "the centre of mass does not lie in the centre of rotation",
-          .read = read,
+          .read = read_law<StaticUnbalance, Stage::mass, offset>,
           .screening =
               {.parametrisations =
                    {{"the centre of mass lies elsewhere than stated, beyond the uncertainty stated",

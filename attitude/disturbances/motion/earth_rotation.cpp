@@ -22,17 +22,13 @@ struct EarthRotation final : LawOf<EarthRotation> {
   }
 };
 
-Disturbance read(const Settings&, const DisturbanceContext&) {
-  return make_disturbance<EarthRotation>({}, Stage::mass);
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {
       .name = "earth_rotation",
       .summary = "the laboratory itself turns once a day",
-      .read = read,
+      .read = read_law<EarthRotation, Stage::mass>,
       .screening = {.parametrisations =
                         {{"the laboratory turns with the Earth: the platform and the gyro feel it",
                           {}}},

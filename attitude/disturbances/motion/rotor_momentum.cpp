@@ -16,16 +16,12 @@ struct RotorMomentum final : TorqueLaw<RotorMomentum> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<RotorMomentum>({vector_parameter(settings, momentum)});
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "rotor_momentum",
           .summary = "the angular momentum of a spinning part couples the axes",
-          .read = read,
+          .read = read_law<RotorMomentum, Stage::torque, momentum>,
           .screening =
               {.parametrisations = {{"a spinning part on board couples the axes like a gyroscope",
                                      {EffectKey::vector(momentum.name, 5e-3)}}}},

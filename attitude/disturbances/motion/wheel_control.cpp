@@ -118,8 +118,7 @@ class WheelControl final : public LawOf<WheelControl> {
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   WheelSettings wheels;
   const double angle_rad = settings.get(key::target_angle);
-  const Vec3 axis = settings.get(key::target_axis);
-  if (!(axis.norm() > 0.0)) throw settings.error(key::target_axis, "a zero vector", "a direction");
+  const Vec3 axis = direction_of(settings, key::target_axis);
   wheels.lab_from_target = Quat(Eigen::AngleAxisd(angle_rad, axis.normalized()));
   wheels.target_rate_body_rad_s = settings.get(key::target_rate);
   const double min_kg_m2 = context.platform.inertia_kg_m2.diagonal().minCoeff();

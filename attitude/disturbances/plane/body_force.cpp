@@ -7,11 +7,7 @@
 namespace photorque::kinds::body_force {
 namespace {
 
-constexpr KeyOf<2> force_body{"force_N"};
-
-namespace key {
-constexpr NumbersKey force("force_N", {}, "along body x and y", {.has_error = true, .size = 2});
-}  // namespace key
+constexpr KeyOf<2> force_body("force_N", "along body x and y");
 
 struct BodyForce final : ForceLaw<BodyForce> {
   template <class T>
@@ -21,22 +17,18 @@ struct BodyForce final : ForceLaw<BodyForce> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<BodyForce>({array_parameter(settings, force_body.name, 2)});
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "body_force",
           .summary = "a constant force that turns with a sliding body",
-          .read = read,
+          .read = read_law<BodyForce, Stage::torque, force_body>,
           .screening = {.parametrisations = {{"a constant force acts that turns with the platform: "
                                               "a leaking thruster, a hose, a fan on board",
                                               {{force_body.name, {0.0, 0.0}, 1e-2}}}},
                         .needs = Requirement::plane},
           .budget = {.reason_against = "a force, not a torque"},
-          .keys = {key::force}};
+          .keys = {force_body}};
 }
 
 }  // namespace photorque::kinds::body_force

@@ -15,16 +15,12 @@ struct SlidingAirDrag final : ForceLaw<SlidingAirDrag> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<SlidingAirDrag>({scalar_parameter(settings, coefficient)});
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "sliding_air_drag",
           .summary = "form drag of a body that slides through air, by the square of the speed",
-          .read = read,
+          .read = read_law<SlidingAirDrag, Stage::torque, coefficient>,
           .screening = {.parametrisations = {{"air drags on a sliding body, by the square of its "
                                               "speed",
                                               {EffectKey::not_negative(coefficient.name, 1e-2)}}},

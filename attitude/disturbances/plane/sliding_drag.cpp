@@ -15,17 +15,13 @@ struct SlidingDrag final : ForceLaw<SlidingDrag> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<SlidingDrag>({scalar_parameter(settings, coefficient)});
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {
       .name = "sliding_drag",
       .summary = "viscous drag of a sliding body, linear in the speed",
-      .read = read,
+      .read = read_law<SlidingDrag, Stage::torque, coefficient>,
       .screening = {.parametrisations = {{"the air film drags on a sliding body, in proportion to "
                                           "its speed",
                                           {EffectKey::not_negative(coefficient.name, 1e-2)}}},

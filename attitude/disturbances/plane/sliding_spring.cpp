@@ -7,13 +7,8 @@ namespace photorque::kinds::sliding_spring {
 namespace {
 
 constexpr ScalarKey stiffness("stiffness_N_per_m", Range::not_negative(), "k in F = f − k r");
-
-namespace key {
-constexpr NumbersKey pull("pull_N", {},
-                          "f, the force at the lab's origin; the equilibrium is at f/k",
-                          {.has_error = true, .size = 2});
-}  // namespace key
-constexpr KeyOf<2> pull{"pull_N", stiffness.end()};
+constexpr KeyOf<2> pull("pull_N", "f, the force at the lab's origin; the equilibrium is at f/k",
+                        stiffness.end());
 
 struct SlidingSpring final : ForceLaw<SlidingSpring> {
   template <class T>
@@ -24,17 +19,12 @@ struct SlidingSpring final : ForceLaw<SlidingSpring> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<SlidingSpring>(
-      {scalar_parameter(settings, stiffness), array_parameter(settings, pull.name, 2, pull.first)});
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "sliding_spring",
           .summary = "a spring or cable pulls a sliding body back to one place",
-          .read = read,
+          .read = read_law<SlidingSpring, Stage::torque, stiffness, pull>,
           .screening = {.parametrisations = {{"a spring or cable pulls a sliding body back to one "
                                               "place",
                                               {EffectKey::not_negative(stiffness.name, 1e-2),
@@ -42,7 +32,7 @@ DisturbanceKind kind() {
                         .needs = Requirement::plane,
                         .steady = true},
           .budget = {.reason_against = "a force, not a torque"},
-          .keys = {stiffness, key::pull}};
+          .keys = {stiffness, pull}};
 }
 
 }  // namespace photorque::kinds::sliding_spring

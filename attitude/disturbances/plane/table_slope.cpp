@@ -7,12 +7,7 @@
 namespace photorque::kinds::table_slope {
 namespace {
 
-constexpr KeyOf<2> slope{"slope_rad"};
-
-namespace key {
-constexpr NumbersKey slope("slope_rad", {}, "slope of the table along lab x and y; small",
-                           {.has_error = true, .size = 2});
-}  // namespace key
+constexpr KeyOf<2> slope("slope_rad", "slope of the table along lab x and y; small");
 
 struct TableSlope final : ForceLaw<TableSlope> {
   template <class T>
@@ -22,23 +17,19 @@ struct TableSlope final : ForceLaw<TableSlope> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<TableSlope>({array_parameter(settings, slope.name, 2)});
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "table_slope",
           .summary = "the table is not level: a constant acceleration",
-          .read = read,
+          .read = read_law<TableSlope, Stage::torque, slope>,
           .screening = {.parametrisations = {{"the table is not level, or a steady draught or "
                                               "another constant force acts, which looks the same",
                                               {{slope.name, {0.0, 0.0}, 1e-3}}}},
                         .needs = Requirement::plane,
                         .steady = true},
           .budget = {.reason_against = "a force, not a torque"},
-          .keys = {key::slope}};
+          .keys = {slope}};
 }
 
 }  // namespace photorque::kinds::table_slope

@@ -26,16 +26,12 @@ struct ThrustSaturation final : ForceLaw<ThrustSaturation> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<ThrustSaturation>({scalar_parameter(settings, loss)});
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "thrust_saturation",
           .summary = "thrusters give less than commanded, increasingly so for large commands",
-          .read = read,
+          .read = read_law<ThrustSaturation, Stage::torque, loss>,
           .screening = {.parametrisations = {{"the thrusters saturate: large commands are met with "
                                               "less than small ones",
                                               {EffectKey::not_negative(loss.name, 1.0)}}},

@@ -95,11 +95,6 @@ class EmpiricalTorqueLaw final : public TorqueLaw<EmpiricalTorqueLaw> {
     });
   }
 
-  static Lanes with_slope(const Lanes&, const Lanes& value, const Lanes&) { return value; }
-  static DualLanes with_slope(const DualLanes& x, const Lanes& value, const Lanes& slope) {
-    return DualLanes::chain(x, value, slope);
-  }
-
   template <class T, class Visit>
   static void each_term(const MotionFunction& f, const T* own, const EvaluationContext<T>& now,
                         const Visit& visit) {
@@ -185,7 +180,7 @@ class EmpiricalTorqueLaw final : public TorqueLaw<EmpiricalTorqueLaw> {
         value.set(lane, w.value[static_cast<size_t>(k)]);
         slope.set(lane, w.slope[static_cast<size_t>(k)]);
       }
-      visit(knot, with_slope(x, value, slope));
+      visit(knot, chain(x, value, slope));
     }
   }
 

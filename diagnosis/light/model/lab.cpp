@@ -7,12 +7,29 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/quadrature.h"
+#include "core/settings/typed_keys.h"
 #include "diagnosis/light/model/lamp_table.h"
 #include "photovoltaics/cell/response.h"
 #include "scenes/effects/stated.h"
 
 namespace photorque {
 namespace {
+
+// Of [sensors].
+namespace noise_key {
+constexpr NumberKey irradiance("noise_W_m2", 0.0, Range::not_negative(),
+                               "standard deviation of a reading");
+constexpr NumberKey relative("relative_noise", 0.0, Range::not_negative(),
+                             "standard deviation as a fraction of the reading, added");
+constexpr TableKey of_scans("irradiance", "instrument of scans of the light");
+constexpr NumberKey voltage("voltage_noise_V", 0.0, Range::not_negative(), "of a reading");
+constexpr NumberKey current("current_noise_A", 0.0, Range::not_negative(), "of a reading");
+constexpr NumberKey tracker_step(
+    "tracker_step_V", Range::not_negative(),
+    "voltage step of the tracker; its recorded voltage is then an input of the model",
+    {.usually = "the tracker is assumed to hold the highest maximum"});
+constexpr TableKey of_array("array", "instruments of the array");
+}  // namespace noise_key
 
 InputLocation place_of(const Experiment& experiment) {
   return {experiment.file.path.string()};
@@ -36,6 +53,11 @@ std::shared_ptr<LampSet> lamp_set(const Experiment& experiment, double scale) {
 }
 
 }  // namespace
+
+std::vector<Key> light_sensor_keys() {
+  using namespace noise_key;
+  return {of_scans.of({irradiance, relative}), of_array.of({voltage, current, tracker_step})};
+}
 
 LightLab::LightLab(const Experiment& experiment)
     : experiment_(experiment), parts_(light_parts(experiment)) {
@@ -88,19 +110,17 @@ Vec3 LightLab::point_body_m(double u_m, double v_m) const {
 
 void LightLab::read_noise() {
   for (const Settings& sensors : experiment_.file.others("sensors")) {
-    if (sensors.has("irradiance")) {
-      const Settings s = sensors.table("irradiance");
-      noise_.irradiance_W_m2 = s.number_or("noise_W_m2", 0.0, Range::not_negative());
-      noise_.relative = s.number_or("relative_noise", 0.0, Range::not_negative());
+    if (sensors.has(noise_key::of_scans)) {
+      const Settings s = sensors.get(noise_key::of_scans);
+      noise_.irradiance_W_m2 = s.get(noise_key::irradiance);
+      noise_.relative = s.get(noise_key::relative);
       s.finish();
     }
-    if (sensors.has("array")) {
-      const Settings s = sensors.table("array");
-      noise_.voltage_V = s.number_or("voltage_noise_V", 0.0, Range::not_negative());
-      noise_.current_A = s.number_or("current_noise_A", 0.0, Range::not_negative());
-      if (s.has("tracker_step_V")) {
-        noise_.tracker_step_V = s.number("tracker_step_V", Range::not_negative());
-      }
+    if (sensors.has(noise_key::of_array)) {
+      const Settings s = sensors.get(noise_key::of_array);
+      noise_.voltage_V = s.get(noise_key::voltage);
+      noise_.current_A = s.get(noise_key::current);
+      if (s.has(noise_key::tracker_step)) noise_.tracker_step_V = s.get(noise_key::tracker_step);
       s.finish();
     }
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/settings/keys.h"
 #include "photovoltaics/network/string.h"
 #include "raytrace/direct/disc_light.h"
 #include "scenes/effects/parts.h"
@@ -89,5 +90,8 @@ class LightLab {
   std::vector<LightCell> cells_;
   double responsivity_A_W_ = 0.0;
 };
+
+// Keys of the instruments of light and power in [sensors].
+std::vector<Key> light_sensor_keys();
 
 }  // namespace photorque

@@ -11,6 +11,7 @@
 #include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/numerics/median.h"
 #include "core/numerics/random.h"
 #include "core/numerics/steady_intervals.h"
 #include "core/settings/settings.h"
@@ -370,10 +371,7 @@ std::vector<LightRecording> sweeps_of(const LightRecording& recording) {
 
 double median_of(std::vector<double> values) {
   std::erase_if(values, [](double x) { return !std::isfinite(x); });
-  if (values.empty()) return absent;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
+  return values.empty() ? absent : upper_median(std::move(values));
 }
 
 std::optional<LightRecording::Kind> light_kind_of(const std::filesystem::path& path,

@@ -4,18 +4,12 @@
 #include <cmath>
 
 #include "core/errors.h"
+#include "core/numerics/median.h"
 
 namespace photorque {
 namespace {
 
 constexpr size_t no_cell = static_cast<size_t>(-1);
-
-// The median of some readings, which is robust to noise and one outlier.
-double middle_of(std::vector<double> values) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 template <class T>
 std::vector<T> chosen(const std::vector<T>& all, const std::vector<size_t>& rows) {
@@ -126,7 +120,7 @@ void LightRun::choose_knots() {
   constexpr size_t most_rows = 64;
   std::vector<double> intervals;
   for (size_t i = 1; i < r.rows(); ++i) intervals.push_back(r.time_s[i] - r.time_s[i - 1]);
-  const double usual_s = intervals.empty() ? 1.0 : middle_of(intervals);
+  const double usual_s = intervals.empty() ? 1.0 : upper_median(intervals);
   const auto turned = [&](size_t a, size_t b) {
     return r.lab_from_body[a].angularDistance(r.lab_from_body[b]);
   };
@@ -210,14 +204,14 @@ void LightRun::find_noise() {
   // Relative noise refers to the local median instead of each reading: otherwise the reading's
   // noise would give low readings a higher weight.
   const std::vector<double>& E = recording_.irradiance_W_m2;
-  const double floor_W_m2 = 1e-3 * middle_of(E);
+  const double floor_W_m2 = 1e-3 * upper_median(E);
   for (size_t i = 0; i < E.size(); ++i) {
     constexpr size_t reach = 3;
     std::vector<double> near;
     for (size_t j = i > reach ? i - reach : 0; j <= std::min(i + reach, E.size() - 1); ++j) {
       if (j == i || recording_.v_m[j] == recording_.v_m[i]) near.push_back(E[j]);
     }
-    const double level = middle_of(near);
+    const double level = upper_median(near);
     irradiance_sigma_.push_back(
         std::max(std::hypot(noise.irradiance_W_m2, noise.relative * level), 1e-6 * floor_W_m2));
   }
@@ -282,7 +276,6 @@ LightRun LightRun::part(const std::vector<size_t>& rows) const {
   if (is_scan()) run.irradiance_sigma_ = chosen(irradiance_sigma_, rows);
   run.voltage_scale_V_ = voltage_scale_V_;
   run.current_scale_A_ = current_scale_A_;
-  run.noise_factor_ = noise_factor_;
   run.number_ = number_;
   return run;
 }
@@ -299,14 +292,8 @@ LightRun LightRun::in(const LightLab& lab) const {
   run.irradiance_sigma_ = irradiance_sigma_;
   run.voltage_scale_V_ = voltage_scale_V_;
   run.current_scale_A_ = current_scale_A_;
-  run.noise_factor_ = noise_factor_;
   run.number_ = number_;
   return run;
-}
-
-void LightRun::scale_noise(double factor) {
-  noise_factor_ *= factor;
-  for (double& s : irradiance_sigma_) s *= factor;
 }
 
 }  // namespace photorque

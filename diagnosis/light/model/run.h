@@ -62,8 +62,6 @@ class LightRun {
   static LightFields part(const LightFields& fields, const std::vector<size_t>& rows);
   // Copies the recording and its noise to another nominal model.
   LightRun in(const LightLab& lab) const;
-  // Multiplies all noise.
-  void scale_noise(double factor);
 
   // Reuses parts of `near` with equal geometry. Light from walls is slow to compute and varies
   // little for small lamp movements: with `kept` it is reused even if the lamps move.
@@ -155,7 +153,6 @@ class LightRun {
   std::vector<size_t> cell_of_point_;      // scans: the cell that contains a row, or none
   std::vector<double> irradiance_sigma_;   // scans, per row
   int number_ = 0;
-  double noise_factor_ = 1.0;
   double voltage_scale_V_ = 1.0, current_scale_A_ = 1.0;
   std::vector<Circumstance> circumstances_;  // per output
   std::vector<size_t> sample_row_;

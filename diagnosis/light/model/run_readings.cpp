@@ -41,7 +41,7 @@ bool LightRun::is_trapped(const LightState& state, size_t row) const {
 double LightRun::chi2_at(const ArrayPoint& maximum, size_t row) const {
   const double v = (recording_.voltage_V[row] - maximum.voltage_V) / lab_->noise().voltage_V,
                i = (recording_.current_A[row] - maximum.current_A) / lab_->noise().current_A;
-  return (v * v + i * i) / (noise_factor_ * noise_factor_);
+  return v * v + i * i;
 }
 
 // The highest maximum or, if the tracker is trapped, the one nearest to the reading. (Near its
@@ -93,8 +93,7 @@ Eigen::VectorXd LightRun::residuals(const LightState& state, const std::vector<d
   }
   const auto cells = static_cast<Eigen::Index>(lab_->cells().size());
   if (slopes != nullptr) slopes->by_photocurrent.setZero(r.size(), cells);
-  const double sigma_V = noise_factor_ * lab_->noise().voltage_V,
-               sigma_A = noise_factor_ * lab_->noise().current_A;
+  const double sigma_V = lab_->noise().voltage_V, sigma_A = lab_->noise().current_A;
   std::optional<ArrayCurve> curve_of_row;
   std::vector<ArrayPoint> trace;
   size_t known = static_cast<size_t>(-1);

@@ -3,20 +3,96 @@
 #include <cmath>
 
 #include "attitude/recordings/recording.h"
+#include "core/settings/typed_keys.h"
 #include "photovoltaics/fit/rated_keys.h"
 
 namespace photorque {
 namespace {
 
+namespace module_key {
+constexpr int64_t most_cells = 10000;
+constexpr IntegerKey cells("cells_in_series", 1, most_cells, "of the module");
+constexpr IntegerKey bypass_every("bypass_every", 0, 0, most_cells,
+                                  "cells per bypass diode, at most all; 0: no diodes",
+                                  {.varies = true});
+constexpr NumberKey bypass_drop("bypass_drop_V", 0.5, Range::positive(), "of a bypass diode");
+constexpr OtherKey reference_curve("reference_curve", Key::a_text | Key::an_array,
+                                   "curves of the module as it was, one file or several; *or* "
+                                   "`[[module.datasheet]]`",
+                                   {.optional = true});
+constexpr TablesKey datasheet("datasheet", "the module as its maker rates it");
+constexpr Range temperatures_K{1.0, 1000.0};
+constexpr OtherKey reference_temperature("reference_temperature_K", Key::a_number | Key::an_array,
+                                         "of the references, one for all or one for each",
+                                         {.usually = "298.15, or the first of the datasheet"});
+constexpr OtherKey reference_irradiance("reference_irradiance_W_m2", Key::a_number | Key::an_array,
+                                        "that a sensor saw at the references, likewise",
+                                        {.optional = true});
+constexpr UncertainNumberKey temperature("temperature_K", temperatures_K,
+                                         "of the curves that are diagnosed",
+                                         {.usually = "as the references"});
+constexpr NumberKey temperature_sigma("temperature_sigma_K", 2.0, Range::positive(),
+                                      "how well temperatures are known");
+constexpr NumberKey current_noise("current_noise_A", Range::positive(), "of a reading",
+                                  {.usually = "found from second differences"});
+constexpr NumberKey voltage_noise("voltage_noise_V", 0.0, Range::not_negative(), "of a reading");
+constexpr TableKey table("module", "a module in sunlight, whose curves are diagnosed");
+}  // namespace module_key
+
+// Of [[effect]] on a module.
+namespace effect_key {
+enum Kind : size_t {
+  cell_shaded,
+  cell_cracked,
+  cell_shunted,
+  shunt,
+  series_resistance,
+  temperature,
+  bypass_shorted,
+  bypass_open,
+  substring_shaded,
+  unsteady_light
+};
+constexpr ChoiceKey kind("kind",
+                         {{"cell_shaded", "cells in the shade"},
+                          {"cell_cracked",
+                           "cells of which a part is reached through a resistance alone"},
+                          {"cell_shunted", "cells with a short cut"},
+                          {"shunt", "short cuts in every cell"},
+                          {"series_resistance", "a resistance in series"},
+                          {"temperature", "warmer or colder than stated"},
+                          {"bypass_shorted", "a bypass diode that conducts always"},
+                          {"bypass_open", "cells in the shade whose bypass diode is open"},
+                          {"substring_shaded", "cells of whole bypass diodes in the shade"},
+                          {"unsteady_light", "light that changes while the voltage rises"}},
+                         "the effect");
+constexpr IntegerKey count("count", 1, 1, module_key::most_cells, "of the cells, at most all",
+                           {.varies = true});
+constexpr NumberKey factor("factor", Range::fraction(), "of the light");
+constexpr OtherKey factors("factor", Key::a_number | Key::an_array, "of the light, of each");
+constexpr NumberKey fraction("fraction", {0.0, 1.0, true, true}, "of the area");
+constexpr NumberKey resistance("resistance_ohm", Range::positive(), "of the module");
+constexpr NumberKey change_of_temperature("change_K", {-150.0, 150.0}, "of all cells");
+constexpr NumberKey change("change", {-1.0, 1.0}, "from the first point to the last");
+constexpr NumberKey bend("bend", 0.0, {-1.0, 1.0}, "at the ends over the middle, two thirds of");
+constexpr TextKey curve("curve", "the only curve on which the effect acts",
+                        {.usually = "all curves"});
+// Reverse conduction of shaded and cracked cells.
+constexpr NumberKey breakdown_fraction("breakdown_fraction", 0.0, {0.0, 7.0},
+                                       "a of the reverse conduction");
+constexpr NumberKey breakdown("breakdown_V", -15.0, {-1e308, 0.0, false, true}, "V_br of it");
+constexpr NumberKey breakdown_exponent("breakdown_exponent", 3.0, {1.0, 1e3}, "m of it");
+}  // namespace effect_key
+
 // One number for all references, or one for each file; `files` is the file index of each. Values in
 // the curves themselves have priority.
-std::vector<double> of_references(const Settings& s, const std::string& key, double usual,
+std::vector<double> of_references(const Settings& s, const OtherKey& key, double usual,
                                   const Range& range, const std::vector<size_t>& files,
                                   const std::vector<double>& said) {
   std::vector<double> stated;
   if (s.has(key)) {
     const size_t count = files.empty() ? 1 : files.back() + 1;
-    stated = s.raw(key).is_array() ? s.numbers(key, range)
+    stated = s.get(key).is_array() ? s.numbers(key, range)
                                    : std::vector<double>(count, s.number(key, range));
     if (stated.size() != count) {
       throw s.error(key, std::to_string(stated.size()) + " numbers",
@@ -39,78 +115,72 @@ void read_temperatures(const Settings& s, const std::vector<size_t>& files, Modu
     said_K.push_back(r.has_temperatures ? median_of(r.temperature_K) : NAN);
     said_W_m2.push_back(median_of(r.irradiance_W_m2));
   }
-  design.reference_temperatures_K =
-      of_references(s, "reference_temperature_K", usual_K, {1.0, 1000.0}, files, said_K);
+  design.reference_temperatures_K = of_references(s, module_key::reference_temperature, usual_K,
+                                                  module_key::temperatures_K, files, said_K);
   design.reference_irradiances_W_m2 =
-      of_references(s, "reference_irradiance_W_m2", NAN, Range::positive(), files, said_W_m2);
+      of_references(s, module_key::reference_irradiance, NAN, Range::positive(), files, said_W_m2);
   design.reference_temperature_K = design.reference_temperatures_K.front();
   design.temperature_K = design.reference_temperature_K;
-  if (s.has("temperature_K")) {
-    const Uncertain stated = s.uncertain("temperature_K", {1.0, 1000.0});
+  if (s.has(module_key::temperature)) {
+    const Uncertain stated = s.get(module_key::temperature);
     design.temperature_K = stated.value;
     if (stated.sigma > 0.0) design.temperature_sigma_K = stated.sigma;
   }
   design.temperature_sigma_K =
-      s.number_or("temperature_sigma_K", design.temperature_sigma_K, Range::positive());
+      s.get(module_key::temperature_sigma.with_default(design.temperature_sigma_K));
 }
 
 void read_effect(const Settings& s, ModuleDesign& design) {
-  const std::vector<std::string> kinds = {
-      "cell_shaded", "cell_cracked",   "cell_shunted",     "shunt",          "series_resistance",
-      "temperature", "bypass_shorted", "substring_shaded", "unsteady_light", "bypass_open"};
-  const size_t kind = s.choice("kind", kinds);
-  const auto count = [&] { return static_cast<int>(s.integer_or("count", 1, 1, design.cells)); };
-  const auto resistance = [&] { return s.number("resistance_ohm", Range::positive()); };
-  ModuleActing& acting = design.acting[s.has("curve") ? s.text("curve") : ""];
+  using namespace effect_key;
+  const size_t of_kind = s.get(kind);
+  const auto cells = [&] { return static_cast<int>(s.get(count.within(1, design.cells))); };
+  ModuleActing& acting = design.acting[s.has(curve) ? s.get(curve) : ""];
   ModuleState& state = acting.state;
-  const auto breakdown = [&] {
-    return ModuleState::Breakdown{s.number_or("breakdown_fraction", 0.0, {0.0, 7.0}),
-                                  s.number_or("breakdown_V", -15.0, {-1e308, 0.0, false, true}),
-                                  s.number_or("breakdown_exponent", 3.0, {1.0, 1e3})};
+  const auto reverse = [&] {
+    return ModuleState::Breakdown{s.get(breakdown_fraction), s.get(breakdown),
+                                  s.get(breakdown_exponent)};
   };
   const auto require_diodes = [&](const char* found) {
     if (design.bypass_every > 0) return;
-    throw s.error("kind", std::string(found) + " without bypass diodes",
+    throw s.error(kind, std::string(found) + " without bypass diodes",
                   "module.bypass_every, the cells of a substring");
   };
-  switch (kind) {
-    case 0:
-      state.shaded.push_back({count(), s.number("factor", Range::fraction()), breakdown()});
+  switch (of_kind) {
+    case cell_shaded:
+      state.shaded.push_back({cells(), s.get(factor), reverse()});
       break;
-    case 1:
-      state.cracked.push_back(
-          {count(), s.number("fraction", {0.0, 1.0, true, true}), resistance(), breakdown()});
+    case cell_cracked:
+      state.cracked.push_back({cells(), s.get(fraction), s.get(resistance), reverse()});
       break;
-    case 2:
-      state.shunted.push_back({count(), 1.0 / resistance()});
+    case cell_shunted:
+      state.shunted.push_back({cells(), 1.0 / s.get(resistance)});
       break;
-    case 3:
-      state.shunt_S += 1.0 / resistance();
+    case shunt:
+      state.shunt_S += 1.0 / s.get(resistance);
       break;
-    case 4:
-      state.series_ohm += resistance();
+    case series_resistance:
+      state.series_ohm += s.get(resistance);
       break;
-    case 5:
-      acting.warmer_K += s.number("change_K", {-150.0, 150.0});
+    case temperature:
+      acting.warmer_K += s.get(change_of_temperature);
       break;
-    case 6:
+    case bypass_shorted:
       state.bypassed += design.bypass_every;
       break;
-    case 7:
+    case bypass_open:
+      require_diodes("\"bypass_open\"");
+      state.shaded.push_back({cells(), s.get(factor), reverse(), false});
+      break;
+    case substring_shaded:
       require_diodes("\"substring_shaded\"");
-      for (const double factor : s.raw("factor").is_array()
-                                     ? s.numbers("factor", Range::fraction())
-                                     : std::vector{s.number("factor", Range::fraction())}) {
-        state.shaded.push_back({design.bypass_every, factor});
+      for (const double one : s.get(factors).is_array() ? s.numbers(factors, factor.range)
+                                                        : std::vector{s.get(factor)}) {
+        state.shaded.push_back({design.bypass_every, one});
       }
       break;
-    case 9:
-      require_diodes("\"bypass_open\"");
-      state.shaded.push_back({count(), s.number("factor", Range::fraction()), breakdown(), false});
-      break;
     default:
-      state.light_change += s.number("change", {-1.0, 1.0});
-      state.light_bend += s.number_or("bend", 0.0, {-1.0, 1.0});
+      state.light_change += s.get(change);
+      state.light_bend += s.get(bend);
   }
   if (s.has("count_between")) s.text("count_between");
   s.finish();
@@ -119,32 +189,36 @@ void read_effect(const Settings& s, ModuleDesign& design) {
 }  // namespace
 
 ModuleDesign read_module(const Settings& root, const std::filesystem::path& folder) {
-  const Settings s = root.table("module");
+  const Settings s = root.get(module_key::table);
   ModuleDesign design;
   if (root.has("recording")) {
     const Settings recording = root.table("recording");
     design.columns = read_recording_options(recording).columns;
     recording.finish();
   }
-  design.cells = static_cast<int>(s.integer("cells_in_series", 1, 10000));
-  design.bypass_every = static_cast<int>(s.integer_or("bypass_every", 0, 0, design.cells));
-  design.bypass_drop_V = s.number_or("bypass_drop_V", 0.5, Range::positive());
-  if (s.has("reference_curve") == s.has("datasheet")) {
-    throw s.error("reference_curve", s.has("datasheet") ? "a curve and a datasheet" : "neither",
+  design.cells = static_cast<int>(s.get(module_key::cells));
+  design.bypass_every = static_cast<int>(s.get(module_key::bypass_every.within(0, design.cells)));
+  design.bypass_drop_V = s.get(module_key::bypass_drop);
+  if (s.has(module_key::reference_curve) == s.has(module_key::datasheet)) {
+    throw s.error(module_key::reference_curve,
+                  s.has(module_key::datasheet) ? "a curve and a datasheet" : "neither",
                   "reference_curve = \"curve.csv\" or [[module.datasheet]]");
   }
   std::vector<size_t> files;
-  if (s.has("reference_curve")) {
-    const bool is_list = s.raw("reference_curve").is_array();
-    const std::vector<std::string> names =
-        is_list ? s.texts("reference_curve") : std::vector{s.text("reference_curve")};
-    if (names.empty()) throw s.error("reference_curve", "an empty list", "at least one curve");
+  if (s.has(module_key::reference_curve)) {
+    const bool is_list = s.get(module_key::reference_curve).is_array();
+    const std::vector<std::string> names = is_list
+                                               ? s.texts(module_key::reference_curve)
+                                               : std::vector{s.text(module_key::reference_curve)};
+    if (names.empty())
+      throw s.error(module_key::reference_curve, "an empty list", "at least one curve");
     for (const std::string& name : names) {
       design.reference_files.push_back(folder / name);
       const LightRecording file =
           read_light_recording(design.reference_files.back(), {}, design.columns);
       if (file.kind != LightRecording::Kind::sweep) {
-        throw s.error("reference_curve", "\"" + name + "\"", "a file of voltage_V,current_A");
+        throw s.error(module_key::reference_curve, "\"" + name + "\"",
+                      "a file of voltage_V,current_A");
       }
       for (LightRecording& curve : sweeps_of(file)) {
         design.references.push_back(std::move(curve));
@@ -152,22 +226,49 @@ ModuleDesign read_module(const Settings& root, const std::filesystem::path& fold
       }
     }
   } else {
-    for (const Settings& point : s.tables("datasheet")) {
+    for (const Settings& point : s.get(module_key::datasheet)) {
       design.datasheet.push_back(read_rated_point(point));
       point.finish();
     }
     design.slopes = read_rated_slopes(s);
   }
   read_temperatures(s, files, design);
-  if (s.has("current_noise_A")) {
-    design.current_noise_A = s.number("current_noise_A", Range::positive());
-  }
-  design.voltage_noise_V = s.number_or("voltage_noise_V", 0.0, Range::not_negative());
+  if (s.has(module_key::current_noise)) design.current_noise_A = s.get(module_key::current_noise);
+  design.voltage_noise_V = s.get(module_key::voltage_noise);
   s.finish();
   if (root.has("effect")) {
     for (const Settings& effect : root.tables("effect")) read_effect(effect, design);
   }
   return design;
+}
+
+Key module_table() {
+  using namespace module_key;
+  return table.of(
+      joined({{cells, bypass_every, bypass_drop, reference_curve, datasheet.of(rated_point_keys())},
+              rated_slope_keys(),
+              {reference_temperature, reference_irradiance, temperature, temperature_sigma,
+               current_noise, voltage_noise}}));
+}
+
+std::vector<Key::Choice> module_effects() {
+  using namespace effect_key;
+  const std::vector<Key> reverse = {breakdown_fraction, breakdown, breakdown_exponent};
+  std::vector<Key::Choice> kinds =
+      kind.bringing(
+              {joined({{count, factor}, reverse}),
+               joined({{count, fraction, resistance.meaning("in front of that part")}, reverse}),
+               {count, resistance.meaning("beside each of the cells")},
+               {resistance.meaning("beside every cell")},
+               {resistance},
+               {change_of_temperature},
+               {},
+               joined({{count, factor}, reverse}),
+               {factors},
+               {change, bend}})
+          .choices;
+  for (Key::Choice& one : kinds) one.keys.push_back(curve);
+  return kinds;
 }
 
 ModuleActing acting_on(const ModuleDesign& design, const std::string& curve) {

@@ -1,18 +1,6 @@
 // The module in sunlight of an experiment: its cells, and the nominal values of the undamaged
 // module.
 //
-//   [module]
-//   cells_in_series = 96
-//   bypass_every = 32                cells under one bypass diode; default: none
-//   bypass_drop_V = 0.5
-//   reference_curve = "before.csv"   or a list of them: the nominal module, or
-//   [[module.datasheet]]             its datasheet, with the keys of fit-cell
-//   reference_temperature_K = 298.15 of the references: one number, or one for each curve
-//   reference_irradiance_W_m2 = 1000 of the references as a sensor saw it, likewise
-//   temperature_K = 298.15           of the recordings, the reference's by default; {value, sigma}
-//   temperature_sigma_K = 2          how well that is known, of references as well
-//   current_noise_A, voltage_noise_V errors of a reading; found from the curves where not stated
-//
 // Files may contain cell_temperature_K and irradiance_W_m2 for each curve (`sweep`), which then
 // replace these keys. The irradiance may differ from curve to curve. [[effect]] with the kinds and
 // keys of a diagnosis states known effects on the recordings, and not on the references; with the

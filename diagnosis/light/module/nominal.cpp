@@ -7,6 +7,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/numerics/median.h"
 #include "inference/estimator/fit.h"
 #include "inference/estimator/forward_model.h"
 
@@ -14,12 +15,6 @@ namespace photorque {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
-
-double median(std::vector<double> values) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 // Expected sizes of the powers of Translation. A healthy module of 36 cells (pvlib, 12 curves from
 // 580 to 1080 W/m² and 31 to 61 °C) is translated from its brightest curve. It gives R_s ∝
@@ -46,7 +41,7 @@ double noise_of(const std::vector<double>& current_A) {
     second.push_back(std::abs(current_A[i] - 2.0 * current_A[i - 1] + current_A[i - 2]));
   }
   constexpr double of_median = 0.6745;  // median over standard deviation of a normal variable
-  return median(std::move(second)) / of_median / std::sqrt(6.0);
+  return upper_median(std::move(second)) / of_median / std::sqrt(6.0);
 }
 
 // Logarithms of the parameters of one cell from the fit of a whole device.

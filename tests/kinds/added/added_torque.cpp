@@ -15,16 +15,12 @@ struct AddedTorque final : TorqueLaw<AddedTorque> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<AddedTorque>({scalar_parameter(settings, growth)});
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "added_torque",
           .summary = "a torque about body x in proportion to the charge drawn",
-          .read = read,
+          .read = read_law<AddedTorque, Stage::torque, growth>,
           .screening = {.parametrisations = {{"something grows with the charge drawn",
                                               {EffectKey::number(growth.name, 1e-4)}}},
                         .needs = Requirement::charge},

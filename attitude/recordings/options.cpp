@@ -1,0 +1,76 @@
+#include <algorithm>
+
+#include "attitude/recordings/named_columns.h"
+#include "attitude/recordings/recording.h"
+#include "core/settings/typed_keys.h"
+#include "core/text/parse.h"
+
+namespace photorque {
+namespace {
+
+namespace recording_key {
+constexpr OtherKey columns(
+    "columns", Key::a_table,
+    "`{ gyro_x_rad_s = \"wx\", … }`: the file's name of a channel. A unit in the "
+    "channel's key converts: `gyro_x_deg_s = \"wx\"`",
+    {.usually = "names as they are"});
+constexpr ChoiceKey angle_sequence(
+    "angle_sequence",
+    {{"found",
+      "the one with which the rates integrate to the angles; `zyx` where there are no rates"},
+     {"zyx", "q = Rz(yaw) Ry(pitch) Rx(roll)"},
+     {"xyz", "q = Rx(roll) Ry(pitch) Rz(yaw)"},
+     {"xzy", "q = Rx(roll) Rz(yaw) Ry(pitch)"},
+     {"yxz", "q = Ry(pitch) Rx(roll) Rz(yaw)"},
+     {"yzx", "q = Ry(pitch) Rz(yaw) Rx(roll)"},
+     {"zxy", "q = Rz(yaw) Rx(roll) Ry(pitch)"}},
+    0, "order of the rotations by roll, pitch and yaw, each about an axis of the rotated frame");
+constexpr FlagKey remove_outliers(
+    "remove_outliers", true,
+    "removes readings of attitude and gyro that are far from all neighbours");
+constexpr TableKey recording("recording", "how files of recordings are read");
+}  // namespace recording_key
+
+}  // namespace
+
+Key recording_table() {
+  using namespace recording_key;
+  return recording_key::recording.of({columns, angle_sequence, recording_key::remove_outliers});
+}
+
+RecordingOptions read_recording_options(const Settings& settings) {
+  RecordingOptions options;
+  if (settings.has(recording_key::columns)) {
+    const Settings columns = settings.table(recording_key::columns);
+    for (const std::string& channel : columns.keys()) {
+      options.columns[channel] = columns.text(channel);
+    }
+  }
+  options.remove_outliers = settings.get(recording_key::remove_outliers);
+  const size_t sequence = settings.get(recording_key::angle_sequence);
+  if (sequence > 0) options.angle_sequence = recording_key::angle_sequence.words[sequence].name;
+  return options;
+}
+
+void refuse_absent_columns(const Settings& settings, const std::vector<const Recording*>& of) {
+  std::vector<std::set<std::string>> absent_columns;
+  for (const Recording* one : of) absent_columns.push_back(one->report.absent_columns);
+  refuse_absent_columns(settings, absent_columns);
+}
+
+void refuse_absent_columns(const Settings& recording,
+                           const std::vector<std::set<std::string>>& absent_columns) {
+  if (!recording.has(recording_key::columns)) return;
+  const Settings columns = recording.table(recording_key::columns);
+  for (const std::string& channel : columns.keys()) {
+    const std::string written = columns.text(channel);
+    const bool absent = std::ranges::all_of(
+        absent_columns, [&](const std::set<std::string>& one) { return one.contains(written); });
+    if (absent) {
+      throw columns.error(channel, in_quotes(written) + ", which the recording has not",
+                          "one of its columns");
+    }
+  }
+}
+
+}  // namespace photorque

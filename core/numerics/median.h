@@ -1,0 +1,16 @@
+// The value in the middle of some numbers.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+namespace photorque {
+
+// The median; of an even count, the larger of the two in the middle. There must be a number.
+inline double upper_median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace photorque
