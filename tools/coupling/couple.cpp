@@ -254,7 +254,7 @@ void add_events(PropagationResult& result, const CoupledRun& beside) {
     }
   }
   std::ranges::stable_sort(events, {}, &Event::time_s);
-  Table table = Table::of("events", "What happened", {"event", "t_s"});
+  Table table = Table::of("events", "What happened");
   for (const Event& event : events) {
     table.row().set("event", event.name).set("t_s", event.time_s);
   }

@@ -60,8 +60,8 @@ struct Shown {
 };
 
 std::vector<Shown> shown_figures(const Product& product) {
-  const Table* history = table_of(product, "time_history");
-  const Table* power = table_of(product, "power");
+  const Table* history = find_table(product, "time_history");
+  const Table* power = find_table(product, "power");
   std::vector<Shown> shown;
   const auto add = [&](const char* label, const char* unit, const Table* table, const char* name) {
     if (const auto* values = column_of(table, name))
@@ -176,7 +176,7 @@ RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageH
   SceneStage stage =
       light ? stage_of(*light, StageMaps::own) : platform_stage(run.run->model.platform);
   const std::vector<PlatformState> states = thinned(run.coupled->motion.states);
-  const Table* history = table_of(run.result.product, "time_history");
+  const Table* history = find_table(run.result.product, "time_history");
   const bool has_torques = history != nullptr && !torque_columns(*history, 'x', "").empty();
   const bool has_light =
       history != nullptr && !torque_columns(*history, 'x', "torque_radiation_pressure").empty();

@@ -17,9 +17,6 @@ namespace photorque {
 RunPage page_of(const RunResult& result, const PageHead& head,
                 const std::vector<std::string>& headlines);
 
-// The table of this name; null where there is none.
-const Table* table_of(const Product& product, const std::string& name);
-
 // The way of the power through a run: of the array's table "losses" where there is one, otherwise
 // from the lamps to the parts that carry flux maps.
 std::vector<PowerStage> power_stages(const OpticalRun& run, const OpticalResult& light,

@@ -152,10 +152,6 @@ class Search {
   std::function<void(double)> progress_;
 };
 
-void add_options(Command& command, CommandOptions& options) {
-  command.add_traced_experiment(options);
-}
-
 void run(const CommandOptions& options, const Program& program) {
   Search(options, program.verbs).run();
 }
@@ -165,7 +161,7 @@ void run(const CommandOptions& options, const Program& program) {
 Verb kind() {
   return {"optimise",
           "The best design over the axes of a sweep, without derivatives",
-          command_with(add_options, run),
+          command_with(traced_options, run),
           {"sweep"},
           "[sweep]"};
 }
