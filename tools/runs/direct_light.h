@@ -25,17 +25,10 @@ struct DirectLight {
   uint64_t shadow_rays = 0;
 };
 
-// How the two routes to the torque of direct light on a torque map agree, x, y, z.
+// How the two routes to the torque of direct light on a torque map, or to its wrench on a body,
+// agree.
 struct DirectTorque {
   std::string name;
-  std::array<Estimate, 3> gathered_N_m, rays_N_m;  // totals
-  double worst_sigma = 0.0;                        // largest difference in standard errors of both
-};
-
-// How the two routes to the wrench of direct light on a body agree.
-struct DirectWrench {
-  std::string name;
-  WrenchEstimate gathered, rays;
   double worst_sigma = 0.0;  // largest difference of a component in standard errors of both
 };
 
@@ -43,7 +36,7 @@ struct DirectWrench {
 struct DirectRoute {
   std::vector<DirectLight> gathered;   // by flux map; empty where rays alone had to do
   std::vector<DirectTorque> torques;   // by torque map, likewise
-  std::vector<DirectWrench> wrenches;  // by wrench, likewise
+  std::vector<DirectTorque> wrenches;  // by wrench, likewise
   std::vector<std::string> notices;  // one line for each map that was left to the rays for its cost
 };
 

@@ -43,12 +43,6 @@ bool is_even(const std::vector<double>& values) {
   return step > 0.0;
 }
 
-size_t place_on(const SweepPlan& plan, size_t design, size_t axis) {
-  size_t below = 1;
-  for (size_t i = axis + 1; i < plan.axes.size(); ++i) below *= plan.axes[i].values.size();
-  return design / below % plan.axes[axis].values.size();
-}
-
 // Whether a figure is one of the objectives, and which way.
 const Objective* objective_of(const SweepPlan& plan, const std::string& column) {
   const auto at = std::ranges::find_if(plan.objectives, [&](const Objective& o) {
@@ -89,7 +83,7 @@ Map pair_map(const SweepPlan& plan, const SweepResult& result, const std::string
     const Design& design = result.designs[d];
     const auto value = figure_of(design, column);
     if (!value || (others && !design.feasible)) continue;
-    const size_t cell = place_on(plan, d, j) * x.size() + place_on(plan, d, i);
+    const size_t cell = plan.place(d, j) * x.size() + plan.place(d, i);
     const double before = map.value[cell];
     const bool better =
         std::isnan(before) || (objective != nullptr && objective->maximise ? value->value > before

@@ -181,11 +181,15 @@ size_t SweepPlan::designs() const {
   return count;
 }
 
-const std::string& SweepPlan::value(size_t design, size_t axis) const {
-  if (!grid) return axes[axis].values[design];
+size_t SweepPlan::place(size_t design, size_t axis) const {
+  if (!grid) return design;
   size_t below = 1;
   for (size_t i = axis + 1; i < axes.size(); ++i) below *= axes[i].values.size();
-  return axes[axis].values[design / below % axes[axis].values.size()];
+  return design / below % axes[axis].values.size();
+}
+
+const std::string& SweepPlan::value(size_t design, size_t axis) const {
+  return axes[axis].values[place(design, axis)];
 }
 
 Changes SweepPlan::overrides(size_t design) const {

@@ -19,9 +19,7 @@ namespace {
 
 // A cell of the table in the terminal, three blanks before it at least.
 std::string in_column(const std::string& text) {
-  constexpr size_t width = 28;
-  const auto shown = static_cast<size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));  // UTF-8
+  const size_t width = 28, shown = letters_of(text);
   return std::string(3, ' ') + text + std::string(shown < width ? width - shown : 0, ' ');
 }
 
