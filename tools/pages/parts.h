@@ -25,6 +25,10 @@ std::vector<PowerStage> power_stages(const OpticalRun& run, const OpticalResult&
 // "page.html", made when it is written.
 RunFile page_file(RunPage page);
 
+// The place of the value nearest to a time in a rising list.
+size_t nearest_instant(const std::vector<double>& time_s, double at_s);
+void add_sentence(std::string& text, const std::string& sentence);
+
 // Parts, lamps and camera, and the surfaces of all flux maps, in one painting of their irradiance,
 // and of torque maps, one for each axis; no states yet. With `maps` = "own" their maps come with
 // add_light(); otherwise the surfaces name those of OpticalRun::product().

@@ -6,7 +6,6 @@
 
 #include "core/constants.h"
 #include "receivers/gather/bodies/wrench.h"
-#include "tools/runs/counting_error.h"
 
 namespace photorque {
 namespace {

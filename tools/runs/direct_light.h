@@ -2,10 +2,12 @@
 // with.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "core/wrench.h"
+#include "raytrace/tracing/tracer.h"
 #include "receivers/gather/gather.h"
 #include "scenes/experiment/experiment.h"
 
@@ -48,6 +50,13 @@ struct DirectRoute {
 DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scene,
                         const WrenchGather* bodies, const RigidTransform& lab_from_body,
                         const TraceOptions& options, TraceResult& result);
+
+// The error of a power that counts rays, where the replicates do not show it: Sobol points can meet
+// a surface equally often in all of them, and still be off by part of a ray in each. One ray of
+// each replicate, in the mean of all.
+inline double counting_error_W(const TraceResult& result, int replicates) {
+  return result.sent_W / static_cast<double>(result.rays) * std::sqrt(replicates);
+}
 
 // Largest relative standard error of any bin of any flux map with more than a tenth of the map's
 // largest irradiance.

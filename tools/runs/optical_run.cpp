@@ -14,7 +14,6 @@
 #include "receivers/gather/bodies/wrench.h"
 #include "scenes/effects/stated.h"
 #include "sources/profiles/beam_shape.h"
-#include "tools/runs/counting_error.h"
 #include "tools/runs/memory.h"
 
 namespace photorque {
