@@ -41,7 +41,6 @@ struct Tracker {
   double rescan_fraction = 0.05;
 };
 std::string name_of(Tracker::Kind kind);
-std::vector<Tracker::Kind> all_tracker_kinds();
 
 struct TrackerRun {
   Tracker tracker;

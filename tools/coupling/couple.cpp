@@ -167,10 +167,6 @@ std::optional<PowerSupply> supply_of(const ExperimentFile& file, const LightMode
   return PowerSupply(std::move(design), stored_J);
 }
 
-}  // namespace
-
-namespace {
-
 std::string vector_override(size_t disturbance, const Vec3& v) {
   char text[160];
   std::snprintf(text, sizeof text, "disturbance[%zu].sun_direction=[%.17g,%.17g,%.17g]",
