@@ -131,7 +131,9 @@ CellTables tables_for(const ArrayPower& array, const ArrayResult& result,
 
 Product tracker_product(const std::vector<TrackerRun>& runs) {
   Product product;
-  Table table = Table::of("trackers", "Trackers while the platform moves");
+  Table table =
+      Table::of("trackers", "Trackers while the platform moves",
+                {"tracker", "efficiency", "false_maximum_s", "energy_J", "best_energy_J"});
   Plot plot{"tracking", "Trackers while the platform moves", "time [s]", "power [W]"};
   Plot::Panel voltage{"voltage [V]", {}, false};
   for (const TrackerRun& run : runs) {
