@@ -18,6 +18,7 @@ namespace module_file {
 namespace {
 
 constexpr double zero_celsius_K = 273.15;
+
 // Figures by name, of one place in a file.
 class Listing {
  public:

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/errors.h"
 #include "core/text/parse.h"
 #include "python/bindings/arrays.h"
 #include "tools/runs/console.h"

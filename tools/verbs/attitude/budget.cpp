@@ -5,7 +5,6 @@
 
 #include "attitude/model/platform.h"
 #include "core/constants.h"
-#include "core/errors.h"
 #include "tools/runs/attitude_run.h"
 #include "tools/verbs/verb.h"
 
