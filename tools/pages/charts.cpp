@@ -171,7 +171,7 @@ Plot channel_plot(const ChannelSeries& channel, const RecordingSeries& recording
        curve_through(channel.time_s, channel.residual_after, Plot::Colour::blue, 1)}};
   if (channel.noise > 0.0) residuals.levels = {-2.0 * channel.noise, 2.0 * channel.noise};
   residuals.robust_range = true;
-  Plot plot{channel.name, channel.label.empty() ? channel.name : channel.label, "time [s]"};
+  Plot plot{channel.name, channel.label.empty() ? channel.name : channel.label, "time [s]", ""};
   plot.robust_range = true;
   if (channel.measured.empty()) {
     plot.y_label = residuals.y_label;
