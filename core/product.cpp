@@ -64,6 +64,11 @@ Table& Table::add(std::string column_name, std::vector<std::string> texts) {
 }
 
 Table::Column& Table::Row::cell_column(std::string_view column_name) const {
+  const auto is_set = [](const Column& column) { return column.size() == 1; };
+  if (index_ == 0 && column_in(*table_, column_name) == nullptr &&
+      std::ranges::all_of(table_->columns, is_set)) {
+    return table_->columns.emplace_back(Column{std::string(column_name)});
+  }
   Column& column = table_->column(column_name);
   if (column.size() != index_)
     throw fault(*table_, column_name, "set twice in one row, or not set in an earlier row");
@@ -100,6 +105,30 @@ const Table::Column& Table::column(std::string_view column_name) const {
 
 Table::Column& Table::column(std::string_view column_name) {
   return required_column(*this, column_name);
+}
+
+namespace {
+
+template <class Item>
+const Item* named(const std::vector<Item>& all, std::string_view name) {
+  const auto found = std::ranges::find(all, name, &Item::name);
+  return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+const Quantity* find_quantity(const Product& product, std::string_view name) {
+  return named(product.quantities, name);
+}
+
+const Table* find_table(const Product& product, std::string_view name) {
+  return named(product.tables, name);
+}
+
+const Table& table_named(const Product& product, std::string_view name) {
+  const Table* found = find_table(product, name);
+  if (found == nullptr) throw NumericalError("the run gave no table " + std::string(name));
+  return *found;
 }
 
 }  // namespace photorque

@@ -51,6 +51,7 @@ struct Map {
 // Built by column name:
 //   Table table = Table::of("maxima", "Local maxima of the power", {"voltage_V", "power_W"});
 //   table.row().set("voltage_V", 31.2).set("power_W", 94.0);
+// A table that is made without columns gets those of its first row, in the order of set().
 struct Table {
   std::string name;
   std::string title;
@@ -112,7 +113,7 @@ struct Plot {
     Colour colour = Colour::in_order;
     double width = 1.6;  // of the line in points; dots are as wide as two lines
   };
-  std::vector<Curve> curves;
+  std::vector<Curve> curves = {};
   bool x_log = false, y_log = false;
   struct Panel {
     std::string y_label;
@@ -123,7 +124,7 @@ struct Plot {
     // rest.
     bool robust_range = false;
   };
-  std::vector<Panel> below;         // further axes under the first
+  std::vector<Panel> below = {};    // further axes under the first
   std::vector<double> levels = {};  // of the first axes, as Panel::levels
   bool robust_range = false;        // of the first axes, as Panel::robust_range
   struct Interval {
@@ -154,5 +155,11 @@ struct Product {
   std::vector<Table> tables;
   std::vector<Plot> plots;
 };
+
+// The figure or table of this name; null where there is none.
+const Quantity* find_quantity(const Product& product, std::string_view name);
+const Table* find_table(const Product& product, std::string_view name);
+// NumericalError where there is none.
+const Table& table_named(const Product& product, std::string_view name);
 
 }  // namespace photorque

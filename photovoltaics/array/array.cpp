@@ -297,6 +297,16 @@ std::vector<double> mean_without(int replicate, const BinSums& sums, std::span<c
   return others;
 }
 
+// The light without each replicate in turn.
+std::vector<LightBins> leave_one_out(const ArrayLight& light, const LightBins& mean) {
+  std::vector<LightBins> all;
+  for (int r = 0; r < light.power_W.replicates; ++r) {
+    all.push_back({mean_without(r, light.power_W, mean.power_W), {}});
+    if (light.entry.bins > 0) all.back().entry_W = mean_without(r, light.entry, mean.entry_W);
+  }
+  return all;
+}
+
 // The values at the mean of all replicates, with Tukey's jackknife errors. The bias is of second
 // order in the error and not removed, so that the results agree with the printed curve.
 Estimates estimate(const PreparedArray& array, const ArrayLight& light, const LightBins& mean,
@@ -309,9 +319,7 @@ Estimates estimate(const PreparedArray& array, const ArrayLight& light, const Li
   if (replicates < 2) return estimates;
   const double count = replicates;
   std::vector<Headline> without;
-  for (int r = 0; r < replicates; ++r) {
-    LightBins others{mean_without(r, light.power_W, mean.power_W), {}};
-    if (light.entry.bins > 0) others.entry_W = mean_without(r, light.entry, mean.entry_W);
+  for (const LightBins& others : leave_one_out(light, mean)) {
     without.push_back(headline(array, others));
     temperature.follow(without.back());
   }
@@ -377,11 +385,7 @@ CellCurrents cell_currents(const ArrayDesign& design, const ArrayLight& light,
   const int replicates = light.power_W.replicates;
   if (replicates < 2) return result;
   std::vector<CellLight> without;
-  for (int r = 0; r < replicates; ++r) {
-    LightBins others{mean_without(r, light.power_W, mean.power_W), {}};
-    if (light.entry.bins > 0) others.entry_W = mean_without(r, light.entry, mean.entry_W);
-    without.push_back(array.light(others));
-  }
+  for (const LightBins& others : leave_one_out(light, mean)) without.push_back(array.light(others));
   // Tukey's jackknife error, with the error that all replicates have in common.
   const double count = replicates;
   const auto error = [&](const std::function<double(const CellLight&)>& of, double value) {

@@ -190,8 +190,7 @@ Product day_product(const DayResult& day) {
                              {"cell_temperature_K", day.temperature_K, {}},
                              {"array_power_W", day.array_W, {}},
                              {"battery_charge_J", day.charge_J, {}}}});
-  Plot plot{
-      "day_history", "Array and battery over time", "time [h]", "array [W]", {}, false, false, {}};
+  Plot plot{"day_history", "Array and battery over time", "time [h]", "array [W]"};
   plot.curves.push_back({"array power", hours, day.array_W, {}, false});
   plot.below.push_back(
       {"cells [K]", {{"cell temperature", hours, day.temperature_K, {}, false}}, false});

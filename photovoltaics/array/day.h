@@ -56,9 +56,7 @@ struct DayResult {
 // light levels is interpolated bilinearly: good to 1e-3.
 DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const DaySettings& settings);
 
-// The table `[array.day]`, all keys optional: load_W, duration_s, converter_efficiency,
-// battery_Wh, battery_charge, charge_efficiency, discharge_efficiency; droop_depth, droop_time_s,
-// roll_off_per_K, lamp_rise_K, lamp_rise_time_s.
+// The table `[array.day]`.
 DaySettings read_day(const Settings& day);
 
 Product day_product(const DayResult& day);

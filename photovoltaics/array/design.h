@@ -61,42 +61,9 @@ struct RegularWiring {
 };
 ArrayWiring regular_wiring(int columns, int rows, const RegularWiring& options);
 
-// Reads the table `[array]`:
-//
-//   cells = [10, 10]         columns along u and rows along v of the receiver; required where
-//                            `places` does not say where the cells are, see read_cell_places()
-//   gap_m, margin_m          between cells and around them; default 0. On a grid over texture
-//                            coordinates they are fractions of it.
-//   series = "columns"       "columns" or "rows": the serpentine in which cells follow each other
-//   strings = 1              parallel strings; must divide the number of cells
-//   bypass_every = 20        cells per bypass diode; default: all cells of a string
-//   cross_tied = false       tie cells of equal place in all strings
-//   circuit = ["series 3 bypass", "parallel 2", "series 20"]   instead of strings, bypass_every and
-//                            cross_tied: the serpentine in equal parts, level by level
-//   wiring = [[[0, 1], [2, 3]]]   instead of the five keys above: strings of substrings of cells
-//                            (a list in place of a cell is cells in parallel, a list in that is
-//                            cells in series, and so on by turns)
-//   bypass = "ideal"         "none", "ideal" (clamps at drop_V) or "junction"; default "ideal"
-//   blocking = "none"        the same choices
-//   [array.bypass_diode]     drop_V = 0.5, saturation_A = 1e-6, ideality = 1.05,
-//                            series_ohm = 5e-3 (a small Schottky diode)
-//   [array.blocking_diode]   the same, drop_V = 0
-//   temperature_K            of the cells; not stated: 298.15, and see read_cell_heat()
-//   rated_temperature_K      358.15
-//   cell = "silicon_interdigitated"   one of known_cells()
-//   [array.cell_parameters]  replaces single numbers of it: saturation_1_A, ideality_1,
-//                            saturation_2_A, ideality_2, series_ohm, shunt_ohm, breakdown_fraction,
-//                            breakdown_V, breakdown_exponent, reference_temperature_K, gap_eV,
-//                            gap_slope_per_K, photocurrent_slope_per_K; and reference_area_m2, the
-//                            area all of them belong to
-//   [[array.cell_override]]  one cell that differs: index, photocurrent_factor (1), and the keys of
-//                            [array.cell_parameters] but the temperature; what is not given is that
-//                            of the other cells
-//   quantum_efficiency_peak           of quantum_efficiency_of() the cell, or
-//   [array.quantum_efficiency]        wavelength_m = […] (or _nm), efficiency = […]
-//   [array.cover]                     see read_cell_front()
-//
-// Throws InputError for values out of range, and for a wiring or overrides that name a cell twice.
+// Reads the keys of array_design_keys() in the table `[array]`; `places` in place of `cells`, see
+// read_cell_places(). Throws InputError for values out of range, and for a wiring or overrides that
+// name a cell twice.
 ArrayDesign read_array_design(const Settings& array, std::optional<CellPlaces> places = {});
 
 }  // namespace photorque

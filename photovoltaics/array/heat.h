@@ -72,10 +72,9 @@ class CellPlate {
   double side_m_;
 };
 
-// Reads `[array.thermal]` of the table `[array]`, all keys optional: air_K, surroundings_K,
-// convection_W_m2_K, emissivity, absorptance, faces, capacity_J_m2_K, start_K. What is not stated
-// is that of `around`; in a vacuum there is no convection, and the faces radiate to deep space
-// (2.725 K). InputError for a plate that can give off no heat.
+// Reads `[array.thermal]` of the table `[array]`. What is not stated is that of `around`; in a
+// vacuum there is no convection, and the faces radiate to deep space (2.725 K). InputError for a
+// plate that can give off no heat.
 CellHeat read_cell_heat(const Settings& array, const Surroundings& around);
 
 }  // namespace photorque

@@ -28,16 +28,6 @@ std::vector<Place> places_of(const ArrayWiring& wiring) {
   return places;
 }
 
-std::vector<int> cells_of(const ArrayWiring& wiring) {
-  std::vector<int> cells;
-  for (const auto& string : wiring.strings) {
-    for (const auto& substring : string.substrings) {
-      for (const auto& row : substring.rows) cells.push_back(row.cell);
-    }
-  }
-  return cells;
-}
-
 class Search {
  public:
   Search(const ArrayWiring& start, const CellTables& tables, const AttitudeLights& lights,
@@ -47,7 +37,7 @@ class Search {
         lights_(lights),
         max_tried_(max_tried),
         places_(places_of(start)),
-        cells_(cells_of(start)) {}
+        cells_(start.cells()) {}
 
   LayoutResult run() {
     LayoutResult result;

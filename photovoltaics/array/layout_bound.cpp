@@ -10,16 +10,6 @@ namespace {
 
 constexpr double min_drop_V = 1e-9;  // stands for none
 
-std::vector<int> all_cells(const ArrayWiring& shape) {
-  std::vector<int> cells;
-  for (const auto& string : shape.strings) {
-    for (const auto& substring : string.substrings) {
-      for (const CellGroup& row : substring.rows) cells.push_back(row.cell);
-    }
-  }
-  return cells;
-}
-
 size_t cells_in(const ArrayWiring::String& string) {
   size_t count = 0;
   for (const auto& substring : string.substrings) count += substring.rows.size();
@@ -27,7 +17,7 @@ size_t cells_in(const ArrayWiring::String& string) {
 }
 
 bool of_one_kind(const ArrayWiring& shape, const CellTables& tables) {
-  const std::vector<int> cells = all_cells(shape);
+  const std::vector<int> cells = shape.cells();
   const auto table = [&](int cell) { return tables[static_cast<size_t>(cell)].get(); };
   return std::ranges::all_of(cells, [&](int c) { return table(c) == table(cells[0]); }) &&
          std::ranges::all_of(shape.strings, [&](const auto& string) {
@@ -79,7 +69,7 @@ Diode times(Diode diode, double k) {
 std::vector<ArrayCurve> brightest_in_series(const ArrayWiring& shape, const CellTables& tables,
                                             const std::vector<double>& light_A) {
   const PieceShape piece = pieces_of(shape);
-  std::vector<int> order = all_cells(shape);
+  std::vector<int> order = shape.cells();
   std::ranges::stable_sort(order, [&](int a, int b) {
     return light_A[static_cast<size_t>(a)] > light_A[static_cast<size_t>(b)];
   });
@@ -154,7 +144,7 @@ double sorted_bound_W(const ArrayWiring& shape, const CellTables& tables,
   std::vector<ArrayCurve> curves = brightest_in_series(shape, tables, light_A);
   // A drop of min_drop_V stands for diodes without drop. Its voltage is added again, so that the
   // bound holds.
-  const size_t count = all_cells(shape).size() / piece.size;
+  const size_t count = shape.cells().size() / piece.size;
   const auto pieces = static_cast<double>(count);
   const double missing_V = piece.bypass.drop_V == min_drop_V ? pieces * min_drop_V : 0.0;
   if (curves.size() == 1) {
@@ -170,7 +160,7 @@ double sorted_bound_W(const ArrayWiring& shape, const CellTables& tables,
 double layout_bound_W(const ArrayWiring& shape, const CellTables& tables,
                       const std::vector<double>& light_A) {
   double alone_W = 0.0;
-  for (const int cell : all_cells(shape)) {
+  for (const int cell : shape.cells()) {
     const auto i = static_cast<size_t>(cell);
     const auto law = law_in_light(tables[i], light_A[i]);
     alone_W += law->curve().maximum_power(light_A[i]).power_W();

@@ -58,9 +58,8 @@ std::vector<LossStage> loss_waterfall(const ArrayResult& array, const LossInputs
 
 Product loss_product(const std::vector<LossStage>& stages) {
   Product product;
-  Table table = Table::of("losses", "From the light to the load",
-                          {"stage", "lost_to", "power_W", "lost_W", "kept"});
-  Plot plot{"loss_waterfall", "From the light to the load", "", "power [W]", {}, false, false, {}};
+  Table table = Table::of("losses", "From the light to the load");
+  Plot plot{"loss_waterfall", "From the light to the load", "", "power [W]"};
   // A bar from one power to another, its name under it.
   const auto add_bar = [&](const std::string& label, double from_W, double to_W,
                            Plot::Colour colour) {
@@ -115,8 +114,7 @@ Uniformity uniformity(const ArrayResult& array, std::span<const int> cells) {
 }
 
 Table uniformity_table(const ArrayResult& array, const ArrayWiring& wiring) {
-  Table table = Table::of("uniformity", "Uniformity of the light",
-                          {"cells", "mean_W_m2", "minimum_over_mean", "variation"});
+  Table table = Table::of("uniformity", "Uniformity of the light");
   const auto add = [&](const std::string& name, const std::vector<int>& cells) {
     const Uniformity u = uniformity(array, cells);
     table.row()

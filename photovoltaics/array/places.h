@@ -26,15 +26,9 @@ CellPlaces places_from_mesh(const Scene& scene, const SurfaceGrid& grid);
 // Rectangles in the grid's coordinates, in the order given: one row.
 CellPlaces places_from_rectangles(std::span<const CellRectangle> cells, const SurfaceGrid& grid);
 
-// Reads where the cells are from the table `[array]`; nothing where `cells` counts columns and
-// rows.
-//
-//   cells = "mesh"             places_from_mesh(): the receiver's node holds the cells alone
-//   [[array.rectangle]]        one per cell, instead of `cells`:
-//   low_m = [u, v]             its corners on the receiver's grid, in the coordinates of the
-//   high_m = [u, v]            irradiance map; over "uv" texture coordinates
-//
-// InputError for rectangles that leave the grid, overlap, or are empty, and for gaps beside them.
+// Reads where the cells are from the table `[array]`: `cells = "mesh"` or [[array.rectangle]];
+// nothing where `cells` counts columns and rows. InputError for rectangles that leave the grid,
+// overlap, or are empty, and for gaps beside them.
 std::optional<CellPlaces> read_cell_places(const Settings& array, const Scene& scene,
                                            const SurfaceGrid& grid);
 

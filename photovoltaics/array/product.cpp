@@ -64,15 +64,14 @@ Table cell_table(const ArrayResult& result) {
 
 void add_plots(const ArrayResult& result, const Table& iv, Product& product) {
   const auto& v = iv.column("voltage_V").values;
-  Plot current{"iv_curve", "Current of the array", "voltage [V]", "current [A]", {}, false, false,
-               {}};
+  Plot current{"iv_curve", "Current of the array", "voltage [V]", "current [A]"};
   current.curves.push_back({"array", v, iv.column("current_A").values, {}, false});
   current.curves.push_back({"maximum, " + readable_number(result.power_W.value) + " W",
                             {result.voltage_V.value},
                             {result.current_A.value},
                             {},
                             true});
-  Plot power{"pv_curve", "Power of the array", "voltage [V]", "power [W]", {}, false, false, {}};
+  Plot power{"pv_curve", "Power of the array", "voltage [V]", "power [W]"};
   power.curves.push_back({"array", v, iv.column("power_W").values, {}, false});
   Plot::Curve peaks{"local maxima", {}, {}, {}, true};
   for (const ArrayPoint& p : result.maxima) {

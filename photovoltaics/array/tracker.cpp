@@ -85,11 +85,6 @@ std::string name_of(Tracker::Kind kind) {
   return names[static_cast<size_t>(kind)];
 }
 
-std::vector<Tracker::Kind> all_tracker_kinds() {
-  return {Tracker::Kind::perturb_and_observe, Tracker::Kind::incremental_conductance,
-          Tracker::Kind::global_scan, Tracker::Kind::periodic_sweep};
-}
-
 std::vector<double> LightHistory::at(double t) const {
   const auto after = std::ranges::upper_bound(time_s, t);
   if (after == time_s.begin()) return photocurrents_A.front();
@@ -152,12 +147,8 @@ std::vector<Tracker> read_trackers(const Settings& s) {
   common.sweep_points = static_cast<int>(s.get(tracker_key::sweep_points));
   common.sweep_every_s = s.get(tracker_key::sweep_every);
   common.rescan_fraction = s.get(tracker_key::rescan_fraction);
-  std::vector<std::string> wanted;
-  if (s.has(tracker_key::kinds)) {
-    wanted = s.get(tracker_key::kinds);
-  } else {
-    for (const auto kind : all_tracker_kinds()) wanted.push_back(name_of(kind));
-  }
+  std::vector<std::string> wanted(std::begin(names), std::end(names));
+  if (s.has(tracker_key::kinds)) wanted = s.get(tracker_key::kinds);
   std::vector<Tracker> trackers;
   for (const std::string& name : wanted) {
     const auto at = std::ranges::find(names, name);

@@ -41,7 +41,6 @@ struct Tracker {
   double rescan_fraction = 0.05;
 };
 std::string name_of(Tracker::Kind kind);
-std::vector<Tracker::Kind> all_tracker_kinds();
 
 struct TrackerRun {
   Tracker tracker;
@@ -58,10 +57,7 @@ std::vector<TrackerRun> run_trackers(const std::vector<Tracker>& trackers,
                                      const ArrayWiring& wiring, const CellTables& tables,
                                      const LightHistory& light);
 
-// Reads the table `[array.tracker]`, all keys optional:
-//   kinds = ["perturb_and_observe", "incremental_conductance", "global_scan", "periodic_sweep"]
-//   period_s = 0.1, step_fraction = 0.01, start_fraction = 0.8, sweep_points = 40,
-//   sweep_every_s = 60, rescan_fraction = 0.05
+// Reads the table `[array.tracker]`: one tracker of each of its kinds.
 std::vector<Tracker> read_trackers(const Settings& tracker);
 
 }  // namespace photorque

@@ -16,38 +16,38 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 
-void require(bool good, const char* key, double found, const char* expected) {
-  if (!good) throw InputError({}, key, std::to_string(found), expected);
-}
-
 void check(const CellParameters& p) {
-  const auto finite = [](double x) { return std::isfinite(x); };
-  require(finite(p.saturation_1_A) && p.saturation_1_A >= 0, "saturation_1_A", p.saturation_1_A,
-          "a number >= 0");
-  require(finite(p.saturation_2_A) && p.saturation_2_A >= 0, "saturation_2_A", p.saturation_2_A,
-          "a number >= 0");
+  const auto require = [](bool good, const char* key, double found, const char* expected) {
+    if (!good) throw InputError({}, key, std::to_string(found), expected);
+  };
+  const auto positive = [&](const char* key, double x) {
+    require(std::isfinite(x) && x > 0, key, x, "a number > 0");
+  };
+  const auto not_negative = [&](const char* key, double x) {
+    require(std::isfinite(x) && x >= 0, key, x, "a number >= 0");
+  };
+  not_negative("saturation_1_A", p.saturation_1_A);
+  not_negative("saturation_2_A", p.saturation_2_A);
   if (!(p.saturation_1_A + p.saturation_2_A > 0)) {
     // The saturation currents of very cold cells are below the smallest double.
     throw InputError({}, "saturation_1_A",
                      "no saturation current at " + std::to_string(p.temperature_K) + " K",
                      "one > 0 in one of the diodes");
   }
-  require(finite(p.ideality_1) && p.ideality_1 > 0, "ideality_1", p.ideality_1, "a number > 0");
-  require(finite(p.ideality_2) && p.ideality_2 > 0, "ideality_2", p.ideality_2, "a number > 0");
-  require(finite(p.series_ohm) && p.series_ohm >= 0, "series_ohm", p.series_ohm, "a number >= 0");
-  require(finite(p.shunt_ohm) && p.shunt_ohm > 0, "shunt_ohm", p.shunt_ohm, "a number > 0");
+  positive("ideality_1", p.ideality_1);
+  positive("ideality_2", p.ideality_2);
+  not_negative("series_ohm", p.series_ohm);
+  positive("shunt_ohm", p.shunt_ohm);
   require(p.breakdown_fraction >= 0 && p.breakdown_fraction <= 7, "breakdown_fraction",
           p.breakdown_fraction, "a number in [0, 7]");
-  require(finite(p.breakdown_V) && p.breakdown_V < 0, "breakdown_V", p.breakdown_V, "a number < 0");
-  require(finite(p.breakdown_exponent) && p.breakdown_exponent >= 1, "breakdown_exponent",
+  require(std::isfinite(p.breakdown_V) && p.breakdown_V < 0, "breakdown_V", p.breakdown_V,
+          "a number < 0");
+  require(std::isfinite(p.breakdown_exponent) && p.breakdown_exponent >= 1, "breakdown_exponent",
           p.breakdown_exponent, "a number >= 1");
-  require(finite(p.temperature_K) && p.temperature_K > 0, "temperature_K", p.temperature_K,
-          "a number > 0");
-  require(finite(p.shunt_light_A) && p.shunt_light_A >= 0, "shunt_photocurrent_A", p.shunt_light_A,
-          "a number >= 0");
+  positive("temperature_K", p.temperature_K);
+  not_negative("shunt_photocurrent_A", p.shunt_light_A);
   require(p.shunt_dark_ohm > 0, "shunt_dark_ohm", p.shunt_dark_ohm, "a number > 0");
-  require(finite(p.shunt_exponent) && p.shunt_exponent > 0, "shunt_exponent", p.shunt_exponent,
-          "a number > 0");
+  positive("shunt_exponent", p.shunt_exponent);
 }
 
 // The voltage at which one diode alone carries `current_A` (> 0); ∞ without that diode.

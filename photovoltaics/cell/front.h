@@ -4,7 +4,6 @@
 // reflection at normal incidence. The dependence on the angle is a separate factor, the incidence
 // angle modifier
 //   K(θ) = T(θ)/T(0),  T the fraction of the light that enters.
-//   K(θ) = T(θ)/T(0),  T the fraction of the light that enters.
 #pragma once
 
 #include <optional>
@@ -44,14 +43,7 @@ struct CellFront {
 // Source: M. Born and E. Wolf, Principles of Optics, 7th ed., section 1.6.4.
 double film_reflectance(double cosine, const FilmCoating& film, double index, double wavelength_m);
 
-// Reads the table `[array.cover]`:
-//
-//   refractive_index = 1.5             of the glass
-//   coating_index = 1.38               with both, a film on it
-//   coating_thickness_m = 132e-9       (or _nm)
-//   angle_deg = [0, …]                 instead of all these, a table
-//   transmittance = [1, …]             in any scale: only ratios count
-//   cosine_twice = true                instead of all these
+// Reads the table `[array.cover]`, and the keys of it.
 CellFront read_cell_front(const Settings& cover);
 std::vector<Key> cell_front_keys();
 

@@ -8,8 +8,6 @@
 namespace photorque {
 namespace {
 
-constexpr double silicon_gap_eV = 1.121, silicon_gap_slope_1_K = -0.0002677;  // De Soto (2006)
-
 // One square centimetre at 298.15 K. J₀ follows from the open-circuit voltage at a current density
 // of `short_circuit_A`, as one diode. Reverse breakdown as in the partial-shading
 // example of pvlib (a = 2e-3, −15 V, exponent 3).

@@ -8,6 +8,9 @@
 
 namespace photorque {
 
+// E₀ and s of silicon: De Soto, see below.
+inline constexpr double silicon_gap_eV = 1.121, silicon_gap_slope_1_K = -0.0002677;
+
 // The circuit of a cell of a known area at a known temperature, and how it changes with both.
 //
 // Temperature: I_i(T) = I_i(T₀) (T/T₀)³ exp(f_i (E(T₀)/kT₀ − E(T)/kT)), with f = 1 for the

@@ -22,8 +22,6 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 // photocurrent in addition.
 enum Shared { gap, saturation, scale, series, shunt, dark, shared_count };
 
-constexpr double silicon_gap_eV = 1.121, silicon_gap_slope_1_K = -0.0002677;  // De Soto (2006)
-
 struct Task {
   std::vector<CurveAt> curves;
   SweepNoise noise;

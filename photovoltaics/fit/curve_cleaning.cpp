@@ -27,10 +27,6 @@ std::vector<size_t> order_of(const IvSweep& sweep) {
   return order;
 }
 
-void remove(IvSweep& sweep, const std::vector<char>& out) {
-  sweep = sweep.without(out);
-}
-
 // A single reading off both neighbours, which agree with each other and with those beyond.
 size_t take_spikes(IvSweep& sweep) {
   const std::vector<size_t> order = order_of(sweep);
@@ -52,7 +48,7 @@ size_t take_spikes(IvSweep& sweep) {
   }
   // If there are many, they are not outliers.
   if (count * 20 > order.size()) return 0;
-  if (count > 0) remove(sweep, out);
+  if (count > 0) sweep = sweep.without(out);
   return count;
 }
 
@@ -137,7 +133,7 @@ UnsteadyLight take_unsteady_light(IvSweep& sweep, double noise) {
     found.readings += last - first;
     end = std::max(end, last);
   }
-  if (found.readings > 0) remove(sweep, out);
+  if (found.readings > 0) sweep = sweep.without(out);
   return found;
 }
 
@@ -186,7 +182,7 @@ CurveCleaning clean_curve(IvSweep& sweep) {
       ++cleaning.clipped;
     }
     cleaning.clipped_A = usual_A;
-    remove(sweep, out);
+    sweep = sweep.without(out);
     break;
   }
   return cleaning;

@@ -18,7 +18,6 @@ namespace module_file {
 namespace {
 
 constexpr double zero_celsius_K = 273.15;
-constexpr double silicon_gap_eV = 1.121, silicon_gap_slope_1_K = -0.0002677;  // De Soto (2006)
 
 // Figures by name, of one place in a file.
 class Listing {

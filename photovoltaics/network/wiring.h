@@ -70,6 +70,14 @@ struct ArrayWiring {
     }
   };
   std::vector<String> strings;
+  // All cells, string by string.
+  std::vector<int> cells() const {
+    std::vector<int> all;
+    for (const String& string : strings) {
+      string.for_each_cell([&](int cell) { all.push_back(cell); });
+    }
+    return all;
+  }
 };
 
 // An array of one circuit: its parallel branches are the strings, each behind the blocking diode,

@@ -38,49 +38,28 @@ struct PowerHandle : LightHandle {
   ArrayResult power = {};
 };
 
-RunOptions options_of(const ExperimentHandle& experiment, int threads, const py::object& seed,
-                      std::optional<double> target_error, std::optional<double> max_time_s) {
-  RunOptions options = experiment.with(threads, seed);
-  options.target_error = target_error;
-  options.max_time_s = max_time_s;
-  return options;
+// A trace, or a power with what it adds.
+template <class Handle, class Run>
+std::shared_ptr<Handle> handle_of(Run& run, const RunOptions& options, const char* verb) {
+  auto handle = std::make_shared<Handle>();
+  handle->run = std::move(run.run);
+  handle->light = std::move(run.light);
+  handle->result = std::move(run.result);
+  handle->head = head_of(options, verb);
+  handle->evaluate();
+  return handle;
 }
 
-std::shared_ptr<LightHandle> trace(const ExperimentHandle& experiment, int threads,
-                                   const py::object& seed, std::optional<double> target_error,
-                                   std::optional<double> max_time_s, const py::iterable& lamps,
-                                   const py::object& progress, const py::object& log) {
-  RunOptions options = options_of(experiment, threads, seed, target_error, max_time_s);
-  const Call call(options.experiment, progress, log);
-  add_lamps(options, lamps, call);
-  return call.run([&] {
-    TraceRun traced = run_trace(options, call.console());
-    auto handle = std::make_shared<LightHandle>(
-        LightHandle{std::move(traced.run), std::move(traced.light), std::move(traced.result),
-                    head_of(options, "trace")});
-    handle->evaluate();
-    return handle;
-  });
+std::shared_ptr<LightHandle> trace(const RunOptions& options, const Console& console) {
+  TraceRun run = run_trace(options, console);
+  return handle_of<LightHandle>(run, options, "trace");
 }
 
-std::shared_ptr<PowerHandle> power(const ExperimentHandle& experiment, int threads,
-                                   const py::object& seed, std::optional<double> target_error,
-                                   std::optional<double> max_time_s, const py::iterable& lamps,
-                                   const py::object& progress, const py::object& log) {
-  RunOptions options = options_of(experiment, threads, seed, target_error, max_time_s);
-  const Call call(options.experiment, progress, log);
-  add_lamps(options, lamps, call);
-  return call.run([&] {
-    PowerRun found = run_power(options, call.console());
-    auto handle = std::make_shared<PowerHandle>();
-    handle->run = std::move(found.run);
-    handle->light = std::move(found.light);
-    handle->result = std::move(found.result);
-    handle->power = std::move(found.power);
-    handle->head = head_of(options, "power");
-    handle->evaluate();
-    return handle;
-  });
+std::shared_ptr<PowerHandle> power(const RunOptions& options, const Console& console) {
+  PowerRun run = run_power(options, console);
+  auto handle = handle_of<PowerHandle>(run, options, "power");
+  handle->power = std::move(run.power);
+  return handle;
 }
 
 py::array layer_view(const py::object& self, FluxLayer FluxMap::*layer, double Estimate::*number) {
@@ -163,20 +142,10 @@ void bind_runs(py::module_& module) {
       module, "Power", "A trace and what the solar array makes of it.");
   add_result(power, "power");
   power
-      .def_property_readonly(
-          "curve",
-          [](const py::object& self) {
-            return py::cast(table_called(self.cast<const PowerHandle&>().result, "iv"),
-                            py::return_value_policy::reference_internal, self);
-          },
-          "Table voltage_V, current_A, power_W from short to open circuit.")
-      .def_property_readonly(
-          "maxima",
-          [](const py::object& self) {
-            return py::cast(table_called(self.cast<const PowerHandle&>().result, "maxima"),
-                            py::return_value_policy::reference_internal, self);
-          },
-          "Table of all local maxima of the power, by rising voltage.")
+      .def_property_readonly("curve", table_view<PowerHandle>("iv"),
+                             "Table voltage_V, current_A, power_W from short to open circuit.")
+      .def_property_readonly("maxima", table_view<PowerHandle>("maxima"),
+                             "Table of all local maxima of the power, by rising voltage.")
       .def_property_readonly("power_W", [](const PowerHandle& self) { return self.power.power_W; })
       .def_property_readonly("voltage_V",
                              [](const PowerHandle& self) { return self.power.voltage_V; })
@@ -192,23 +161,15 @@ void bind_runs(py::module_& module) {
       });
 }
 
-template <class Function>
-void def_light(py::module_& module, const char* name, Function function, const char* doc) {
-  module.def(name, function, py::arg("experiment"), py::kw_only(), py::arg("threads") = 0,
-             py::arg("seed") = py::none(), py::arg("target_error") = py::none(),
-             py::arg("max_time_s") = py::none(), py::arg("lamps") = py::list(),
-             py::arg("progress") = py::none(), py::arg("log") = py::none(), doc);
-}
-
 }  // namespace
 
 void bind_light(py::module_& module) {
   bind_flux_map(module);
   bind_runs(module);
-  def_light(module, "trace", &trace,
-            "Irradiance on every receiver, power balance, radiation force and torque.");
-  def_light(module, "power", &power,
-            "Trace, then the solar array: current-voltage curve and maximum power point.");
+  def_traced(module, "trace", &trace,
+             "Irradiance on every receiver, power balance, radiation force and torque.");
+  def_traced(module, "power", &power,
+             "Trace, then the solar array: current-voltage curve and maximum power point.");
 }
 
 }  // namespace photorque::python

@@ -91,13 +91,8 @@ void bind_motion(py::module_& module) {
   auto type = py::class_<MotionHandle, std::shared_ptr<MotionHandle>>(
       module, "Motion", "The motion of the platform: what happened and what instruments saw.");
   add_result(type, "propagate");
-  type.def_property_readonly(
-          "history",
-          [](const py::object& self) {
-            return py::cast(table_called(self.cast<const MotionHandle&>().result, "time_history"),
-                            py::return_value_policy::reference_internal, self);
-          },
-          "Table over time: tilt, heading, yaw, rates, charge, every torque.")
+  type.def_property_readonly("history", table_view<MotionHandle>("time_history"),
+                             "Table over time: tilt, heading, yaw, rates, charge, every torque.")
       .def_property_readonly("recording", &recording_of,
                              "Channels of camera, gyro and power as recording.csv holds them.")
       .def_property_readonly("events", &events_of, "(name, time_s) in order of time.")

@@ -3,6 +3,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 
@@ -14,7 +15,12 @@ namespace photorque::python {
 namespace py = pybind11;
 
 // Of the command `verb`, which gives the same.
-PageHead head_of(const RunOptions& options, const std::string& verb);
+inline PageHead head_of(const RunOptions& options, const std::string& verb) {
+  const std::string name = options.experiment.filename().string();
+  std::string function = verb;
+  std::ranges::replace(function, '-', '_');
+  return {options.experiment.stem().string(), verb, "photorque." + function + "(\"" + name + "\")"};
+}
 
 // Writes one file of a run to a path of the caller's; `file` makes it, without the interpreter's
 // lock.

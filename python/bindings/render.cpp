@@ -14,16 +14,8 @@
 namespace photorque::python {
 namespace {
 
-std::shared_ptr<RenderRun> render(const ExperimentHandle& experiment, int threads,
-                                  const py::object& seed, std::optional<double> target_error,
-                                  std::optional<double> max_time_s, const py::iterable& lamps,
-                                  const py::object& progress, const py::object& log) {
-  RunOptions options = experiment.with(threads, seed);
-  options.target_error = target_error;
-  options.max_time_s = max_time_s;
-  const Call call(options.experiment, progress, log);
-  add_lamps(options, lamps, call);
-  return call.run([&] { return std::make_shared<RenderRun>(run_render(options, call.console())); });
+std::shared_ptr<RenderRun> render(const RunOptions& options, const Console& console) {
+  return std::make_shared<RenderRun>(run_render(options, console));
 }
 
 py::array pixels_of(const py::object& self) {
@@ -53,11 +45,7 @@ void bind_render(py::module_& module) {
             return write_render(self, folder).string();
           },
           py::arg("folder"), "Writes render.png as the program does; gives its path.");
-  module.def("render", &render, py::arg("experiment"), py::kw_only(), py::arg("threads") = 0,
-             py::arg("seed") = py::none(), py::arg("target_error") = py::none(),
-             py::arg("max_time_s") = py::none(), py::arg("lamps") = py::list(),
-             py::arg("progress") = py::none(), py::arg("log") = py::none(),
-             "Traces the experiment and looks at it from its [camera].");
+  def_traced(module, "render", &render, "Traces the experiment and looks at it from its [camera].");
 }
 
 }  // namespace photorque::python

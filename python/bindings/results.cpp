@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/errors.h"
 #include "core/text/parse.h"
 #include "python/bindings/arrays.h"
 #include "tools/runs/console.h"
@@ -192,31 +191,6 @@ py::dict figures_of(const RunResult& result) {
   return figures;
 }
 
-py::dict tables_of(const RunResult& result, const py::object& owner) {
-  py::dict tables;
-  for (const Table& table : result.product.tables) {
-    tables[py::str(table.name)] =
-        py::cast(table, py::return_value_policy::reference_internal, owner);
-  }
-  return tables;
-}
-
-py::dict maps_of(const RunResult& result, const py::object& owner) {
-  py::dict maps;
-  for (const Map& map : result.product.maps) {
-    maps[py::str(map.name)] = py::cast(map, py::return_value_policy::reference_internal, owner);
-  }
-  return maps;
-}
-
-py::dict plots_of(const RunResult& result, const py::object& owner) {
-  py::dict plots;
-  for (const Plot& plot : result.product.plots) {
-    plots[py::str(plot.name)] = py::cast(plot, py::return_value_policy::reference_internal, owner);
-  }
-  return plots;
-}
-
 py::dict provenance_of(const Provenance& provenance) {
   py::dict all;
   all["program"] = provenance.program;
@@ -241,13 +215,6 @@ py::list write_of(const RunResult& result, const std::filesystem::path& folder,
   py::list texts;
   for (const auto& path : paths) texts.append(path.string());
   return texts;
-}
-
-const Table& table_called(const RunResult& result, const std::string& name) {
-  for (const Table& table : result.product.tables) {
-    if (table.name == name) return table;
-  }
-  throw NumericalError("the run gave no table " + name);
 }
 
 }  // namespace photorque::python

@@ -17,18 +17,30 @@ namespace py = pybind11;
 void bind_results(py::module_& module);
 
 py::dict figures_of(const RunResult& result);
-// Views: they keep `owner` alive.
-py::dict tables_of(const RunResult& result, const py::object& owner);
-py::dict maps_of(const RunResult& result, const py::object& owner);
-py::dict plots_of(const RunResult& result, const py::object& owner);
+// Views by name: they keep `owner` alive.
+template <class Item>
+py::dict views_of(const std::vector<Item>& items, const py::object& owner) {
+  py::dict views;
+  for (const Item& item : items) {
+    views[py::str(item.name)] = py::cast(item, py::return_value_policy::reference_internal, owner);
+  }
+  return views;
+}
 py::dict provenance_of(const Provenance& provenance);
 // "<power: emitted_W = 88, absorbed_W = 76.8592 ± 0.0014, …>": the command and its first figures.
 std::string text_of(const RunResult& result, const std::string& command);
 // As the results of this command of the program.
 py::list write_of(const RunResult& result, const std::filesystem::path& folder,
                   const std::string& command, const std::vector<std::string>& formats);
-// NumericalError if there is none of this name.
-const Table& table_called(const RunResult& result, const std::string& name);
+// A property of a run that has a member `result`: a view of its table of this name.
+// NumericalError if there is none.
+template <class Run>
+auto table_view(const char* name) {
+  return [name](const py::object& self) {
+    return py::cast(table_named(self.cast<const Run&>().result.product, name),
+                    py::return_value_policy::reference_internal, self);
+  };
+}
 
 // Gives the class of a run, which has a member `result`, what all runs have. `command`: that of the
 // program that gives the same.
@@ -42,13 +54,21 @@ void add_result(py::class_<Run, More...>& type, const std::string& command) {
           "Headline figures with their standard errors, by name; the unit is the name's end.")
       .def_property_readonly(
           "tables",
-          [result_of](const py::object& self) { return tables_of(result_of(self), self); },
+          [result_of](const py::object& self) {
+            return views_of(result_of(self).product.tables, self);
+          },
           "Tables by name.")
       .def_property_readonly(
-          "maps", [result_of](const py::object& self) { return maps_of(result_of(self), self); },
+          "maps",
+          [result_of](const py::object& self) {
+            return views_of(result_of(self).product.maps, self);
+          },
           "Maps by name.")
       .def_property_readonly(
-          "plots", [result_of](const py::object& self) { return plots_of(result_of(self), self); },
+          "plots",
+          [result_of](const py::object& self) {
+            return views_of(result_of(self).product.plots, self);
+          },
           "Curves by name.")
       .def(
           "plot",

@@ -23,13 +23,6 @@ PaperFigure figure(const std::string& quantity) {
   return {};
 }
 
-const Table& table_named(const Product& product, const std::string& name) {
-  for (const Table& t : product.tables) {
-    if (t.name == name) return t;
-  }
-  throw std::runtime_error("no table " + name);
-}
-
 const Table::Column& column(const Table& t, const std::string& name) {
   for (const Table::Column& c : t.columns) {
     if (c.name == name) return c;

@@ -17,6 +17,16 @@ TEST(Table, IsFilledByColumnName) {
   EXPECT_EQ(table.column("voltage_V").values, (std::vector<double>{31.0, 17.0}));
 }
 
+TEST(Table, GetsTheColumnsOfItsFirstRow) {
+  Table table = Table::of("maxima", "Local maxima");
+  table.row().set("place", "left").set("power_W", 94.0);
+  EXPECT_THROW(table.row().set("voltage_V", 31.0), NumericalError);
+  table.row().set("power_W", 95.0).set("place", "right");
+  ASSERT_EQ(table.columns.size(), 2u);
+  EXPECT_EQ(table.column("place").texts, (std::vector<std::string>{"left", "right"}));
+  EXPECT_EQ(table.column("power_W").values, (std::vector<double>{94.0, 95.0}));
+}
+
 TEST(Table, RefusesWhatWouldShiftItsRows) {
   Table table = Table::of("t", "", {"a", "b"});
   EXPECT_THROW(table.row().set("c", 1.0), NumericalError);

@@ -39,7 +39,9 @@ std::vector<double> light_of_columns(double first, double second, double third) 
 
 std::vector<TrackerRun> run(const LightHistory& light) {
   std::vector<Tracker> trackers;
-  for (const auto kind : all_tracker_kinds()) {
+  for (const auto kind :
+       {Tracker::Kind::perturb_and_observe, Tracker::Kind::incremental_conductance,
+        Tracker::Kind::global_scan, Tracker::Kind::periodic_sweep}) {
     Tracker tracker;
     tracker.kind = kind;
     tracker.sweep_every_s = 10.0;

@@ -167,10 +167,6 @@ std::optional<PowerSupply> supply_of(const ExperimentFile& file, const LightMode
   return PowerSupply(std::move(design), stored_J);
 }
 
-}  // namespace
-
-namespace {
-
 std::string vector_override(size_t disturbance, const Vec3& v) {
   char text[160];
   std::snprintf(text, sizeof text, "disturbance[%zu].sun_direction=[%.17g,%.17g,%.17g]",
@@ -254,7 +250,7 @@ void add_events(PropagationResult& result, const CoupledRun& beside) {
     }
   }
   std::ranges::stable_sort(events, {}, &Event::time_s);
-  Table table = Table::of("events", "What happened", {"event", "t_s"});
+  Table table = Table::of("events", "What happened");
   for (const Event& event : events) {
     table.row().set("event", event.name).set("t_s", event.time_s);
   }

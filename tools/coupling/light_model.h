@@ -44,10 +44,7 @@ struct LightSettings {
 // Whether `propagate` couples light and motion: the file has a scene, sources and a platform.
 bool has_light(const ExperimentFile& file);
 
-// Reads [light], which may be absent: mode ("table"), tolerance (1e-3), step_s (1), rays (of the
-// trace, at most 2^18), max_traces (20000), max_tilt_deg (none), cache (the
-// user's cache folder; "" for none); [[light.switch]] with time_s, on and source (all). InputError
-// as usual, and for switches out of order.
+// Reads [light], which may be absent. InputError as usual, and for switches out of order.
 LightSettings read_light(const ExperimentFile& file);
 Key light_table();
 

@@ -26,8 +26,8 @@ void print_run(const Console& console, const PropagationRun& run, const CoupledR
   const PlatformState& end = result.states.back();
   motion.line("  " + padded("until", 24) + show_duration(end.time_s));
   const auto figure = [&](const char* name) {
-    const auto at = std::ranges::find(result.product.quantities, name, &Quantity::name);
-    return at == result.product.quantities.end() ? 0.0 : at->estimate.value;
+    const Quantity* found = find_quantity(result.product, name);
+    return found == nullptr ? 0.0 : found->estimate.value;
   };
   console.line("  " + padded("largest tilt", 24) + show_brief(figure("largest_tilt_deg")) +
                " deg at " + show_duration(figure("largest_tilt_time_s")));

@@ -81,11 +81,7 @@ Plot::Curve curve(const std::string& label, const std::vector<double>& x,
 Plot together(const Table& power, const Table& history) {
   const std::vector<double>& t = power.column("t_s").values;
   const std::vector<double>& moved = history.column("t_s").values;
-  Plot plot;
-  plot.name = "power_and_attitude";
-  plot.title = "Power, charge, attitude and torque";
-  plot.x_label = "Time [s]";
-  plot.y_label = "Power [W]";
+  Plot plot{"power_and_attitude", "Power, charge, attitude and torque", "Time [s]", "Power [W]"};
   Plot::Curve load = curve("load served", t, power.column("load_power_W").values);
   load.colour = Plot::Colour::grey;
   plot.curves = {load, curve("array", t, power.column("array_power_W").values)};
@@ -104,11 +100,7 @@ Plot together(const Table& power, const Table& history) {
 
 Table power_table(const CoupledRun& run, size_t max_rows) {
   const bool battery = run.supply()->design().battery.has_value();
-  std::vector<std::string> columns = {"t_s",          "light_on_cells_W",  "lamp_output",
-                                      "best_power_W", "array_power_W",     "array_voltage_V",
-                                      "load_power_W", "cell_temperature_K"};
-  if (battery) columns.insert(columns.end(), {"battery_current_A", "battery_charge_Wh"});
-  Table table = Table::of("power", "Light, array and battery: means since the row before", columns);
+  Table table = Table::of("power", "Light, array and battery: means since the row before");
   const std::vector<PowerRow>& rows = run.rows();
   const size_t stride = std::max<size_t>(1, (rows.size() + max_rows - 1) / max_rows);
   for (size_t first = 0; first < rows.size(); first += stride) {
@@ -148,8 +140,7 @@ double quantile(std::vector<double> sorted, double q) {
 Product table_product(const RotationTable& table) {
   Product product;
   Table errors =
-      Table::of("light_table", "The table of light over attitude, at independent attitudes",
-                {"quantity", "unit", "largest", "rms_error", "max_error", "noise"});
+      Table::of("light_table", "The table of light over attitude, at independent attitudes");
   const RotationTableError& error = table.error();
   for (size_t g = 0; g < error.scale.size(); ++g) {
     errors.row()
@@ -194,10 +185,10 @@ Product power_product(const CoupledRun& run, const Product& history, size_t max_
   Product product;
   if (run.rows().empty()) return product;
   const Table power = power_table(run, max_rows);
-  const auto motion = std::ranges::find(history.tables, "time_history", &Table::name);
-  if (motion != history.tables.end()) product.plots.push_back(together(power, *motion));
+  const Table* motion = find_table(history, "time_history");
+  if (motion != nullptr) product.plots.push_back(together(power, *motion));
   product.tables.push_back(power);
-  Table energies = Table::of("energy_balance", "Energy balance", {"what", "energy_J", "energy_Wh"});
+  Table energies = Table::of("energy_balance", "Energy balance");
   for (const EnergyRow& row : energy_rows(run)) {
     energies.row()
         .set("what", row.name)

@@ -23,36 +23,40 @@ std::string table_cache_version() {
   return format + build_provenance().version + " " + content_hash(read_file(own_file())) + "\n";
 }
 
-std::string written_out(const SettingsNode& node, const std::set<std::string>& without) {
-  const auto number = [](double value) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.17g", value);
-    return std::string(text);
-  };
+std::string written_out(const SettingsNode& node, const std::set<std::string>& without,
+                        const std::function<std::string(const std::string& text)>& behind) {
   struct Writer {
-    const decltype(number)& number_of;
     const std::set<std::string>& without;
-    std::string operator()(bool value) const { return value ? "true" : "false"; }
-    std::string operator()(int64_t value) const { return number_of(static_cast<double>(value)); }
-    std::string operator()(double value) const { return number_of(value); }
+    const std::function<std::string(const std::string& text)>& behind;
     // The length is included, so that different sequences of values have different texts.
+    static std::string counted(const std::string& text) {
+      return std::to_string(text.size()) + ":" + text;
+    }
+    std::string operator()(bool value) const { return value ? "true" : "false"; }
+    std::string operator()(int64_t value) const { return (*this)(static_cast<double>(value)); }
+    std::string operator()(double value) const {
+      char text[40];
+      std::snprintf(text, sizeof text, "%.17g", value);
+      return text;
+    }
     std::string operator()(const std::string& value) const {
-      return std::to_string(value.size()) + ":" + value;
+      return counted(value) + (behind ? behind(value) : "");
     }
     std::string operator()(const SettingsNode::Array& items) const {
       std::string text = "[";
-      for (const SettingsNode& item : items) text += written_out(item) + ",";
+      for (const SettingsNode& item : items) text += written_out(item, {}, behind) + ",";
       return text + "]";
     }
     std::string operator()(const SettingsNode::Table& table) const {
       std::string text = "{";
       for (const auto& [key, value] : table) {
-        if (!without.contains(key)) text += key + "=" + written_out(value) + ";";
+        if (without.contains(key)) continue;
+        text += counted(key) + "=" + written_out(value, {}, behind) + ";";
       }
       return text + "}";
     }
   };
-  return std::visit(Writer{number, without}, node.value);
+  return std::visit(Writer{without, behind}, node.value);
 }
 
 bool read_cached_table(const std::filesystem::path& folder, const std::string& key,

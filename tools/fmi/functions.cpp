@@ -1,6 +1,4 @@
 // The functions of FMI 3.0, all of which a unit for co-simulation has to export.
-#include <cstring>
-#include <memory>
 #include <string>
 
 #include "tools/fmi/instance.h"
@@ -16,10 +14,7 @@ PHOTORQUE_EXPORT const char* fmi3GetVersion() {
 
 PHOTORQUE_EXPORT fmi3Status fmi3SetDebugLogging(fmi3Instance handle, fmi3Boolean on, size_t count,
                                                 const fmi3String categories[]) {
-  return guarded(handle, "fmi3SetDebugLogging", [&](Instance& instance) {
-    instance.set_debug_logging(on, count, categories);
-    return fmi3OK;
-  });
+  return guarded(handle, __func__, &Instance::set_debug_logging, on, count, categories);
 }
 
 PHOTORQUE_EXPORT fmi3Instance fmi3InstantiateCoSimulation(
@@ -51,23 +46,20 @@ PHOTORQUE_EXPORT void fmi3FreeInstance(fmi3Instance handle) {
 PHOTORQUE_EXPORT fmi3Status fmi3EnterInitializationMode(fmi3Instance handle, fmi3Boolean,
                                                         fmi3Float64, fmi3Float64 start_s,
                                                         fmi3Boolean has_stop, fmi3Float64 stop_s) {
-  return guarded(handle, "fmi3EnterInitializationMode", [&](Instance& instance) {
-    return instance.enter_initialization(start_s,
-                                         has_stop ? std::optional<double>(stop_s) : std::nullopt);
-  });
+  return guarded(handle, __func__, &Instance::enter_initialization, start_s,
+                 has_stop ? std::optional<double>(stop_s) : std::nullopt);
 }
 
 PHOTORQUE_EXPORT fmi3Status fmi3ExitInitializationMode(fmi3Instance handle) {
-  return guarded(handle, "fmi3ExitInitializationMode",
-                 [](Instance& instance) { return instance.exit_initialization(); });
+  return guarded(handle, __func__, &Instance::exit_initialization);
 }
 
 PHOTORQUE_EXPORT fmi3Status fmi3Terminate(fmi3Instance handle) {
-  return guarded(handle, "fmi3Terminate", [](Instance& instance) { return instance.terminate(); });
+  return guarded(handle, __func__, &Instance::terminate);
 }
 
 PHOTORQUE_EXPORT fmi3Status fmi3Reset(fmi3Instance handle) {
-  return guarded(handle, "fmi3Reset", [](Instance& instance) { return instance.reset(); });
+  return guarded(handle, __func__, &Instance::reset);
 }
 
 PHOTORQUE_EXPORT fmi3Status fmi3DoStep(fmi3Instance handle, fmi3Float64 now_s, fmi3Float64 step_s,
@@ -101,67 +93,35 @@ PHOTORQUE_EXPORT fmi3Status fmi3GetBoolean(fmi3Instance handle, const fmi3ValueR
                                            size_t count, fmi3Boolean values[], size_t size) {
   return guarded(handle, "fmi3GetBoolean", [&](Instance& instance) {
     if (size != count) return instance.refuse("fmi3GetBoolean: every variable is one value");
-    for (size_t i = 0; i < count; ++i) {
-      const bool* flag = instance.flag(of[i]);
-      if (flag == nullptr) return fmi3Error;
-      values[i] = *flag;
-    }
-    return fmi3OK;
+    return instance.get_flags({of, count}, values);
   });
 }
 
 PHOTORQUE_EXPORT fmi3Status fmi3GetFMUState(fmi3Instance handle, fmi3FMUState* to) {
-  return guarded(handle, "fmi3GetFMUState", [&](Instance& instance) {
-    auto* state = static_cast<UnitState*>(*to);
-    if (state == nullptr) state = new UnitState;
-    *state = instance.state();
-    *to = state;
-    return fmi3OK;
-  });
+  return guarded(handle, __func__, &Instance::save_state, to);
 }
 
 PHOTORQUE_EXPORT fmi3Status fmi3SetFMUState(fmi3Instance handle, fmi3FMUState from) {
-  return guarded(handle, "fmi3SetFMUState", [&](Instance& instance) {
-    const auto* state = static_cast<const UnitState*>(from);
-    if (state == nullptr) return instance.refuse("fmi3SetFMUState: no state");
-    return instance.set_state(*state);
-  });
+  return guarded(handle, __func__, &Instance::restore_state, __func__, from);
 }
 
 PHOTORQUE_EXPORT fmi3Status fmi3FreeFMUState(fmi3Instance handle, fmi3FMUState* state) {
-  return guarded(handle, "fmi3FreeFMUState", [&](Instance&) {
-    delete static_cast<UnitState*>(*state);
-    *state = nullptr;
-    return fmi3OK;
-  });
+  return guarded(handle, __func__, &Instance::free_state, state);
 }
 
 PHOTORQUE_EXPORT fmi3Status fmi3SerializedFMUStateSize(fmi3Instance handle, fmi3FMUState from,
                                                        size_t* size) {
-  return guarded(handle, "fmi3SerializedFMUStateSize", [&](Instance&) {
-    *size = sizeof(double) * static_cast<const UnitState*>(from)->numbers().size();
-    return fmi3OK;
-  });
+  return guarded(handle, __func__, &Instance::find_state_size, from, size);
 }
 
 PHOTORQUE_EXPORT fmi3Status fmi3SerializeFMUState(fmi3Instance handle, fmi3FMUState from,
                                                   fmi3Byte bytes[], size_t size) {
-  return guarded(handle, "fmi3SerializeFMUState", [&](Instance& instance) {
-    const std::vector<double> all = static_cast<const UnitState*>(from)->numbers();
-    if (size < all.size() * sizeof(double)) return instance.refuse("too few bytes for the state");
-    std::memcpy(bytes, all.data(), all.size() * sizeof(double));
-    return fmi3OK;
-  });
+  return guarded(handle, __func__, &Instance::write_state, from, bytes, size);
 }
 
 PHOTORQUE_EXPORT fmi3Status fmi3DeserializeFMUState(fmi3Instance handle, const fmi3Byte bytes[],
                                                     size_t size, fmi3FMUState* to) {
-  return guarded(handle, "fmi3DeserializeFMUState", [&](Instance& instance) {
-    std::unique_ptr<UnitState> state = UnitState::from(bytes, size);
-    if (state == nullptr) return instance.refuse("these bytes are no state of this unit");
-    *to = state.release();
-    return fmi3OK;
-  });
+  return guarded(handle, __func__, &Instance::read_state, bytes, size, to);
 }
 
 // The functions that the unit does not offer: they return fmi3Error. Importers look for every name.

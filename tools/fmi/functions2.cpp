@@ -2,7 +2,6 @@
 // order of the arguments are those of the specification (Functional Mock-up Interface for Model
 // Exchange and Co-Simulation 2.0.4, sections 2.1 and 4.2).
 #include <cstdarg>
-#include <cstring>
 #include <memory>
 #include <string>
 
@@ -50,6 +49,13 @@ fmi2Status guarded2(fmi2Component handle, const char* function, Body body) {
   auto* unit = static_cast<Unit2*>(handle);
   if (unit == nullptr) return fmi3Error;
   return guarded(unit->instance.get(), function, [&](Instance&) { return body(*unit); });
+}
+
+// guarded() of the instance.
+template <typename... Rest>
+fmi2Status of_instance(fmi2Component handle, const char* function, Rest... rest) {
+  auto* unit = static_cast<Unit2*>(handle);
+  return guarded(unit == nullptr ? nullptr : unit->instance.get(), function, rest...);
 }
 
 // "file:///a%20b", "file:/a b" and "file://localhost/a b" as the path "/a b". Null: no such
@@ -121,10 +127,7 @@ PHOTORQUE_EXPORT void fmi2FreeInstance(fmi2Component handle) {
 
 PHOTORQUE_EXPORT fmi2Status fmi2SetDebugLogging(fmi2Component handle, fmi2Boolean on, size_t count,
                                                 const fmi2String categories[]) {
-  return guarded2(handle, "fmi2SetDebugLogging", [&](Unit2& unit) {
-    unit.instance->set_debug_logging(on != 0, count, categories);
-    return fmi3OK;
-  });
+  return of_instance(handle, __func__, &Instance::set_debug_logging, on != 0, count, categories);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2SetupExperiment(fmi2Component handle, fmi2Boolean, fmi2Real,
@@ -144,12 +147,11 @@ PHOTORQUE_EXPORT fmi2Status fmi2EnterInitializationMode(fmi2Component handle) {
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2ExitInitializationMode(fmi2Component handle) {
-  return guarded2(handle, "fmi2ExitInitializationMode",
-                  [](Unit2& unit) { return unit.instance->exit_initialization(); });
+  return of_instance(handle, __func__, &Instance::exit_initialization);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2Terminate(fmi2Component handle) {
-  return guarded2(handle, "fmi2Terminate", [](Unit2& unit) { return unit.instance->terminate(); });
+  return of_instance(handle, __func__, &Instance::terminate);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2Reset(fmi2Component handle) {
@@ -193,85 +195,48 @@ PHOTORQUE_EXPORT fmi2Status fmi2GetRealStatus(fmi2Component handle, fmi2StatusKi
 
 PHOTORQUE_EXPORT fmi2Status fmi2GetReal(fmi2Component handle, const fmi2ValueReference of[],
                                         size_t count, fmi2Real values[]) {
-  return guarded2(handle, "fmi2GetReal", [&](Unit2& unit) {
-    return unit.instance->get_numbers({of, count}, values);
-  });
+  return of_instance(handle, __func__, &Instance::get_numbers, std::span(of, count), values);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2SetReal(fmi2Component handle, const fmi2ValueReference of[],
                                         size_t count, const fmi2Real values[]) {
-  return guarded2(handle, "fmi2SetReal", [&](Unit2& unit) {
-    return unit.instance->set_numbers({of, count}, values);
-  });
+  return of_instance(handle, __func__, &Instance::set_numbers, std::span(of, count), values);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2GetBoolean(fmi2Component handle, const fmi2ValueReference of[],
                                            size_t count, fmi2Boolean values[]) {
-  return guarded2(handle, "fmi2GetBoolean", [&](Unit2& unit) {
-    for (size_t i = 0; i < count; ++i) {
-      const bool* flag = unit.instance->flag(of[i]);
-      if (flag == nullptr) return fmi3Error;
-      values[i] = *flag ? 1 : 0;
-    }
-    return fmi3OK;
-  });
+  return of_instance(handle, __func__, &Instance::get_flags<fmi2Boolean>, std::span(of, count),
+                     values);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2GetFMUstate(fmi2Component handle, fmi2FMUstate* to) {
-  return guarded2(handle, "fmi2GetFMUstate", [&](Unit2& unit) {
-    auto* state = static_cast<UnitState*>(*to);
-    if (state == nullptr) state = new UnitState;
-    *state = unit.instance->state();
-    *to = state;
-    return fmi3OK;
-  });
+  return of_instance(handle, __func__, &Instance::save_state, to);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2SetFMUstate(fmi2Component handle, fmi2FMUstate from) {
   return guarded2(handle, "fmi2SetFMUstate", [&](Unit2& unit) {
-    const auto* state = static_cast<const UnitState*>(from);
-    if (state == nullptr) return unit.instance->refuse("fmi2SetFMUstate: no state");
-    unit.has_ended = false;
-    return unit.instance->set_state(*state);
+    unit.has_ended = unit.has_ended && from == nullptr;
+    return unit.instance->restore_state("fmi2SetFMUstate", from);
   });
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2FreeFMUstate(fmi2Component handle, fmi2FMUstate* state) {
-  return guarded2(handle, "fmi2FreeFMUstate", [&](Unit2&) {
-    delete static_cast<UnitState*>(*state);
-    *state = nullptr;
-    return fmi3OK;
-  });
+  return of_instance(handle, __func__, &Instance::free_state, state);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2SerializedFMUstateSize(fmi2Component handle, fmi2FMUstate from,
                                                        size_t* size) {
-  return guarded2(handle, "fmi2SerializedFMUstateSize", [&](Unit2&) {
-    *size = sizeof(double) * static_cast<const UnitState*>(from)->numbers().size();
-    return fmi3OK;
-  });
+  return of_instance(handle, __func__, &Instance::find_state_size, from, size);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2SerializeFMUstate(fmi2Component handle, fmi2FMUstate from,
                                                   fmi2Byte bytes[], size_t size) {
-  return guarded2(handle, "fmi2SerializeFMUstate", [&](Unit2& unit) {
-    const std::vector<double> all = static_cast<const UnitState*>(from)->numbers();
-    if (size < all.size() * sizeof(double)) {
-      return unit.instance->refuse("too few bytes for the state");
-    }
-    std::memcpy(bytes, all.data(), all.size() * sizeof(double));
-    return fmi3OK;
-  });
+  return of_instance(handle, __func__, &Instance::write_state, from, bytes, size);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2DeSerializeFMUstate(fmi2Component handle, const fmi2Byte bytes[],
                                                     size_t size, fmi2FMUstate* to) {
-  return guarded2(handle, "fmi2DeSerializeFMUstate", [&](Unit2& unit) {
-    std::unique_ptr<UnitState> state = UnitState::from(bytes, size);
-    if (state == nullptr) return unit.instance->refuse("these bytes are no state of this unit");
-    *to = state.release();
-    return fmi3OK;
-  });
+  return of_instance(handle, __func__, &Instance::read_state, bytes, size, to);
 }
 
 // The functions that the unit does not offer: they return fmi2Error. Importers look for every name.

@@ -88,11 +88,12 @@ void Instance::tell_words() {
   }
 }
 
-void Instance::set_debug_logging(bool on, size_t count, const char* const categories[]) {
+fmi3Status Instance::set_debug_logging(bool on, size_t count, const char* const categories[]) {
   tells_events_ = on && count == 0;
   for (size_t i = 0; i < count; ++i) {
     if (std::strcmp(categories[i], "logEvents") == 0) tells_events_ = on;
   }
+  return fmi3OK;
 }
 
 fmi3Status Instance::begin(std::vector<Vec3> commands) {
@@ -189,11 +190,16 @@ const bool* Instance::flag(uint32_t reference) const {
   return flag;
 }
 
-UnitState Instance::state() const {
-  return {mode_, now_s_, start_s_, stop_s_, command_body_N_m_, run_->commands()};
+fmi3Status Instance::save_state(void** to) const {
+  if (*to == nullptr) *to = new UnitState;
+  *static_cast<UnitState*>(*to) = {mode_,           now_s_, start_s_, stop_s_, command_body_N_m_,
+                                   run_->commands()};
+  return fmi3OK;
 }
 
-fmi3Status Instance::set_state(const UnitState& state) {
+fmi3Status Instance::restore_state(const char* function, const void* from) {
+  if (from == nullptr) return refuse(std::string(function) + ": no state");
+  const auto& state = *static_cast<const UnitState*>(from);
   now_s_ = state.now_s;
   start_s_ = state.start_s;
   stop_s_ = state.stop_s;
@@ -201,6 +207,31 @@ fmi3Status Instance::set_state(const UnitState& state) {
   mode_ = state.mode;
   if (mode_ == Mode::instantiated) return fmi3OK;
   return begin(state.commands);
+}
+
+fmi3Status Instance::free_state(void** state) const {
+  delete static_cast<UnitState*>(*state);
+  *state = nullptr;
+  return fmi3OK;
+}
+
+fmi3Status Instance::find_state_size(const void* state, size_t* bytes) const {
+  *bytes = sizeof(double) * static_cast<const UnitState*>(state)->numbers().size();
+  return fmi3OK;
+}
+
+fmi3Status Instance::write_state(const void* state, void* bytes, size_t size) const {
+  const std::vector<double> all = static_cast<const UnitState*>(state)->numbers();
+  if (size < all.size() * sizeof(double)) return refuse("too few bytes for the state");
+  std::memcpy(bytes, all.data(), all.size() * sizeof(double));
+  return fmi3OK;
+}
+
+fmi3Status Instance::read_state(const void* bytes, size_t size, void** to) const {
+  std::unique_ptr<UnitState> state = UnitState::from(bytes, size);
+  if (state == nullptr) return refuse("these bytes are no state of this unit");
+  *to = state.release();
+  return fmi3OK;
 }
 
 Instance* instantiate(const char* function, const char* name, const char* token,

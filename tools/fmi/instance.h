@@ -47,14 +47,29 @@ class Instance {
   fmi3Status step(double now_s, double step_s, bool& ended);
   fmi3Status get_numbers(std::span<const uint32_t> references, double* values) const;
   fmi3Status set_numbers(std::span<const uint32_t> references, const double* values);
-  // Null, and a message, where no flag has the reference.
-  const bool* flag(uint32_t reference) const;
-  UnitState state() const;
-  fmi3Status set_state(const UnitState& state);
+  // `Flag`: the Boolean of the version.
+  template <typename Flag>
+  fmi3Status get_flags(std::span<const uint32_t> references, Flag* values) const {
+    for (const uint32_t reference : references) {
+      const bool* value = flag(reference);
+      if (value == nullptr) return fmi3Error;
+      *values++ = static_cast<Flag>(*value);
+    }
+    return fmi3OK;
+  }
+
+  // States as an importer holds them, pointers to UnitState: save_state() makes one where `*to` is
+  // null, and free_state() deletes it. `function` is named in messages.
+  fmi3Status save_state(void** to) const;
+  fmi3Status restore_state(const char* function, const void* from);
+  fmi3Status free_state(void** state) const;
+  fmi3Status find_state_size(const void* state, size_t* bytes) const;
+  fmi3Status write_state(const void* state, void* bytes, size_t size) const;
+  fmi3Status read_state(const void* bytes, size_t size, void** to) const;
 
   const UnitDescription& description() const { return description_; }
   double now_s() const { return now_s_; }
-  void set_debug_logging(bool on, size_t count, const char* const categories[]);
+  fmi3Status set_debug_logging(bool on, size_t count, const char* const categories[]);
   fmi3Status refuse(const std::string& message) const;
   // No further step is possible.
   void give_up() { mode_ = Mode::terminated; }
@@ -62,6 +77,8 @@ class Instance {
  private:
   void say(fmi3Status status, const char* category, const std::string& message) const;
   void tell_words();
+  // Null, and a message, where no flag has the reference.
+  const bool* flag(uint32_t reference) const;
   // Restarts the run and follows `commands`.
   fmi3Status begin(std::vector<Vec3> commands);
 
@@ -74,13 +91,14 @@ class Instance {
   double now_s_ = 0.0, start_s_ = 0.0, stop_s_ = 0.0;
 };
 
-// Exceptions may not leave the unit.
-template <typename Body>
-fmi3Status guarded(void* handle, const char* function, Body body) {
+// A member of Instance, or a function of one, called with the arguments. Exceptions may not leave
+// the unit.
+template <typename Body, typename... Arguments>
+fmi3Status guarded(void* handle, const char* function, Body body, Arguments... arguments) {
   auto* instance = static_cast<Instance*>(handle);
   if (instance == nullptr) return fmi3Error;
   try {
-    return body(*instance);
+    return std::invoke(body, *instance, arguments...);
   } catch (const std::exception& error) {
     instance->give_up();
     return instance->refuse(std::string(function) + ": " + error.what());

@@ -49,58 +49,13 @@ constexpr std::string_view log_categories = R"(<LogCategories>
   <Category name="logStatusError" description="what went wrong"/>
 </LogCategories>)";
 
+// In FMI 3.0 the type is the variable's element, in 2.0 an element within.
 void append_variable(pugi::xml_node variables, const UnitVariable& variable,
-                     const UnitDescription& unit) {
+                     const UnitDescription& unit, bool is_2) {
   using Kind = UnitVariable::Kind;
   const bool is_flag = variable.kind == Kind::flag;
-  pugi::xml_node element = variables.append_child(is_flag ? "Boolean" : "Float64");
-  set_attribute(element, "name", variable.name);
-  set_attribute(element, "valueReference", std::to_string(variable.reference));
-  set_attribute(element, "description", variable.meaning);
-  if (variable.kind == Kind::time) {
-    set_attribute(element, "causality", "independent");
-    set_attribute(element, "variability", "continuous");
-  } else if (variable.kind == Kind::input) {
-    set_attribute(element, "causality", "input");
-    set_attribute(element, "variability", "continuous");
-  } else {
-    set_attribute(element, "causality", "output");
-    set_attribute(element, "variability", is_flag ? "discrete" : "continuous");
-    set_attribute(element, "initial", "calculated");
-  }
-  if (!variable.unit.empty()) set_attribute(element, "unit", variable.unit);
-  if (variable.kind == Kind::input) {
-    set_attribute(element, "min", -unit.max_torque_N_m);
-    set_attribute(element, "max", unit.max_torque_N_m);
-    set_attribute(element, "start", 0.0);
-  }
-  if (!variable.old_name.empty()) {
-    set_attribute(element.append_child("Alias"), "name", variable.old_name);
-  }
-}
-
-// Outputs at a tick depend on no input at that tick.
-void append_structure(pugi::xml_node root, const UnitDescription& unit) {
-  pugi::xml_node structure = root.append_child("ModelStructure");
-  for (const char* name : {"Output", "InitialUnknown"}) {
-    for (const UnitVariable& variable : unit.variables) {
-      if (variable.kind != UnitVariable::Kind::output &&
-          variable.kind != UnitVariable::Kind::flag) {
-        continue;
-      }
-      pugi::xml_node element = structure.append_child(name);
-      set_attribute(element, "valueReference", std::to_string(variable.reference));
-      set_attribute(element, "dependencies", "");
-    }
-  }
-}
-
-// Variables of FMI 2.0, where the type is an element within.
-void append_variable2(pugi::xml_node variables, const UnitVariable& variable,
-                      const UnitDescription& unit) {
-  using Kind = UnitVariable::Kind;
-  const bool is_flag = variable.kind == Kind::flag;
-  pugi::xml_node element = variables.append_child("ScalarVariable");
+  const char* type_name = is_flag ? "Boolean" : is_2 ? "Real" : "Float64";
+  pugi::xml_node element = variables.append_child(is_2 ? "ScalarVariable" : type_name);
   set_attribute(element, "name", variable.name);
   set_attribute(element, "valueReference", std::to_string(variable.reference));
   set_attribute(element, "description", variable.meaning);
@@ -110,25 +65,33 @@ void append_variable2(pugi::xml_node variables, const UnitVariable& variable,
   set_attribute(element, "causality", causality);
   set_attribute(element, "variability", is_flag ? "discrete" : "continuous");
   if (causality == std::string_view("output")) set_attribute(element, "initial", "calculated");
-  pugi::xml_node type = element.append_child(is_flag ? "Boolean" : "Real");
+  pugi::xml_node type = is_2 ? element.append_child(type_name) : element;
   if (!variable.unit.empty()) set_attribute(type, "unit", variable.unit);
   if (variable.kind == Kind::input) {
     set_attribute(type, "min", -unit.max_torque_N_m);
     set_attribute(type, "max", unit.max_torque_N_m);
     set_attribute(type, "start", 0.0);
   }
+  if (!is_2 && !variable.old_name.empty()) {
+    set_attribute(element.append_child("Alias"), "name", variable.old_name);
+  }
 }
 
-// Outputs as places among the variables, from 1; they depend on no input at a tick.
-void append_structure2(pugi::xml_node root, const UnitDescription& unit) {
+// Outputs at a tick depend on no input at that tick. FMI 3.0 names them by reference, 2.0 by their
+// place among the variables, from 1.
+void append_structure(pugi::xml_node root, const UnitDescription& unit, bool is_2) {
   pugi::xml_node structure = root.append_child("ModelStructure");
-  for (const char* name : {"Outputs", "InitialUnknowns"}) {
-    pugi::xml_node list = structure.append_child(name);
+  for (const std::string name : {"Output", "InitialUnknown"}) {
+    pugi::xml_node list = is_2 ? structure.append_child((name + "s").c_str()) : structure;
     for (size_t i = 0; i < unit.variables.size(); ++i) {
-      const UnitVariable::Kind kind = unit.variables[i].kind;
-      if (kind != UnitVariable::Kind::output && kind != UnitVariable::Kind::flag) continue;
-      pugi::xml_node element = list.append_child("Unknown");
-      set_attribute(element, "index", std::to_string(i + 1));
+      const UnitVariable& variable = unit.variables[i];
+      if (variable.kind != UnitVariable::Kind::output &&
+          variable.kind != UnitVariable::Kind::flag) {
+        continue;
+      }
+      pugi::xml_node element = list.append_child(is_2 ? "Unknown" : name.c_str());
+      set_attribute(element, is_2 ? "index" : "valueReference",
+                    std::to_string(is_2 ? i + 1 : variable.reference));
       set_attribute(element, "dependencies", "");
     }
   }
@@ -166,9 +129,9 @@ std::string model_description(FmiVersion version, const UnitDescription& unit,
   set_attribute(experiment, "stepSize", 1.0 / unit.rate_Hz);
   pugi::xml_node variables = root.append_child("ModelVariables");
   for (const UnitVariable& variable : unit.variables) {
-    (is_2 ? append_variable2 : append_variable)(variables, variable, unit);
+    append_variable(variables, variable, unit, is_2);
   }
-  (is_2 ? append_structure2 : append_structure)(root, unit);
+  append_structure(root, unit, is_2);
   std::ostringstream text;
   document.save(text, "  ", pugi::format_indent, pugi::encoding_utf8);
   return text.str();

@@ -100,11 +100,8 @@ const std::vector<ScanView>& scan_views() {
 }  // namespace
 
 Plot empirical_plot(const EmpiricalTorque& torque) {
-  Plot plot;
-  plot.name = "empirical_torque";
-  plot.title = "Empirical torque over " + spoken(torque.variable);
-  plot.x_label = spoken(torque.variable) + " [" + torque.unit + "]";
-  plot.y_label = "torque [N m]";
+  Plot plot{"empirical_torque", "Empirical torque over " + spoken(torque.variable),
+            spoken(torque.variable) + " [" + torque.unit + "]", "torque [N m]"};
   plot.levels = {0.0};
   const std::string axes = torque.about_lab_axes ? "about lab " : "about body ";
   constexpr std::array colours = {Plot::Colour::blue, Plot::Colour::vermilion, Plot::Colour::green};
@@ -174,10 +171,7 @@ Plot channel_plot(const ChannelSeries& channel, const RecordingSeries& recording
        curve_through(channel.time_s, channel.residual_after, Plot::Colour::blue, 1)}};
   if (channel.noise > 0.0) residuals.levels = {-2.0 * channel.noise, 2.0 * channel.noise};
   residuals.robust_range = true;
-  Plot plot;
-  plot.name = channel.name;
-  plot.title = channel.label.empty() ? channel.name : channel.label;
-  plot.x_label = "time [s]";
+  Plot plot{channel.name, channel.label.empty() ? channel.name : channel.label, "time [s]", ""};
   plot.robust_range = true;
   if (channel.measured.empty()) {
     plot.y_label = residuals.y_label;
@@ -292,13 +286,11 @@ std::vector<int> sweeps_of(const LightSeries& light) {
 
 Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_found) {
   const LightSeries& light = *recording.light;
-  Plot plot;
-  plot.name = "sweep_" + std::to_string(sweep) + "_of_" + recording.recording;
   const bool is_only = sweeps_of(light).size() == 1;
-  plot.title = "Curve " + (is_only ? "" : std::to_string(sweep) + " ") + "of " +
-               recording.recording + (recording.is_held_out ? ", never fitted" : "");
-  plot.x_label = "Voltage [V]";
-  plot.y_label = "Current [A]";
+  Plot plot{"sweep_" + std::to_string(sweep) + "_of_" + recording.recording,
+            "Curve " + (is_only ? "" : std::to_string(sweep) + " ") + "of " + recording.recording +
+                (recording.is_held_out ? ", never fitted" : ""),
+            "Voltage [V]", "Current [A]"};
   Plot::Curve measured, before, after, off_before, off_after;
   measured.dots = true;
   measured.colour = Plot::Colour::grey;

@@ -16,14 +16,6 @@ Quat turned(const Vec3& rotation_rad) {
   return Quat(Eigen::AngleAxisd(angle, rotation_rad / angle));
 }
 
-// The place of the value nearest to a time in a rising list.
-size_t nearest_instant(const std::vector<double>& time_s, double at_s) {
-  const auto after = std::ranges::lower_bound(time_s, at_s);
-  if (after == time_s.begin()) return 0;
-  const auto i = static_cast<size_t>(after - time_s.begin());
-  return i == time_s.size() || at_s - time_s[i - 1] < time_s[i] - at_s ? i - 1 : i;
-}
-
 const ChannelSeries* series_channel(const RecordingSeries& recording, const std::string& name) {
   const auto at = std::ranges::find(recording.channels, name, &ChannelSeries::name);
   return at == recording.channels.end() || at->time_s.empty() ? nullptr : &*at;
@@ -115,10 +107,6 @@ double enlargement(double largest_rad, double noise_rad) {
     if (next <= most) factor = next;
   }
   return factor;
-}
-
-void add_sentence(std::string& text, const std::string& sentence) {
-  text += (text.empty() ? "" : " ") + sentence;
 }
 
 // Angles between measurement and models, in body axes, with their errors.
@@ -326,6 +314,17 @@ class MotionStage {
 };
 
 }  // namespace
+
+size_t nearest_instant(const std::vector<double>& time_s, double at_s) {
+  const auto after = std::ranges::lower_bound(time_s, at_s);
+  if (after == time_s.begin()) return 0;
+  const auto i = static_cast<size_t>(after - time_s.begin());
+  return i == time_s.size() || at_s - time_s[i - 1] < time_s[i] - at_s ? i - 1 : i;
+}
+
+void add_sentence(std::string& text, const std::string& sentence) {
+  text += (text.empty() ? "" : " ") + sentence;
+}
 
 void add_curves(const RecordingSeries& recording, const std::string& suffix,
                 const std::optional<PlotCursor>& cursor, RunPage& page) {

@@ -26,12 +26,11 @@ void append_values(std::vector<Value>& to, const std::vector<Value>& from) {
 }
 
 void append_channel(ChannelSeries& to, const ChannelSeries& from) {
-  append_values(to.time_s, from.time_s);
-  append_values(to.measured, from.measured);
-  append_values(to.before, from.before);
-  append_values(to.after, from.after);
-  append_values(to.residual_before, from.residual_before);
-  append_values(to.residual_after, from.residual_after);
+  using Series = ChannelSeries;
+  for (const auto of : {&Series::time_s, &Series::measured, &Series::before, &Series::after,
+                        &Series::residual_before, &Series::residual_after}) {
+    append_values(to.*of, from.*of);
+  }
 }
 
 // The end of a recording behind its beginning.
@@ -44,15 +43,13 @@ void append_recording(RecordingSeries& to, const RecordingSeries& from) {
   append_values(to.attitude.error_rad, from.attitude.error_rad);
   append_values(to.held_out_s, from.held_out_s);
   if (!to.light || !from.light) return;
-  append_values(to.light->u_m, from.light->u_m);
-  append_values(to.light->v_m, from.light->v_m);
-  append_values(to.light->voltage_V, from.light->voltage_V);
+  using Light = LightSeries;
+  for (const auto of : {&Light::u_m, &Light::v_m, &Light::voltage_V, &Light::measured,
+                        &Light::before, &Light::after, &Light::noise}) {
+    append_values(*to.light.*of, *from.light.*of);
+  }
   append_values(to.light->sweep, from.light->sweep);
   append_values(to.light->lab_from_body, from.light->lab_from_body);
-  append_values(to.light->measured, from.light->measured);
-  append_values(to.light->before, from.light->before);
-  append_values(to.light->after, from.light->after);
-  append_values(to.light->noise, from.light->noise);
 }
 
 double first_time_s(const RecordingSeries& recording) {

@@ -134,11 +134,6 @@ StageAxis axis_of(const std::string& name, const std::vector<double>& angles_rad
 
 }  // namespace
 
-const Table* table_of(const Product& product, const std::string& name) {
-  const auto at = std::ranges::find(product.tables, name, &Table::name);
-  return at == product.tables.end() ? nullptr : &*at;
-}
-
 RunPage page_of(const RunResult& result, const PageHead& head,
                 const std::vector<std::string>& headlines) {
   constexpr size_t most_headlines = 6;
@@ -163,7 +158,7 @@ RunPage page_of(const RunResult& result, const PageHead& head,
 
 std::vector<PowerStage> power_stages(const OpticalRun& run, const OpticalResult& light,
                                      const Product& product) {
-  const Table* losses = table_of(product, "losses");
+  const Table* losses = find_table(product, "losses");
   return losses != nullptr ? stages_of_array(*losses) : stages_of_light(run, light);
 }
 

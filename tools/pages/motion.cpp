@@ -22,12 +22,7 @@ const std::vector<double>* column_of(const Table* table, const std::string& name
 
 // The value of a column at the row nearest to a time.
 double at_time(const Table& table, const std::vector<double>& values, double time_s) {
-  const std::vector<double>& t = table.column("t_s").values;
-  const auto after = std::ranges::lower_bound(t, time_s);
-  if (after == t.begin()) return values.front();
-  auto i = static_cast<size_t>(after - t.begin());
-  if (i == t.size() || time_s - t[i - 1] < t[i] - time_s) --i;
-  return values[i];
+  return values[nearest_instant(table.column("t_s").values, time_s)];
 }
 
 // Columns stem_x_N_m, stem_y_N_m, stem_z_N_m of the torque of this stem; empty: of all torques.
@@ -60,8 +55,8 @@ struct Shown {
 };
 
 std::vector<Shown> shown_figures(const Product& product) {
-  const Table* history = table_of(product, "time_history");
-  const Table* power = table_of(product, "power");
+  const Table* history = find_table(product, "time_history");
+  const Table* power = find_table(product, "power");
   std::vector<Shown> shown;
   const auto add = [&](const char* label, const char* unit, const Table* table, const char* name) {
     if (const auto* values = column_of(table, name))
@@ -98,10 +93,6 @@ double largest_turn_rad(const std::vector<PlatformState>& states) {
         std::max(largest, states[i].lab_from_body.angularDistance(states[i - 1].lab_from_body));
   }
   return largest;
-}
-
-void add_remark(SceneStage& stage, const std::string& remark) {
-  stage.remark += (stage.remark.empty() ? "" : " ") + remark;
 }
 
 // The optical half of an experiment that has one.
@@ -176,7 +167,7 @@ RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageH
   SceneStage stage =
       light ? stage_of(*light, StageMaps::own) : platform_stage(run.run->model.platform);
   const std::vector<PlatformState> states = thinned(run.coupled->motion.states);
-  const Table* history = table_of(run.result.product, "time_history");
+  const Table* history = find_table(run.result.product, "time_history");
   const bool has_torques = history != nullptr && !torque_columns(*history, 'x', "").empty();
   const bool has_light =
       history != nullptr && !torque_columns(*history, 'x', "torque_radiation_pressure").empty();
@@ -205,9 +196,9 @@ RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageH
     light_along(stage, *light, attitudes);
   }
   if (const double turn_rad = largest_turn_rad(states); turn_rad > 0.5 * pi) {
-    add_remark(stage, "Between two instants of this page the body turns by up to " +
-                          show(std::round(turn_rad / degree_rad)) +
-                          " deg: how it turns between them is not to be seen.");
+    add_sentence(stage.remark, "Between two instants of this page the body turns by up to " +
+                                   show(std::round(turn_rad / degree_rad)) +
+                                   " deg: how it turns between them is not to be seen.");
   }
   page.stage = std::move(stage);
   for (const Plot& plot : run.result.product.plots) {

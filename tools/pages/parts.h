@@ -17,9 +17,6 @@ namespace photorque {
 RunPage page_of(const RunResult& result, const PageHead& head,
                 const std::vector<std::string>& headlines);
 
-// The table of this name; null where there is none.
-const Table* table_of(const Product& product, const std::string& name);
-
 // The way of the power through a run: of the array's table "losses" where there is one, otherwise
 // from the lamps to the parts that carry flux maps.
 std::vector<PowerStage> power_stages(const OpticalRun& run, const OpticalResult& light,
@@ -27,6 +24,10 @@ std::vector<PowerStage> power_stages(const OpticalRun& run, const OpticalResult&
 
 // "page.html", made when it is written.
 RunFile page_file(RunPage page);
+
+// The place of the value nearest to a time in a rising list.
+size_t nearest_instant(const std::vector<double>& time_s, double at_s);
+void add_sentence(std::string& text, const std::string& sentence);
 
 // Parts, lamps and camera, and the surfaces of all flux maps, in one painting of their irradiance,
 // and of torque maps, one for each axis; no states yet. With `maps` = "own" their maps come with

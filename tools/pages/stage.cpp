@@ -174,10 +174,10 @@ void light_along(SceneStage& stage, const OpticalRun& run, const std::vector<Qua
   for (size_t i = 0; i < states; ++i) {
     stage.light_of_state.push_back(std::min(i * lights / states, lights - 1));
   }
-  stage.remark += (stage.remark.empty() ? "" : " ") +
-                  ("Irradiance and rays are traced at " + std::to_string(lights)) +
-                  " instants of the run, with all lamps at full power; shown are those of the "
-                  "nearest instant.";
+  add_sentence(stage.remark,
+               "Irradiance and rays are traced at " + std::to_string(lights) +
+                   " instants of the run, with all lamps at full power; shown are those of the "
+                   "nearest instant.");
 }
 
 void add_light(SceneStage& stage, const OpticalRun& run, const RigidTransform& lab_from_body,

@@ -84,8 +84,7 @@ Product TickClock::product() const {
   put("ticks", static_cast<double>(late_s.size()));
   put("ticks_missed", static_cast<double>(missed_));
   put("slipped_s", 1e-9 * static_cast<double>(slipped_ns_));
-  Table table = Table::of("deadline_percentiles", "Lateness of ticks and duration of steps",
-                          {"of", "p50_us", "p99_us", "p99_99_us", "largest_us"});
+  Table table = Table::of("deadline_percentiles", "Lateness of ticks and duration of steps");
   for (const auto& [name, sorted] : {std::pair{"lateness", &late_s}, {"computing", &computing_s}}) {
     Table::Row row = table.row().set("of", name);
     for (const auto& [suffix, fraction] :
@@ -96,11 +95,8 @@ Product TickClock::product() const {
     }
   }
   product.tables.push_back(std::move(table));
-  Plot plot;
-  plot.name = "deadlines";
-  plot.title = "Fraction of ticks later, and of steps longer, than a time";
-  plot.x_label = "time [µs]";
-  plot.y_label = "fraction of all ticks";
+  Plot plot{"deadlines", "Fraction of ticks later, and of steps longer, than a time", "time [µs]",
+            "fraction of all ticks"};
   plot.x_log = plot.y_log = true;
   for (Plot::Curve curve :
        {beyond("sent after the tick", late_s), beyond("computing the step", computing_s)}) {

@@ -31,9 +31,7 @@ struct LinkSettings {
   std::vector<double> trace_s;
 };
 
-// Reads a table with delay_s, jitter_s, jitter ("exponential", "uniform", "gaussian"), loss,
-// burst_begin, burst_end, burst_loss, reorder, trace: a CSV in `folder` with a column delay_s, −1
-// where the packet was lost.
+// Reads a table of link_keys(); its file of measured delays lies in `folder`.
 LinkSettings read_link(const Settings& settings, const std::filesystem::path& folder);
 std::vector<Key> link_keys();
 

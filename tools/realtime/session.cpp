@@ -371,7 +371,7 @@ Product Session::product() const {
   put("commands_lost_by_link", from_client_.fate().lost());
   put("commands_overtaken", overtaken_);
   if (!is_paced()) put("answers_that_came_twice", unanswered_);
-  Table table = Table::of("refused", "Packets that were refused", {"reason", "packets"});
+  Table table = Table::of("refused", "Packets that were refused");
   for (size_t i = 0; i < refusal_names.size(); ++i) {
     table.row()
         .set("reason", refusal_names[i])

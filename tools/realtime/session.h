@@ -38,11 +38,7 @@ struct ServeSettings {
   LinkSettings to_client, from_client;
 };
 
-// Reads [serve], which may be absent: mode ("paced", "lockstep"), rate_Hz (160), address
-// ("127.0.0.1"), port (4160; 0: any), wait_for_client (true), client_timeout_s (60), max_torque_N_m
-// (1), silence_s (2), hold_s (none), deadline_s (a step), on_miss ("catch_up", "slip", "stop"),
-// spin_s (50e-6), realtime_priority (0), send_truth (false), and the links [serve.to_client] and
-// [serve.from_client].
+// Reads [serve], which may be absent, with [serve.to_client] and [serve.from_client].
 ServeSettings read_serve(const Settings& root);
 Key serve_table();
 

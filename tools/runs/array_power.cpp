@@ -183,9 +183,7 @@ Product array_power_product(const ArrayDesign& design, const ArrayResult& array,
   product.quantities.push_back({"cell_temperature_above_rated_K",
                                 {array.temperature_K.value - design.rated_temperature_K,
                                  array.temperature_K.standard_error}});
-  Table temperature =
-      Table::of("cell_temperature", "The temperature of the cells",
-                {"origin", "cell_temperature_K", "array_power_slope_W_K", "rated_temperature_K"});
+  Table temperature = Table::of("cell_temperature", "The temperature of the cells");
   temperature.row()
       .set("origin", origin_of_temperature(design))
       .set("cell_temperature_K", array.temperature_K.value)

@@ -73,9 +73,7 @@ Table tilted_table(const Console& console, const ArrayTarget& target,
 
 Table known_cell_table(const Console& console, const ArrayDesign& design, const LossInputs& light,
                        double irradiance_W_m2) {
-  Table known = Table::of(
-      "known_cells", "Known cells in this light",
-      {"cell", "irradiance_W_m2", "open_circuit_V", "fill_factor", "eqe_voc_ff_V", "efficiency"});
+  Table known = Table::of("known_cells", "Known cells in this light");
   for (const double irradiance : {1000.0, irradiance_W_m2}) {
     if (!(irradiance > 0.0)) continue;  // no light falls on the array
     console.line("  known cells at " + show(irradiance) + " W/m²:");
@@ -97,8 +95,7 @@ Table known_cell_table(const Console& console, const ArrayDesign& design, const 
 
 Table sensitivity_table(const Console& console, const ArrayDesign& design,
                         const ArrayResult& result) {
-  Table table =
-      Table::of("sensitivities", "Sensitivity of the power", {"change", "power_W", "relative"});
+  Table table = Table::of("sensitivities", "Sensitivity of the power");
   console.line("  sensitivity of the power:");
   for (const ArraySensitivity& s : sensitivities(design, result)) {
     console.line("    " + padded(s.change, 34) + show_percent(s.relative));
@@ -137,9 +134,7 @@ Product tracker_product(const std::vector<TrackerRun>& runs) {
   Table table =
       Table::of("trackers", "Trackers while the platform moves",
                 {"tracker", "efficiency", "false_maximum_s", "energy_J", "best_energy_J"});
-  Plot plot{
-      "tracking", "Trackers while the platform moves", "time [s]", "power [W]", {}, false, false,
-      {}};
+  Plot plot{"tracking", "Trackers while the platform moves", "time [s]", "power [W]"};
   Plot::Panel voltage{"voltage [V]", {}, false};
   for (const TrackerRun& run : runs) {
     const std::string name = name_of(run.tracker.kind);
@@ -265,7 +260,7 @@ Product layout_report(const Console& console, const ArrayPower& array, const Cel
                (gap > 1e-9 ? " (" + show_percent(gap) + " more)" : "") + "; " +
                std::to_string(found.tried) + " tried");
   std::string wiring = "[";
-  Table table = Table::of("layout", "Best wiring found", {"cell", "string", "substring"});
+  Table table = Table::of("layout", "Best wiring found");
   for (size_t s = 0; s < found.wiring.strings.size(); ++s) {
     wiring += s ? ", [" : "[";
     for (size_t b = 0; b < found.wiring.strings[s].substrings.size(); ++b) {

@@ -28,8 +28,8 @@ struct ArrayReport {
     std::optional<double> wall_plug, collimator, converter;
   } chain;
   std::optional<ArrayTarget> target;  // [array.target]
-  // [array.tracker]: see read_trackers(); and the motion during which they run: time_s, tilt_deg
-  // and, if it changes, heading_deg, arrays of equal length. The scene is traced at each instant.
+  // [array.tracker]: see read_trackers(); and the motion during which they run, instant by instant.
+  // The scene is traced at each.
   struct Motion {
     std::vector<double> time_s, tilt_rad, heading_rad;
     std::vector<Tracker> trackers;

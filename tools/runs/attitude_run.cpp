@@ -7,6 +7,7 @@
 
 #include "core/files.h"
 #include "raytrace/tracing/shadow.h"
+#include "scenes/experiment/named_files.h"
 #include "scenes/gltf/reader.h"
 
 namespace photorque {
@@ -20,9 +21,8 @@ constexpr const char* optical_tables[] = {"scene", "material",   "source", "rece
 void collect_files(const SettingsNode& node, const std::filesystem::path& folder,
                    std::vector<std::filesystem::path>& files) {
   if (const auto* text = std::get_if<std::string>(&node.value)) {
-    std::error_code ignored;
-    const std::filesystem::path path = folder / *text;
-    if (!text->empty() && std::filesystem::is_regular_file(path, ignored)) files.push_back(path);
+    std::filesystem::path path = named_file(folder, *text);
+    if (!path.empty()) files.push_back(std::move(path));
   } else if (const auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
     for (const SettingsNode& item : *items) collect_files(item, folder, files);
   } else if (const auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
@@ -40,12 +40,6 @@ std::string brief(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
-}
-
-// Characters, not bytes, of a text in UTF-8.
-size_t width_of(const std::string& text) {
-  return static_cast<size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
 // Smallest height above a marker at which its light starts, for models without thickness.
@@ -131,8 +125,8 @@ void print_table(const Console& console, const Table& table,
     std::string line;
     for (size_t c = 0; c < cells.size(); ++c) {
       size_t width = 0;
-      for (const std::string& cell : cells[c]) width = std::max(width, width_of(cell));
-      const std::string space(width - width_of(cells[c][row]), ' ');
+      for (const std::string& cell : cells[c]) width = std::max(width, letters_of(cell));
+      const std::string space(width - letters_of(cells[c][row]), ' ');
       line += "  " + (is_text[c] ? cells[c][row] + space : space + cells[c][row]);
     }
     line.erase(line.find_last_not_of(' ') + 1);

@@ -117,9 +117,13 @@ std::string show_duration(double seconds) {
   return show_brief(seconds / 86400.0) + " d";
 }
 
-std::string padded(std::string text, size_t width) {
-  const auto letters = static_cast<size_t>(std::ranges::count_if(
+size_t letters_of(std::string_view text) {
+  return static_cast<size_t>(std::ranges::count_if(
       text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
+}
+
+std::string padded(std::string text, size_t width) {
+  const size_t letters = letters_of(text);
   return letters < width ? text + std::string(width - letters, ' ') : text + " ";
 }
 

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "core/product.h"
 
@@ -47,7 +48,9 @@ std::string show_percent(double fraction);
 std::string show_duration(double seconds);
 // Three significant digits, for checks and percentages: "2.02".
 std::string show_brief(double value);
-// Filled up to `width` letters, which may have several bytes; at least one space at the end.
+// The number of letters of a text in UTF-8, which may have several bytes each.
+size_t letters_of(std::string_view text);
+// Filled up to `width` letters; at least one space at the end.
 std::string padded(std::string text, size_t width);
 // Six significant digits, exponents as ×10ⁿ: "1.127×10⁻⁹".
 std::string show(double value);

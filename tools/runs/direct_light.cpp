@@ -6,7 +6,6 @@
 
 #include "core/constants.h"
 #include "receivers/gather/bodies/wrench.h"
-#include "tools/runs/counting_error.h"
 
 namespace photorque {
 namespace {
@@ -99,9 +98,10 @@ std::array<Estimate, 3> total_N_m(const TorqueMapReceiver& map, const BinSums& s
 // `scale_N_m`: of all the light, at the largest arm. `counting_N_m`: counting_error_W(), there too.
 DirectTorque compare(const TorqueMapReceiver& map, const Gathered& gathered, const BinSums& rays,
                      double scale_N_m, double counting_N_m) {
-  DirectTorque torque{map.name(), total_N_m(map, gathered.direct), total_N_m(map, rays)};
+  DirectTorque torque{map.name()};
+  const auto all_own = total_N_m(map, gathered.direct), all_by_rays = total_N_m(map, rays);
   for (size_t axis = 0; axis < 3; ++axis) {
-    const Estimate &own = torque.gathered_N_m[axis], &by_rays = torque.rays_N_m[axis];
+    const Estimate &own = all_own[axis], &by_rays = all_by_rays[axis];
     const double sigma = std::hypot(own.standard_error, by_rays.standard_error, counting_N_m) +
                          ray_rounding * scale_N_m;
     torque.worst_sigma = std::max(torque.worst_sigma, std::abs(own.value - by_rays.value) / sigma);
@@ -110,23 +110,24 @@ DirectTorque compare(const TorqueMapReceiver& map, const Gathered& gathered, con
 }
 
 // `scale_N`: of all the light; `arm_m`: the largest.
-DirectWrench compare(const WrenchReceiver& receiver, const Gathered& gathered, const BinSums& rays,
+DirectTorque compare(const WrenchReceiver& receiver, const Gathered& gathered, const BinSums& rays,
                      double scale_N, double counting_N, double arm_m) {
   BinSums own = rays;
   replace_direct(gathered, own);
-  DirectWrench wrench{receiver.name(), receiver.direct(own), receiver.direct(rays)};
+  DirectTorque wrench{receiver.name()};
+  const WrenchEstimate all_own = receiver.direct(own), all_by_rays = receiver.direct(rays);
   const auto values = [](const WrenchEstimate& e) {
     Eigen::Array<double, 6, 1> all;
     all << e.mean.force_N.array(), e.mean.torque_N_m.array();
     return all;
   };
-  const auto mine = values(wrench.gathered), theirs = values(wrench.rays);
+  const auto mine = values(all_own), theirs = values(all_by_rays);
   for (Eigen::Index k = 0; k < 6; ++k) {
     const double scale = k < 3 ? scale_N : scale_N * arm_m;
     const double counting = counting_N * scale / scale_N;
-    const double sigma = std::sqrt(wrench.gathered.covariance(k, k) + wrench.rays.covariance(k, k) +
-                                   counting * counting) +
-                         ray_rounding * scale;
+    const double sigma =
+        std::sqrt(all_own.covariance(k, k) + all_by_rays.covariance(k, k) + counting * counting) +
+        ray_rounding * scale;
     wrench.worst_sigma = std::max(wrench.worst_sigma, std::abs(mine[k] - theirs[k]) / sigma);
   }
   return wrench;

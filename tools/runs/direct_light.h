@@ -2,10 +2,12 @@
 // with.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "core/wrench.h"
+#include "raytrace/tracing/tracer.h"
 #include "receivers/gather/gather.h"
 #include "scenes/experiment/experiment.h"
 
@@ -25,17 +27,10 @@ struct DirectLight {
   uint64_t shadow_rays = 0;
 };
 
-// How the two routes to the torque of direct light on a torque map agree, x, y, z.
+// How the two routes to the torque of direct light on a torque map, or to its wrench on a body,
+// agree.
 struct DirectTorque {
   std::string name;
-  std::array<Estimate, 3> gathered_N_m, rays_N_m;  // totals
-  double worst_sigma = 0.0;                        // largest difference in standard errors of both
-};
-
-// How the two routes to the wrench of direct light on a body agree.
-struct DirectWrench {
-  std::string name;
-  WrenchEstimate gathered, rays;
   double worst_sigma = 0.0;  // largest difference of a component in standard errors of both
 };
 
@@ -43,7 +38,7 @@ struct DirectWrench {
 struct DirectRoute {
   std::vector<DirectLight> gathered;   // by flux map; empty where rays alone had to do
   std::vector<DirectTorque> torques;   // by torque map, likewise
-  std::vector<DirectWrench> wrenches;  // by wrench, likewise
+  std::vector<DirectTorque> wrenches;  // by wrench, likewise
   std::vector<std::string> notices;  // one line for each map that was left to the rays for its cost
 };
 
@@ -55,6 +50,13 @@ struct DirectRoute {
 DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scene,
                         const WrenchGather* bodies, const RigidTransform& lab_from_body,
                         const TraceOptions& options, TraceResult& result);
+
+// The error of a power that counts rays, where the replicates do not show it: Sobol points can meet
+// a surface equally often in all of them, and still be off by part of a ray in each. One ray of
+// each replicate, in the mean of all.
+inline double counting_error_W(const TraceResult& result, int replicates) {
+  return result.sent_W / static_cast<double>(result.rays) * std::sqrt(replicates);
+}
 
 // Largest relative standard error of any bin of any flux map with more than a tenth of the map's
 // largest irradiance.

@@ -14,7 +14,6 @@
 #include "receivers/gather/bodies/wrench.h"
 #include "scenes/effects/stated.h"
 #include "sources/profiles/beam_shape.h"
-#include "tools/runs/counting_error.h"
 #include "tools/runs/memory.h"
 
 namespace photorque {
@@ -220,18 +219,16 @@ std::vector<std::string> OpticalRun::warnings(const OpticalResult& result) const
                     show(direct.gathered_W, "W") + " and by rays " + show(direct.rays_W, "W") +
                     " differ by " + show(difference) + " standard errors" + by_edges);
   }
-  for (const DirectTorque& direct : result.direct.torques) {
-    if (direct.worst_sigma <= loud_sigma) continue;
-    lines.push_back("torque of direct light on " + direct.name +
-                    ": gathered and by rays differ by " + show(direct.worst_sigma) +
-                    " standard errors" + by_edges);
-  }
-  for (const DirectWrench& direct : result.direct.wrenches) {
-    if (direct.worst_sigma <= loud_sigma) continue;
-    lines.push_back("force or torque of direct light on " + direct.name +
-                    ": gathered and by rays differ by " + show(direct.worst_sigma) +
-                    " standard errors" + by_edges);
-  }
+  const auto warn_of = [&](const std::string& what, const std::vector<DirectTorque>& checks) {
+    for (const DirectTorque& direct : checks) {
+      if (direct.worst_sigma <= loud_sigma) continue;
+      lines.push_back(what + " of direct light on " + direct.name +
+                      ": gathered and by rays differ by " + show(direct.worst_sigma) +
+                      " standard errors" + by_edges);
+    }
+  };
+  warn_of("torque", result.direct.torques);
+  warn_of("force or torque", result.direct.wrenches);
   return lines;
 }
 
@@ -346,16 +343,15 @@ void print_direct_checks(const Console& console, const OpticalResult& result) {
                  show_brief(std::abs(direct.difference_sigma)) + " standard errors in all, " +
                  show_brief(std::sqrt(direct.mean_square)) + " (rms) in a bin");
   }
-  for (const DirectTorque& direct : result.direct.torques) {
-    console.line("  torque of direct light on " + direct.name +
-                 ": gathered and by rays differ by at most " + show_brief(direct.worst_sigma) +
-                 " standard errors");
-  }
-  for (const DirectWrench& direct : result.direct.wrenches) {
-    console.line("  force and torque of direct light on " + direct.name +
-                 ": gathered and by rays differ by at most " + show_brief(direct.worst_sigma) +
-                 " standard errors");
-  }
+  const auto print = [&](const std::string& what, const std::vector<DirectTorque>& checks) {
+    for (const DirectTorque& direct : checks) {
+      console.line("  " + what + " of direct light on " + direct.name +
+                   ": gathered and by rays differ by at most " + show_brief(direct.worst_sigma) +
+                   " standard errors");
+    }
+  };
+  print("torque", result.direct.torques);
+  print("force and torque", result.direct.wrenches);
   console.line("  largest standard error of a bin above a tenth of the peak: " +
                show_brief(100.0 * result.worst_bin_error) + " %");
   console.line("  " + std::to_string(result.rays) + " rays, " + std::to_string(result.segments) +

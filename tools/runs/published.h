@@ -11,13 +11,8 @@
 
 namespace photorque {
 
-// One `[[published]]` of an experiment file:
-//   quantity  name of a headline figure of summary.json
-//   value     as published, in the unit that the name of the quantity ends in
-//   tilt_deg  the attitude that it holds for; the figure is left out at others
-//   rounded_to  one unit of its last printed digit
-//   source    where it was published
-//   why       why ours differs, and which key changes it
+// One `[[published]]` of an experiment file: a headline figure of summary.json, in the unit that
+// its name ends in, at a tilt.
 struct PublishedFigure {
   std::string quantity;
   double value = 0.0;

@@ -71,8 +71,7 @@ double radiative_limit(double wavelength_m, double irradiance_W_m2, double gap_J
 }
 
 Table paper_supply_table(const SupplyTrade& trade) {
-  Table table = Table::of("paper_supply", "Section III.B of the paper compared with ours",
-                          {"quantity", "why", "published", "ours"});
+  Table table = Table::of("paper_supply", "Section III.B of the paper compared with ours");
   const auto row = [&](const char* quantity, double published, double ours, const char* why) {
     table.row()
         .set("quantity", quantity)

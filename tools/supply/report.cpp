@@ -10,12 +10,7 @@ namespace photorque {
 namespace {
 
 Table ways_table(const SupplyTrade& trade) {
-  Table table =
-      Table::of("supply", "Power supplies",
-                {"way", "mass_kg", "mass_error_kg", "source_W", "source_error_W",
-                 "delivered_level_W", "delivered_tilted_W", "delivered_tilted_error_W",
-                 "torque_N_m", "torque_error_N_m", "torque_N_m_per_W", "torque_error_N_m_per_W",
-                 "angle_deg_per_W", "angle_error_deg_per_W", "alternating_N_m"});
+  Table table = Table::of("supply", "Power supplies");
   for (const SupplyOption& option : trade.options) {
     const SupplyDisturbance worst = disturbance_of(option, trade.task);
     table.row()
@@ -39,9 +34,7 @@ Table ways_table(const SupplyTrade& trade) {
 }
 
 Table tilt_table(const SupplyTrade& trade) {
-  Table table = Table::of("supply_by_tilt", "Every supply over the tilt",
-                          {"way", "tilt_deg", "delivered_W", "delivered_error_W", "torque_N_m",
-                           "torque_error_N_m", "alternating_N_m"});
+  Table table = Table::of("supply_by_tilt", "Every supply over the tilt");
   for (const SupplyOption& option : trade.options) {
     for (size_t t = 0; t < option.curve.size(); ++t) {
       const SupplyPoint& point = option.curve[t];
@@ -59,8 +52,7 @@ Table tilt_table(const SupplyTrade& trade) {
 }
 
 Table figures_of_ways(const SupplyTrade& trade) {
-  Table table =
-      Table::of("supply_figures", "Figures of each supply", {"way", "figure", "value", "error"});
+  Table table = Table::of("supply_figures", "Figures of each supply");
   for (const SupplyOption& option : trade.options) {
     for (const auto& [name, estimate] : option.figures) {
       table.row()
@@ -74,8 +66,7 @@ Table figures_of_ways(const SupplyTrade& trade) {
 }
 
 Table charge_table(const SupplyTrade& trade) {
-  Table table = Table::of("battery_by_charge", "Torque of the battery's lithium at zero tilt",
-                          {"charge_fraction", "torque_N_m"});
+  Table table = Table::of("battery_by_charge", "Torque of the battery's lithium at zero tilt");
   for (size_t i = 0; i < trade.charge_fraction.size(); ++i) {
     table.row()
         .set("charge_fraction", trade.charge_fraction[i])
@@ -90,14 +81,9 @@ constexpr double least_torque_N_m = 1e-13;
 constexpr double level_torque_N_m = 1e-10;
 
 Plot tilt_plot(const SupplyTrade& trade) {
-  Plot plot;
-  plot.name = "supply_over_tilt";
-  plot.title = "Power to the load and disturbance torque over the tilt";
-  plot.x_label = "tilt [deg]";
-  plot.y_label = "delivered [W]";
-  Plot::Panel torque;
-  torque.y_label = "|torque| [N m]";
-  torque.y_log = true;
+  Plot plot{"supply_over_tilt", "Power to the load and disturbance torque over the tilt",
+            "tilt [deg]", "delivered [W]"};
+  Plot::Panel torque{"|torque| [N m]", {}, true};
   for (const SupplyOption& option : trade.options) {
     Plot::Curve delivered, pushes;
     delivered.label = pushes.label = option.name;
@@ -123,11 +109,9 @@ Plot tilt_plot(const SupplyTrade& trade) {
 }
 
 Plot charge_plot(const SupplyTrade& trade) {
-  Plot plot;
-  plot.name = "battery_torque_by_charge";
-  plot.title = "Torque of the battery's lithium by the charge drawn, at zero tilt";
-  plot.x_label = "charge drawn [% of the total]";
-  plot.y_label = "torque [N m]";
+  Plot plot{"battery_torque_by_charge",
+            "Torque of the battery's lithium by the charge drawn, at zero tilt",
+            "charge drawn [% of the total]", "torque [N m]"};
   Plot::Curve curve;
   for (const double fraction : trade.charge_fraction) curve.x.push_back(100.0 * fraction);
   curve.y = trade.battery_torque_N_m;
@@ -153,10 +137,6 @@ void add_quantities(const SupplyTrade& trade, Product& product) {
   }
 }
 
-const Table& table_called(const Product& product, const std::string& name) {
-  return *std::ranges::find(product.tables, name, &Table::name);
-}
-
 }  // namespace
 
 Product supply_product(const SupplyTrade& trade) {
@@ -174,7 +154,7 @@ void print_supply(const Console& console, const Product& product, const SupplyTr
                show(task.tilt_rad.back() / degree_rad) + " deg");
   console.heading(
       "Supplies; torques are the largest over the tilts, angles the rotation in that time");
-  print_table(console, table_called(product, "supply"),
+  print_table(console, table_named(product, "supply"),
               {{"way", "way"},
                {"aboard [kg]", "mass_kg"},
                {"±", "mass_error_kg"},
@@ -195,7 +175,7 @@ void print_supply(const Console& console, const Product& product, const SupplyTr
   }
   const Console details = console.details();
   details.heading("Section III.B of the paper compared with ours");
-  const Table& paper = table_called(product, "paper_supply");
+  const Table& paper = table_named(product, "paper_supply");
   print_table(details, paper, {{"quantity", "quantity"}, {"paper", "published"}, {"ours", "ours"}});
   details.heading("Why");
   const auto& quantity = paper.column("quantity").texts;

@@ -41,10 +41,6 @@ SupplyTask read_supply_task(const Settings& root, const Settings& s) {
   return task;
 }
 
-double SupplyTask::weight_N() const {
-  return model.platform.mass_kg * model.environment.gravity_lab_m_s2.norm();
-}
-
 size_t UncertainInputs::add(const Settings& settings, const UncertainNumberKey& key) {
   inputs_.push_back(settings.get(key));
   return inputs_.size() - 1;

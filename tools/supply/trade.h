@@ -19,7 +19,6 @@ struct SupplyTask {
   AttitudeModel model;           // [platform] and [environment], no disturbances
 
   double level_moment_kg_m2() const { return model.platform.inertia_kg_m2(1, 1); }
-  double weight_N() const;
 };
 
 // The results at one tilt; the torque is about the axis of the tilt.

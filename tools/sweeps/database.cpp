@@ -183,11 +183,11 @@ void RunDatabase::prepare_tables() {
   }
   execute("PRAGMA synchronous = FULL");
   if (found == application) return;
-  execute("BEGIN IMMEDIATE");
-  execute(schema);
-  execute("PRAGMA application_id = " + std::to_string(application));
-  execute("PRAGMA user_version = " + std::to_string(format));
-  execute("COMMIT");
+  in_transaction([&] {
+    execute(schema);
+    execute("PRAGMA application_id = " + std::to_string(application));
+    execute("PRAGMA user_version = " + std::to_string(format));
+  });
 }
 
 std::optional<RunOutcome> RunDatabase::find(const std::string& hash) const {
@@ -205,9 +205,20 @@ std::optional<RunOutcome> RunDatabase::find(const std::string& hash) const {
   return outcome;
 }
 
-void RunDatabase::keep(const RunRecord& record) {
+// BEGIN IMMEDIATE, `work` and COMMIT; what fails is rolled back.
+void RunDatabase::in_transaction(const std::function<void()>& work) const {
   execute("BEGIN IMMEDIATE");
   try {
+    work();
+  } catch (...) {
+    sqlite3_exec(handle_, "ROLLBACK", nullptr, nullptr, nullptr);
+    throw;
+  }
+  execute("COMMIT");
+}
+
+void RunDatabase::keep(const RunRecord& record) {
+  in_transaction([&] {
     // One that failed has no figures to go with it.
     Statement(*this, "DELETE FROM run WHERE hash = ? AND status <> 0").bind(1, record.hash).step();
     Statement run(*this,
@@ -231,11 +242,7 @@ void RunDatabase::keep(const RunRecord& record) {
         figure.again();
       }
     }
-  } catch (...) {
-    sqlite3_exec(handle_, "ROLLBACK", nullptr, nullptr, nullptr);
-    throw;
-  }
-  execute("COMMIT");
+  });
 }
 
 std::set<std::string> RunDatabase::failed() const {
@@ -279,10 +286,9 @@ void RunDatabase::write_designs(const Table& table) {
                (column.texts.empty() ? " REAL" : " TEXT");
     places += places.empty() ? "?" : ", ?";
   }
-  execute("BEGIN IMMEDIATE");
-  execute("DROP TABLE IF EXISTS designs");
-  execute("CREATE TABLE designs(" + columns + ")");
-  try {
+  in_transaction([&] {
+    execute("DROP TABLE IF EXISTS designs");
+    execute("CREATE TABLE designs(" + columns + ")");
     Statement insert(*this, "INSERT INTO designs VALUES(" + places + ")");
     for (size_t row = 0; row < rows; ++row) {
       int place = 1;
@@ -296,11 +302,7 @@ void RunDatabase::write_designs(const Table& table) {
       insert.step();
       insert.again();
     }
-  } catch (...) {
-    sqlite3_exec(handle_, "ROLLBACK", nullptr, nullptr, nullptr);
-    throw;
-  }
-  execute("COMMIT");
+  });
 }
 
 void RunDatabase::copy_to(const std::filesystem::path& path) const {

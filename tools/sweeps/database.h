@@ -6,6 +6,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -52,6 +53,7 @@ class RunDatabase {
  private:
   class Statement;
   void execute(const std::string& sql) const;
+  void in_transaction(const std::function<void()>& work) const;
   int pragma(const std::string& name) const;
   void prepare_tables();
   void require_plain_tables() const;

@@ -107,9 +107,9 @@ std::vector<double> merits(const SweepPlan& plan, const Design& design) {
   std::vector<double> all;
   if (!design.feasible) return all;
   for (const Objective& objective : plan.objectives) {
-    const auto value = figure_of(design, plan.judged_column(objective));
-    if (!value || std::isnan(value->value)) return {};
-    all.push_back(objective.maximise ? value->value : -value->value);
+    const auto merit = merit_of(plan, objective, design);
+    if (!merit || std::isnan(*merit)) return {};
+    all.push_back(*merit);
   }
   return all;
 }
@@ -142,6 +142,13 @@ Design combine(const SweepPlan& plan, std::span<const RunOutcome> runs) {
 std::optional<Estimate> figure_of(const Design& design, const std::string& column) {
   const Figure* q = find_figure(design.figures, column);
   return q == nullptr ? std::nullopt : std::optional(q->estimate);
+}
+
+std::optional<double> merit_of(const SweepPlan& plan, const Objective& objective,
+                               const Design& design) {
+  const auto figure = figure_of(design, plan.judged_column(objective));
+  if (!figure) return std::nullopt;
+  return objective.maximise ? figure->value : -figure->value;
 }
 
 std::optional<size_t> best_design(const SweepPlan& plan, std::span<const Design> designs) {

@@ -43,6 +43,10 @@ Design combine(const SweepPlan& plan, std::span<const RunOutcome> runs);
 // The figure of a design, if it has it.
 std::optional<Estimate> figure_of(const Design& design, const std::string& column);
 
+// The figure by which a design is judged, larger being better; nothing where it has none.
+std::optional<double> merit_of(const SweepPlan& plan, const Objective& objective,
+                               const Design& design);
+
 // The feasible design that is best in the first objective; nothing without any.
 std::optional<size_t> best_design(const SweepPlan& plan, std::span<const Design> designs);
 

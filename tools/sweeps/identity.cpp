@@ -5,6 +5,7 @@
 #include "scenes/experiment/document.h"
 #include "scenes/experiment/named_files.h"
 #include "scenes/experiment/toml.h"
+#include "tools/coupling/table_cache.h"
 
 namespace photorque {
 namespace fs = std::filesystem;
@@ -41,33 +42,13 @@ std::string RunIdentity::content_of_file(const fs::path& path) {
   return files_[key] = content_hash(all);
 }
 
-std::string RunIdentity::content(const SettingsNode& node) {
-  if (const auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
-    std::string all = "{";
-    for (const auto& [key, value] : *table) {
-      all += std::to_string(key.size()) + ':' + key + '=' + content(value) + ';';
-    }
-    return all + '}';
-  }
-  if (const auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
-    std::string all = "[";
-    for (const SettingsNode& item : *items) all += content(item) + ',';
-    return all + ']';
-  }
-  if (const auto* text = std::get_if<std::string>(&node.value)) {
-    const fs::path file = named_file(folder_, *text);
-    return std::to_string(text->size()) + ':' + *text +
-           (file.empty() ? "" : "@" + content_of_file(file));
-  }
-  // 3 is 3.0.
-  if (const auto* whole = std::get_if<int64_t>(&node.value)) {
-    return toml_value({static_cast<double>(*whole), {}});
-  }
-  return toml_value(node);
-}
-
 std::string RunIdentity::of(const Changes& changes) {
-  return content_hash(command_ + '\n' + program_ + '\n' + content(changed(changes)));
+  const auto file_behind = [this](const std::string& text) {
+    const fs::path file = named_file(folder_, text);
+    return file.empty() ? std::string() : "@" + content_of_file(file);
+  };
+  return content_hash(command_ + '\n' + program_ + '\n' +
+                      written_out(changed(changes), {}, file_behind));
 }
 
 SettingsNode RunIdentity::value(const Changes& changes, const std::string& key) const {

@@ -33,7 +33,6 @@ class RunIdentity {
 
  private:
   SettingsNode changed(const Changes& changes) const;
-  std::string content(const SettingsNode& node);
   std::string content_of_file(const std::filesystem::path& path);
 
   RunOptions options_;

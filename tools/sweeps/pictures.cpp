@@ -21,15 +21,6 @@ double value_or_nothing(const Design& design, const std::string& column) {
   return value ? value->value : nothing();
 }
 
-Plot empty_plot(std::string name, std::string title, std::string x_label, std::string y_label) {
-  Plot plot;
-  plot.name = std::move(name);
-  plot.title = std::move(title);
-  plot.x_label = std::move(x_label);
-  plot.y_label = std::move(y_label);
-  return plot;
-}
-
 // The numbers of an axis' values; empty where one is none.
 std::vector<double> axis_numbers(const SweepAxis& axis) {
   std::vector<double> all;
@@ -50,12 +41,6 @@ bool is_even(const std::vector<double>& values) {
     if (std::abs(values[i] - even) > 1e-6 * std::abs(step)) return false;
   }
   return step > 0.0;
-}
-
-size_t place_on(const SweepPlan& plan, size_t design, size_t axis) {
-  size_t below = 1;
-  for (size_t i = axis + 1; i < plan.axes.size(); ++i) below *= plan.axes[i].values.size();
-  return design / below % plan.axes[axis].values.size();
 }
 
 // Whether a figure is one of the objectives, and which way.
@@ -98,7 +83,7 @@ Map pair_map(const SweepPlan& plan, const SweepResult& result, const std::string
     const Design& design = result.designs[d];
     const auto value = figure_of(design, column);
     if (!value || (others && !design.feasible)) continue;
-    const size_t cell = place_on(plan, d, j) * x.size() + place_on(plan, d, i);
+    const size_t cell = plan.place(d, j) * x.size() + plan.place(d, i);
     const double before = map.value[cell];
     const bool better =
         std::isnan(before) || (objective != nullptr && objective->maximise ? value->value > before
@@ -115,8 +100,8 @@ Map pair_map(const SweepPlan& plan, const SweepResult& result, const std::string
 // Against the last axis, a curve for every combination of the others.
 Plot curves_over_last(const SweepPlan& plan, const SweepResult& result, const std::string& column) {
   const AxisLabel x = label_of(plan.axes.back()), y = label_of_figure(column);
-  Plot plot = empty_plot("sweep_" + column, title_of_figure(plan, column) + " over " + x.name,
-                         x.text(), y.text());
+  Plot plot{"sweep_" + column, title_of_figure(plan, column) + " over " + x.name, x.text(),
+            y.text()};
   const std::vector<double> along = axis_numbers(plan.axes.back());
   for (size_t begin = 0; begin < plan.designs(); begin += along.size()) {
     Plot::Curve curve;
@@ -180,8 +165,8 @@ void add_designs(Plot& plot, const SweepPlan& plan, const SweepResult& result,
 Plot scatter(const SweepPlan& plan, const SweepResult& result, const std::string& column,
              size_t axis) {
   const AxisLabel x = label_of(plan.axes[axis]), y = label_of_figure(column);
-  Plot plot = empty_plot("sweep_" + column + "_over_" + std::to_string(axis + 1),
-                         title_of_figure(plan, column) + " over " + x.name, x.text(), y.text());
+  Plot plot{"sweep_" + column + "_over_" + std::to_string(axis + 1),
+            title_of_figure(plan, column) + " over " + x.name, x.text(), y.text()};
   std::vector<double> values;
   for (const Design& design : result.designs) values.push_back(value_or_nothing(design, column));
   add_designs(plot, plan, result, axis_numbers(plan.axes[axis]), values);
@@ -192,9 +177,8 @@ Plot pareto_plot(const SweepPlan& plan, const SweepResult& result, size_t second
   const std::string first_column = plan.judged_column(plan.objectives.front());
   const std::string second_column = plan.judged_column(plan.objectives[second]);
   const AxisLabel x = label_of_figure(first_column), y = label_of_figure(second_column);
-  Plot plot =
-      empty_plot("pareto_" + second_column,
-                 title_of_figure(plan, second_column) + " against " + x.name, x.text(), y.text());
+  Plot plot{"pareto_" + second_column, title_of_figure(plan, second_column) + " against " + x.name,
+            x.text(), y.text()};
   Cloud inside, outside, front, nominal;
   for (const Design& d : result.designs) {
     (d.feasible ? inside : outside)
@@ -243,9 +227,8 @@ void add_built(Product& product, const SweepPlan& plan, const SweepResult& resul
   for (size_t k = 0; k < result.built_best.size(); ++k) {
     const Objective& objective = plan.objectives[k];
     const AxisLabel x = label_of_figure(result.built_best[k].column);
-    Plot plot = empty_plot("built_" + result.built_best[k].column,
-                           "Fraction of built copies that reach a value", x.text(),
-                           "copies that reach the value [%]");
+    Plot plot{"built_" + result.built_best[k].column, "Fraction of built copies that reach a value",
+              x.text(), "copies that reach the value [%]"};
     if (k < result.built_nominal.size()) {
       plot.curves.push_back(reached_curve("the experiment as it stands", result.built_nominal[k],
                                           objective.maximise, Plot::Colour::green));
@@ -292,8 +275,7 @@ Plot search_plot(const SweepPlan& plan, const SweepResult& result) {
   const Objective& objective = plan.objectives.front();
   const std::string column = plan.judged_column(objective);
   const AxisLabel y = label_of_figure(column);
-  Plot plot =
-      empty_plot("search", title_of_figure(plan, column) + ": the search", "evaluation", y.text());
+  Plot plot{"search", title_of_figure(plan, column) + ": the search", "evaluation", y.text()};
   Cloud inside, outside, so_far;
   double best = nothing();
   for (size_t d = 0; d < result.designs.size(); ++d) {

@@ -174,18 +174,30 @@ std::string lacks_for_search(const SweepPlan& plan) {
   return "";
 }
 
-size_t SweepPlan::designs() const {
-  if (!grid) return axes.front().values.size();
+namespace {
+
+template <class Axis>
+size_t combinations(const std::vector<Axis>& axes) {
   size_t count = 1;
-  for (const SweepAxis& axis : axes) count *= axis.values.size();
+  for (const Axis& axis : axes) count *= axis.values.size();
   return count;
 }
 
-const std::string& SweepPlan::value(size_t design, size_t axis) const {
-  if (!grid) return axes[axis].values[design];
+}  // namespace
+
+size_t SweepPlan::designs() const {
+  return grid ? combinations(axes) : axes.front().values.size();
+}
+
+size_t SweepPlan::place(size_t design, size_t axis) const {
+  if (!grid) return design;
   size_t below = 1;
   for (size_t i = axis + 1; i < axes.size(); ++i) below *= axes[i].values.size();
-  return axes[axis].values[design / below % axes[axis].values.size()];
+  return design / below % axes[axis].values.size();
+}
+
+const std::string& SweepPlan::value(size_t design, size_t axis) const {
+  return axes[axis].values[place(design, axis)];
 }
 
 Changes SweepPlan::overrides(size_t design) const {
@@ -195,15 +207,11 @@ Changes SweepPlan::overrides(size_t design) const {
 }
 
 size_t SweepPlan::mean_points() const {
-  size_t count = 1;
-  for (const MeanOver& mean : mean_over) count *= mean.values.size();
-  return count;
+  return combinations(mean_over);
 }
 
 size_t SweepPlan::worst_points() const {
-  size_t count = 1;
-  for (const WorstOver& worst : worst_over) count *= worst.values.size();
-  return count;
+  return combinations(worst_over);
 }
 
 std::vector<double> SweepPlan::mean_weights() const {

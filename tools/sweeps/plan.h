@@ -99,8 +99,10 @@ struct SweepPlan {
   // The number of designs; 0 if an axis is a range without steps, which only an optimisation can
   // use.
   size_t designs() const;
-  // The value of an axis in a design. In a grid the last axis varies fastest.
+  // The value of an axis in a design, and its place among the axis' values. In a grid the last axis
+  // varies fastest.
   const std::string& value(size_t design, size_t axis) const;
+  size_t place(size_t design, size_t axis) const;
   // The changes "KEY=VALUE" of a design, one per axis.
   Changes overrides(size_t design) const;
 

@@ -362,9 +362,7 @@ Product fit_several_conditions(const FitTask& given, const Console& console) {
                std::to_string(fit.points) + " points of " + std::to_string(fit.curves.size()) +
                " curves; scatter over that expected " + show(std::sqrt(fit.variance)));
   print_misfit(console, std::sqrt(fit.variance));
-  Table table = Table::of("curves", "The curves",
-                          {"curve", "irradiance_W_m2", "temperature_K", "photocurrent_A",
-                           "standard_error_A", "rms_A", "maximum_power_W"});
+  Table table = Table::of("curves", "The curves");
   FitTask at_first = task;
   at_first.sweeps.clear();
   std::vector<ArrayPoint> points, maxima;
@@ -556,23 +554,11 @@ RunResult run_fit_cell(const RunOptions& options, const Console& console) {
 }  // namespace photorque
 
 namespace photorque::verbs::fit_cell {
-namespace {
-
-void add_options(Command& command, CommandOptions& options) {
-  command.add_experiment(options);
-}
-
-void run(const CommandOptions& options, const Program&) {
-  const Console console = terminal(options);
-  write_results(options, console, run_fit_cell(options, console));
-}
-
-}  // namespace
 
 Verb kind() {
   return {"fit-cell",
           "Solar cell parameters, with errors, from current-voltage sweeps or a datasheet",
-          command_with(add_options, run),
+          command_that_writes(run_fit_cell),
           {"fit"},
           "[fit]",
           [](const RunOptions& options) { return run_fit_cell(options, Console()); }};

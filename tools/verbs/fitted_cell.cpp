@@ -56,8 +56,7 @@ std::vector<CellRow> diode_rows(const SingleDiode& d, const FitTask& task) {
 
 Product parameter_product(const std::vector<CellRow>& rows) {
   Product product;
-  Table table =
-      Table::of("parameters", "Fitted parameters", {"parameter", "is", "value", "standard_error"});
+  Table table = Table::of("parameters", "Fitted parameters");
   for (const CellRow& row : rows) {
     product.quantities.push_back({row.name, row.estimate});
     const bool is_value = row.is == Is::value;
@@ -151,7 +150,7 @@ Plot::Curve residuals_of(const Plot::Curve& measured, const Plot::Curve& fitted)
 
 void add_fit_plot(const FitTask& task, const std::vector<ArrayPoint>& fitted,
                   const std::vector<ArrayPoint>& maxima, Product& product) {
-  Plot plot{"fit", "Measured and fitted", "voltage [V]", "current [A]", {}, false, false, {}};
+  Plot plot{"fit", "Measured and fitted", "voltage [V]", "current [A]"};
   Plot::Panel power{"power [W]", {}, false};
   Plot::Curve measured{"measured", {}, {}, {}, true}, line{"fitted", {}, {}, {}, false};
   for (const IvSweep& sweep : task.sweeps) {

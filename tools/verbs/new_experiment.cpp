@@ -76,14 +76,16 @@ std::string number(double value) {
   return text;
 }
 
-double top_m(const Scene& scene) {
-  double top = 0.0;
+// Around all parts of that name, or around the whole scene.
+Eigen::AlignedBox3d box_of(const Scene& scene, const std::optional<std::string>& path = {}) {
+  Eigen::AlignedBox3d box;
   for (const Instance& instance : scene.instances) {
+    if (path && instance.path != *path) continue;
     for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
-      top = std::max(top, (instance.body_from_mesh * vertex).z());
+      box.extend(Vec3(instance.body_from_mesh * vertex));
     }
   }
-  return top;
+  return box;
 }
 
 double upward_area_m2(const Scene& scene, uint32_t instance) {
@@ -97,13 +99,7 @@ double upward_area_m2(const Scene& scene, uint32_t instance) {
 
 // The middle, seen from above, of all parts of that name.
 Vec3 middle_m(const Scene& scene, const std::string& path) {
-  Eigen::AlignedBox3d box;
-  for (const Instance& instance : scene.instances) {
-    if (instance.path != path) continue;
-    for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
-      box.extend(Vec3(instance.body_from_mesh * vertex));
-    }
-  }
+  const Eigen::AlignedBox3d box = box_of(scene, path);
   return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box.center());
 }
 
@@ -199,12 +195,7 @@ std::string with_overrides(const std::string& text, const Options& options) {
 
 // A wrong unit shows in the size of the model.
 std::string size_text(const Scene& scene, const fs::path& file, const SceneWords& words) {
-  Eigen::AlignedBox3d box;
-  for (const Instance& instance : scene.instances) {
-    for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
-      box.extend(Vec3(instance.body_from_mesh * vertex));
-    }
-  }
+  const Eigen::AlignedBox3d box = box_of(scene);
   if (box.isEmpty()) return "";
   const Vec3 size_m = box.sizes();
   return "Size of " + file.filename().string() + ": " + number(size_m.x()) + " × " +
@@ -243,7 +234,8 @@ std::string light_text(const GltfModel& model, const std::string& file, const Sc
     nodes.insert(instance.path);
     if (!instance.material.empty()) materials.insert(instance.material);
   }
-  const double radius_m = scene.radius_m(), height_m = top_m(scene) + 2.0 * radius_m;
+  const double radius_m = scene.radius_m(),
+               height_m = std::max(0.0, box_of(scene).max().z()) + 2.0 * radius_m;
   const std::string lit = lit_node(scene);
   const Vec3 above_m = middle_m(scene, lit);
   // No digits of a middle that is the model's own but for rounding.

@@ -96,10 +96,9 @@ class Search {
           std::min(1.0, static_cast<double>(result_.designs.size()) / static_cast<double>(all)));
     }
     PointValue value{!design.error.empty()};
-    const Objective& objective = plan_.objectives.front();
-    const auto merit = figure_of(design, plan_.judged_column(objective));
+    const auto merit = merit_of(plan_, plan_.objectives.front(), design);
     value.failed = value.failed || !merit;
-    if (merit) value.merit = objective.maximise ? merit->value : -merit->value;
+    value.merit = merit.value_or(value.merit);
     for (const Constraint& constraint : plan_.constraints) {
       const auto figure = figure_of(design, constraint.figure.column());
       value.failed = value.failed || !figure;
@@ -111,10 +110,8 @@ class Search {
   // The best of a design at an end of a range may lie beyond it.
   void print_limits() const {
     const Design* best = nullptr;
-    const Objective& objective = plan_.objectives.front();
     const auto merit = [&](const Design& design) {
-      const auto figure = figure_of(design, plan_.judged_column(objective));
-      return figure ? (objective.maximise ? figure->value : -figure->value) : -1e300;
+      return merit_of(plan_, plan_.objectives.front(), design).value_or(-1e300);
     };
     for (const Design& design : result_.designs) {
       if (design.error.empty() && (best == nullptr || merit(design) > merit(*best))) best = &design;
@@ -152,10 +149,6 @@ class Search {
   std::function<void(double)> progress_;
 };
 
-void add_options(Command& command, CommandOptions& options) {
-  command.add_traced_experiment(options);
-}
-
 void run(const CommandOptions& options, const Program& program) {
   Search(options, program.verbs).run();
 }
@@ -165,7 +158,7 @@ void run(const CommandOptions& options, const Program& program) {
 Verb kind() {
   return {"optimise",
           "The best design over the axes of a sweep, without derivatives",
-          command_with(add_options, run),
+          command_with(traced_options, run),
           {"sweep"},
           "[sweep]"};
 }

@@ -40,16 +40,7 @@ PowerRun run_power(const RunOptions& options, const Console& console) {
 namespace photorque::verbs::power {
 namespace {
 
-struct Options : CommandOptions {
-  bool page = false;
-};
-
-void add_options(Command& command, Options& options) {
-  command.add_traced_experiment(options);
-  command.add_page(options.page);
-}
-
-void run(const Options& options, const Program&) {
+void run(const CommandOptions& options, const Program&) {
   const Console console = terminal(options);
   PowerRun run = run_power(options, console);
   if (options.page) {
@@ -63,7 +54,7 @@ void run(const Options& options, const Program&) {
 Verb kind() {
   return {"power",
           "Trace, then the solar array: current-voltage curve and maximum power point",
-          command_with(add_options, run),
+          command_with(traced_page_options, run),
           {"scene", "material", "source", "receiver", "joint", "attitude", "trace", "array",
            "published", "effect", "environment", "disturbance"},
           "[array]",

@@ -183,10 +183,6 @@ std::filesystem::path write_render(const RenderRun& rendered, const std::filesys
 namespace photorque::verbs::render {
 namespace {
 
-void add_options(Command& command, CommandOptions& options) {
-  command.add_traced_experiment(options);
-}
-
 void run(const CommandOptions& options, const Program&) {
   const Console console = terminal(options);
   const RenderRun rendered = run_render(options, console);
@@ -198,7 +194,7 @@ void run(const CommandOptions& options, const Program&) {
 Verb kind() {
   return {"render",
           "A picture of the scene with the irradiance on its receivers",
-          command_with(add_options, run),
+          command_with(traced_options, run),
           {"scene", "material", "source", "receiver", "joint", "attitude", "trace", "camera"},
           "[scene] and [[source]]"};
 }

@@ -77,23 +77,11 @@ RunResult run_supply(const RunOptions& options, const Console& console) {
 }  // namespace photorque
 
 namespace photorque::verbs::supply {
-namespace {
-
-void add_options(Command& command, CommandOptions& options) {
-  command.add_experiment(options);
-}
-
-void run(const CommandOptions& options, const Program&) {
-  const Console console = terminal(options);
-  write_results(options, console, run_supply(options, console));
-}
-
-}  // namespace
 
 Verb kind() {
   return {"supply",
           "Battery, cable, microwaves, coils and light compared: power, mass, disturbance",
-          command_with(add_options, run),
+          command_that_writes(run_supply),
           {"platform", "environment", "disturbance", "sensors", "supply_trade"},
           "[supply_trade]"};
 }

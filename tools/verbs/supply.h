@@ -9,10 +9,8 @@
 
 namespace photorque {
 
-// Reads [supply_trade]: load_W (25), duration_s (86400), tilt_max_deg (the platform's stop, else
-// 30), tilts (7, evenly from 0), and the ways (tools/supply/options.h); [platform] and
-// [environment]. Battery, cable and induction have defaults for everything and are compared always,
-// microwaves and beams of light where a table names them.
+// Reads [supply_trade], [platform] and [environment]. Battery, cable and induction have defaults
+// for everything and are compared always, microwaves and beams of light where a table names them.
 RunResult run_supply(const RunOptions& options, const Console& console);
 
 // Reads and computes the same but for the light, which is not traced; what would be compared, in

@@ -19,21 +19,13 @@ namespace {
 
 // A cell of the table in the terminal, three blanks before it at least.
 std::string in_column(const std::string& text) {
-  constexpr size_t width = 28;
-  const auto shown = static_cast<size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));  // UTF-8
+  const size_t width = 28, shown = letters_of(text);
   return std::string(3, ' ') + text + std::string(shown < width ? width - shown : 0, ' ');
 }
 
 // Power over the attitudes, one row per node in the order of the wrench table.
 class PowerTable {
  public:
-  explicit PowerTable(bool with_array) {
-    std::vector<std::string> columns = {"tilt_deg", "heading_deg", "on_receiver_W",
-                                        "on_receiver_error_W"};
-    if (with_array) columns.insert(columns.end(), {"electric_W", "electric_error_W"});
-    table_ = Table::of("power_over_attitude", "Power over tilt and heading", columns);
-  }
   void add(double tilt_rad, double heading_rad, const Estimate& light,
            const std::optional<Estimate>& electric) {
     Table::Row row = table_.row();
@@ -49,11 +41,7 @@ class PowerTable {
             const std::string& title) const {
     const auto& power_W = table_.column(stem + "_W").values;
     const auto& error_W = table_.column(stem + "_error_W").values;
-    Plot plot;
-    plot.name = name;
-    plot.title = title;
-    plot.x_label = "tilt [deg]";
-    plot.y_label = "power [W]";
+    Plot plot{name, title, "tilt [deg]", "power [W]"};
     for (size_t h = 0; h < headings; ++h) {
       Plot::Curve curve;
       for (size_t t = 0; t < tilts; ++t) {
@@ -69,7 +57,7 @@ class PowerTable {
   }
 
  private:
-  Table table_;
+  Table table_ = Table::of("power_over_attitude", "Power over tilt and heading");
 };
 
 void print_torques(const WrenchTable& wrenches, const AttitudeGrid& grid, const Console& console) {
@@ -122,7 +110,7 @@ TorqueMapRun over_attitudes(const Console& console, const std::shared_ptr<Optica
 
   WrenchTable wrenches =
       make_wrench_table(WrenchTable::Angles::tilt_heading, grid.tilt_rad, grid.heading_rad);
-  PowerTable powers(array.has_value());
+  PowerTable powers;
   uint64_t rays = 0;
   double wall_s = 0.0;
   Warnings warnings;
@@ -197,13 +185,12 @@ namespace {
 
 struct Options : CommandOptions {
   std::optional<double> checkpoint_min;
-  bool page = false;
 };
 
 void add_options(Command& command, Options& options) {
   command.add_traced_experiment(options);
   command.add_checkpoint(options.checkpoint_min);
-  command.add_page(options.page);
+  command.add_page(options);
 }
 
 void run(const Options& options, const Program&) {

@@ -150,16 +150,7 @@ TraceRun run_trace(const RunOptions& options, const Console& console, bool with_
 namespace photorque::verbs::trace {
 namespace {
 
-struct Options : CommandOptions {
-  bool page = false;
-};
-
-void add_options(Command& command, Options& options) {
-  command.add_traced_experiment(options);
-  command.add_page(options.page);
-}
-
-void run(const Options& options, const Program&) {
+void run(const CommandOptions& options, const Program&) {
   const Console console = terminal(options);
   TraceRun run = run_trace(options, console);
   if (options.page) {
@@ -173,7 +164,7 @@ void run(const Options& options, const Program&) {
 Verb kind() {
   return {"trace",
           "Irradiance on every receiver, power balance, radiation force and torque",
-          command_with(add_options, run),
+          command_with(traced_page_options, run),
           {"scene", "material", "source", "receiver", "joint", "attitude", "trace", "published",
            "effect"},
           "[scene] and [[source]]",

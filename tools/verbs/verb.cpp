@@ -195,8 +195,8 @@ void Command::add_recordings(std::vector<std::filesystem::path>& recordings) {
   add("--recording", recordings, "A recording (CSV); may be repeated").is_one_each = true;
 }
 
-void Command::add_page(bool& page) {
-  add("--page", page, "Also write page.html: scene, maps and curves for a browser");
+void Command::add_page(CommandOptions& common) {
+  add("--page", common.page, "Also write page.html: scene, maps and curves for a browser");
 }
 
 void Command::add_checkpoint(std::optional<double>& minutes) {
@@ -204,6 +204,32 @@ void Command::add_checkpoint(std::optional<double>& minutes) {
       "Save the state of the run (VERB.checkpoint in the output folder) every so many minutes; "
       "after a kill the same command resumes")
       .mistake = minutes_above_zero;
+}
+
+void experiment_options(Command& command, CommandOptions& options) {
+  command.add_experiment(options);
+}
+
+void traced_options(Command& command, CommandOptions& options) {
+  command.add_traced_experiment(options);
+}
+
+void traced_page_options(Command& command, CommandOptions& options) {
+  command.add_traced_experiment(options);
+  command.add_page(options);
+}
+
+std::function<Command()> command_that_writes(RunResult (*run)(const RunOptions&, const Console&)) {
+  return [run] {
+    const auto options = std::make_shared<CommandOptions>();
+    Command command{options};
+    command.add_experiment(*options);
+    command.run = [options, run](const Program&) {
+      const Console console = terminal(*options);
+      write_results(*options, console, run(*options, console));
+    };
+    return command;
+  };
 }
 
 // Names may come from hostile files: of control characters only ends of lines and tabs reach a

@@ -32,6 +32,7 @@ struct CommandOptions : RunOptions {
   bool verbose = false;                      // all lines on the terminal
   std::string format;                        // further formats of the results: "exr,svg"
   std::string style = "page";                // of pictures
+  bool page = false;                         // --page, of commands that have it
 
   // --out, or out/NAME/VERB below the current folder.
   std::filesystem::path out_folder() const;
@@ -67,7 +68,7 @@ struct Command {
   enum class Folder { none, own, shared };  // that it writes into: alone, or with others like it
 
   std::shared_ptr<CommandOptions> options;
-  std::vector<Option> list;
+  std::vector<Option> list = {};
   Folder folder = Folder::none;
   // The mistake in a combination of options, as a sentence; empty: nothing.
   std::function<std::string()> mistake = {};
@@ -82,7 +83,7 @@ struct Command {
   // Also the options of a trace: --target-error, --max-time, --allow-outside.
   void add_traced_experiment(CommandOptions& common, Folder writes = Folder::own);
   void add_recordings(std::vector<std::filesystem::path>& recordings);
-  void add_page(bool& page);
+  void add_page(CommandOptions& common);
   void add_checkpoint(std::optional<double>& minutes);
   template <class Value>
   Option& add(std::string names, Value& value, std::string help) {
@@ -114,6 +115,14 @@ std::function<Command()> command_with(void (*add_options)(Command&, Options&),
     return command;
   };
 }
+
+// Options of an experiment, and of one that is traced and may become a page.
+void experiment_options(Command& command, CommandOptions& options);
+void traced_options(Command& command, CommandOptions& options);
+void traced_page_options(Command& command, CommandOptions& options);
+
+// A command with the options of an experiment that writes what `run` gives.
+std::function<Command()> command_that_writes(RunResult (*run)(const RunOptions&, const Console&));
 
 // Every verb named in tools/CMakeLists.txt, in that order.
 std::vector<Verb> all_verbs();

@@ -10,8 +10,6 @@
 namespace photorque {
 namespace {
 
-constexpr double silicon_gap_eV = 1.121;
-
 // A fit may try unphysical parameters; they give a bad curve instead of an error.
 CellParameters at_state(const ModuleCell& cell, const ModuleState& state) {
   const double T = std::clamp(state.temperature_K, 100.0, 800.0), T0 = cell.temperature_K,

@@ -55,28 +55,21 @@ void print_balance(const Console& console, const BalanceRun& run, const BalanceR
   }
   if (result.leaves_more_than_noise()) console.line("  WARNING: " + result.warning());
   console.heading("Moves of the masses");
-  for (const Table& table : product.tables) {
-    if (table.name != "moving_masses") continue;
-    print_table(console, table,
-                {{"mass", "mass"},
-                 {"x", "direction_x"},
-                 {"y", "direction_y"},
-                 {"z", "direction_z"},
-                 {"steps", "steps"},
-                 {"travel [m]", "travel_m"}});
-  }
+  print_table(console, table_named(product, "moving_masses"),
+              {{"mass", "mass"},
+               {"x", "direction_x"},
+               {"y", "direction_y"},
+               {"z", "direction_z"},
+               {"steps", "steps"},
+               {"travel [m]", "travel_m"}});
   console.heading("Residual of whole steps");
-  for (const Quantity& quantity : product.quantities) {
-    if (quantity.name == "left_by_steps_m") {
-      console.line("  distance of the centre of mass  " + show(quantity.estimate, "m"));
-    } else if (quantity.name == "left_by_steps_N_m") {
-      console.line("  largest torque                  " + show(quantity.estimate, "N m"));
-    } else if (quantity.name == "resolution_m") {
-      console.line("  half a step, coarsest axis      " + show(quantity.estimate, "m"));
-    } else if (quantity.name == "published_resolution_m") {
-      console.line("  the paper's                     " + show(quantity.estimate, "m"));
-    }
-  }
+  const auto row = [&](const char* words, const char* name, const char* unit) {
+    console.line("  " + padded(words, 32) + show(find_quantity(product, name)->estimate, unit));
+  };
+  row("distance of the centre of mass", "left_by_steps_m", "m");
+  row("largest torque", "left_by_steps_N_m", "N m");
+  row("half a step, coarsest axis", "resolution_m", "m");
+  row("the paper's", "published_resolution_m", "m");
 }
 
 void add_options(Command& command, Options& options) {

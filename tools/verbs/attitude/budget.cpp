@@ -5,7 +5,6 @@
 
 #include "attitude/model/platform.h"
 #include "core/constants.h"
-#include "core/errors.h"
 #include "tools/runs/attitude_run.h"
 #include "tools/verbs/verb.h"
 
@@ -24,19 +23,6 @@ BudgetRun run_budget(const RunOptions& options) {
 
 namespace photorque::verbs::budget {
 namespace {
-
-const Table* find_table(const Product& product, const std::string& name) {
-  for (const Table& table : product.tables) {
-    if (table.name == name) return &table;
-  }
-  return nullptr;
-}
-
-const Table& table_named(const Product& product, const std::string& name) {
-  const Table* table = find_table(product, name);
-  if (table == nullptr) throw NumericalError("the budget has no table " + name);
-  return *table;
-}
 
 void print_reasons(const Console& console, const Table& figures) {
   const auto& quantity = figures.column("quantity").texts;
@@ -68,10 +54,6 @@ void print_paper(const Console& console, const Product& product) {
                {"as published", "ours_as_published"}});
   print_reasons(console, figures);
   print_air(console, table_named(product, "paper_external_air"));
-}
-
-void add_options(Command& command, CommandOptions& options) {
-  command.add_experiment(options);
 }
 
 void run(const CommandOptions& options, const Program&) {
@@ -118,7 +100,7 @@ void run(const CommandOptions& options, const Program&) {
 Verb kind() {
   return {"budget",
           "Every disturbance torque at one state, ranked; for STASIS with published figures",
-          command_with(add_options, run),
+          command_with(experiment_options, run),
           {"platform", "environment", "disturbance", "sensors", "budget"},
           "[platform]",
           [](const RunOptions& options) { return run_budget(options).result; }};

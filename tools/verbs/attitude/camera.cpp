@@ -53,13 +53,6 @@ CameraRun run_camera(const RunOptions& options, const Console& console) {
 namespace photorque::verbs::camera {
 namespace {
 
-const Table& camera_table(const Product& product, const std::string& name) {
-  for (const Table& table : product.tables) {
-    if (table.name == name) return table;
-  }
-  throw NumericalError("the camera's study has no table " + name);
-}
-
 void print_camera(const Console& console, const CameraRun& run) {
   const TrackingCamera& camera = run.study.camera;
   const Product& product = run.result.product;
@@ -70,7 +63,7 @@ void print_camera(const Console& console, const CameraRun& run) {
                show(camera.exposure_s * 1e6) + " us, spots " + show(spot_sigma_px(camera)) +
                " px; pose " + (camera.knows_centre ? "about the centre of the bearing" : "free"));
   console.heading("Markers in the image at zero tilt");
-  print_table(console, camera_table(product, "markers"),
+  print_table(console, table_named(product, "markers"),
               {{"x [m]", "x_m"},
                {"y [m]", "y_m"},
                {"z [m]", "z_m"},
@@ -80,15 +73,14 @@ void print_camera(const Console& console, const CameraRun& run) {
                {"brightest pixel", "brightest_pixel_electrons"},
                {"error [px]", "centre_error_px"}});
   console.heading("Attitude error of one image at zero tilt; the paper's camera has 12 and 37");
-  for (const Quantity& quantity : product.quantities) {
-    if (quantity.name == "in_plane_error_arcsec") {
-      console.line("  in the image plane      " + show(quantity.estimate, "arcsec"));
-    } else if (quantity.name == "out_of_plane_error_arcsec") {
-      console.line("  out of the image plane  " + show(quantity.estimate, "arcsec"));
-    }
-  }
+  const auto row = [&](const char* name, const std::string& words) {
+    const Quantity* error = find_quantity(product, name);
+    if (error != nullptr) console.line("  " + words + show(error->estimate, "arcsec"));
+  };
+  row("in_plane_error_arcsec", "in the image plane      ");
+  row("out_of_plane_error_arcsec", "out of the image plane  ");
   console.heading("By tilt, the worst heading [arcsec]: in the image plane, out of it");
-  print_table(console, camera_table(product, "degradation"),
+  print_table(console, table_named(product, "degradation"),
               {{"tilt [deg]", "tilt_deg"},
                {"all in", "all_in_plane_arcsec"},
                {"out", "all_out_of_plane_arcsec"},
@@ -111,7 +103,7 @@ void print_camera(const Console& console, const CameraRun& run) {
                show(lens.k1) + ", " + show(lens.k2) + "; p1, p2 " + show(lens.p1) + ", " +
                show(lens.p2));
   console.details().heading("Simulated images against the prediction [arcsec]");
-  print_table(console.details(), camera_table(product, "images"),
+  print_table(console.details(), table_named(product, "images"),
               {{"tilt [deg]", "tilt_deg"},
                {"heading [deg]", "heading_deg"},
                {"images", "images"},
@@ -127,10 +119,6 @@ void print_camera(const Console& console, const CameraRun& run) {
                          " images a second on one core, exposure simulated, read and solved");
 }
 
-void add_options(Command& command, CommandOptions& options) {
-  command.add_experiment(options);
-}
-
 void run(const CommandOptions& options, const Program&) {
   const Console console = terminal(options);
   const CameraRun run = run_camera(options, console);
@@ -143,7 +131,7 @@ void run(const CommandOptions& options, const Program&) {
 Verb kind() {
   return {"camera",
           "Attitude error of a camera that tracks markers, from its geometry",
-          command_with(add_options, run),
+          command_with(experiment_options, run),
           {"platform", "environment", "disturbance", "sensors", "camera_study"},
           "[sensors.camera] with markers"};
 }

@@ -343,7 +343,6 @@ namespace {
 struct Options : CommandOptions {
   std::vector<std::filesystem::path> recordings, holdouts;
   std::vector<std::filesystem::path> guess;  // recordings without an experiment
-  bool page = false;
 };
 
 // The name of the guessed experiment: "run1" for data/run1.csv.gz.

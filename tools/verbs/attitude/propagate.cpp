@@ -9,13 +9,12 @@ namespace {
 
 struct Options : CommandOptions {
   std::optional<double> checkpoint_min;
-  bool page = false;
 };
 
 void add_options(Command& command, Options& options) {
   command.add_experiment(options);
   command.add_checkpoint(options.checkpoint_min);
-  command.add_page(options.page);
+  command.add_page(options);
 }
 
 void run(const Options& options, const Program&) {

@@ -97,21 +97,12 @@ RunResult serve_experiment(const RunOptions& options, const Console& console) {
   return result;
 }
 
-void add_options(Command& command, CommandOptions& options) {
-  command.add_experiment(options);
-}
-
-void run(const CommandOptions& options, const Program&) {
-  const Console console = terminal(options);
-  write_results(options, console, serve_experiment(options, console));
-}
-
 }  // namespace
 
 Verb kind() {
   return {"serve",
           "The platform in real time: measurements out, commands in, over UDP",
-          command_with(add_options, run),
+          command_that_writes(serve_experiment),
           {"platform", "environment", "disturbance", "sensors", "propagate", "serve", "light"},
           "[platform]"};
 }
