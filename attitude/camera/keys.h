@@ -35,7 +35,7 @@ inline constexpr NumberKey f_number("f_number", {0.5, 128.0}, "of the lens", {.o
 inline constexpr NumberKey transmittance("transmittance", {0.0, 1.0, true, false},
                                          "of lens and filter", {.optional = true});
 inline constexpr NumberKey spot("spot_px", {0.3, 50.0},
-                                "standard deviation of a spot besides diffraction and motion",
+                                "standard deviation of a spot without diffraction and motion",
                                 {.optional = true});
 inline constexpr NumbersKey distortion(
     "distortion", {-10.0, 10.0},

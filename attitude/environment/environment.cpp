@@ -34,7 +34,7 @@ constexpr NumberKey air_density("air_density_kg_m3", Range::not_negative(), "fro
                                 {.usually = "ideal gas, dry"});
 constexpr NumberKey air_viscosity("air_viscosity_Pa_s", Range::positive(), "from the temperature",
                                   {.usually = "Sutherland's law"});
-constexpr TableKey environment("environment", "what surrounds the platform");
+constexpr TableKey environment("environment", "fields, air and light around the platform");
 }  // namespace environment_key
 
 // date = 2025-06-30, or a decimal year.

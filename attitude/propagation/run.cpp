@@ -259,14 +259,14 @@ void check_begins_about_axis(const Settings& settings, const Platform& platform,
   constexpr double rounding = 1e-6;
   if (beside(rate_rad_s) > rounding * rate_rad_s.norm()) {
     throw settings.error(propagate_key::initial_rate,
-                         "a rate beside the axis that the bearings leave",
-                         "a rate about platform.axis alone");
+                         "a rate about another axis than that of the bearings",
+                         "a rate about platform.axis only");
   }
   if (beside(lab_from_body.vec()) > rounding) {
     throw settings.error(
         settings.has(propagate_key::initial_attitude) ? propagate_key::initial_attitude.name
                                                       : propagate_key::initial_tilt.name,
-        "a turn about another axis than the bearings leave", "a turn about platform.axis alone");
+        "a turn about another axis than the bearings leave", "a rotation about platform.axis only");
   }
 }
 

@@ -392,7 +392,7 @@ std::string mostly_explained(const Diagnosis& d) {
     std::snprintf(
         numbers, sizeof numbers,
         ". Held out, it leaves %.3g of the nominal model's residual (rms), %.3g times the "
-        "noise: something more acts that has no name",
+        "noise: the rest has no known cause",
         std::sqrt(after / before), std::sqrt(after));
     text += numbers;
   }
@@ -405,16 +405,16 @@ std::string sentence_of(const Diagnosis& d) {
   // Limits for the held-out χ²: ratio before/after worth stating; excess per sample of a residual.
   constexpr double worth_saying = 1.5, leaves_something = 0.2;
   if (d.verdict == Verdict::consistent) {
-    return "Nothing is missing: what differs is noise or lies within the stated uncertainty.";
+    return "Nothing is missing: the differences are noise or lie within the stated uncertainty.";
   }
   if (d.verdict == Verdict::missing_physics) {
     return (d.effects.size() == 1 ? "Missing: " : "Missing together: ") + names_of(d) + ".";
   }
   if (!d.effects.empty() && d.empirical.empty()) return mostly_explained(d);
-  std::string text = d.effects.empty() ? "Something acts that no effect of the catalogue explains"
-                                       : "Acts: " + names_of(d) +
-                                             ", and beside it something that no effect of the "
-                                             "catalogue explains";
+  std::string text =
+      d.effects.empty()
+          ? "Not explained: no effect of the catalogue explains the recording"
+          : "Acts: " + names_of(d) + ", and a part that no effect of the catalogue explains";
   if (!d.where.depends_on.empty()) {
     text += "; it depends on " + d.where.depends_on.front().variable;
   }
@@ -431,7 +431,7 @@ std::string sentence_of(const Diagnosis& d) {
     if (chosen->label.empty()) names += (names.empty() ? "" : " and ") + in_words(kind);
   }
   return text + ". Held out, " + names + " lowers χ² by a factor of " + times +
-         (after > 1.0 + leaves_something ? ", and leaves more than noise." : ".");
+         (after > 1.0 + leaves_something ? ", and leaves residuals above the noise." : ".");
 }
 
 }  // namespace photorque

@@ -107,8 +107,8 @@ std::vector<std::string> warnings_of(const RecordedData& data,
   for (const InstrumentFinding& finding : data.instruments) warnings.push_back(finding.text);
   if (decision.undecided) {
     warnings.push_back(
-        "fitted and held-out recordings together show an effect that neither shows alone, but not "
-        "which effect it is: see the alternatives");
+        "only fitted and held-out recordings together show an effect, and they do not determine "
+        "which one: see the alternatives");
   }
   return warnings;
 }
@@ -137,7 +137,7 @@ void say_limits_of_held_out(Diagnosis& d) {
   const double sigma = (after - 1.0) * std::sqrt(0.5 * static_cast<double>(d.holdout->samples));
   if (sigma < too_quiet_sigma) {
     d.warnings.push_back(written(
-        "the held-out data scatter less than the noise that was used (χ² per sample %.3g, %.0f "
+        "the held-out data scatter less than the noise used in the fit (χ² per sample %.3g, %.0f "
         "standard errors below 1): the stated noise is too large, or an effect was counted as "
         "noise",
         after, -sigma));

@@ -78,7 +78,7 @@ void say_assumed_sequence(const NamedRecording& r, const Platform& platform,
   if (!columns.has_angles() || columns.has_gyro() || !r.recording.angle_sequence.empty()) return;
   warnings.push_back(r.name + ": roll, pitch and yaw are taken in the sequence zyx, " +
                      formula_of(angle_sequences[0]) +
-                     "; no rates are there to test it, and [recording] angle_sequence states it");
+                     "; there are no rates to test it; [recording] angle_sequence states it");
 }
 
 // A sliding body under forces commanded in response to its position hardly moves. Over a whole run
@@ -101,7 +101,7 @@ void begin_anew_under_commands(const std::string& name, const Platform& platform
     }
     if (count > 1) {
       warnings.push_back(
-          written("%s: forces are commanded, which may answer the motion: %zu "
+          written("%s: commanded forces may depend on the motion: %zu "
                   "segments, each with its own initial state",
                   name.c_str(), count));
     }
@@ -178,10 +178,10 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
     say_unused(r, nominal, options.read_elsewhere, warnings);
     say_assumed_sequence(r, platform, warnings);
     if (MotionColumns(r.recording, platform, r.name).has_scalar(Scalar::tilt)) {
-      warnings.push_back(r.name +
-                         ": a tilt has no direction: an answer has a mirror "
-                         "image with equal readings, which leans the other way. Priors alone "
-                         "decide between them; found signs may be those of the image");
+      warnings.push_back(
+          r.name +
+          ": a tilt has no direction: the mirror image of the motion has equal readings. Only the "
+          "priors distinguish them, so that the signs found may be those of the mirror image");
     }
     std::string convention = segments.angles ? segments.angles->text : "";
     for (Observation& seen : segments.all) {

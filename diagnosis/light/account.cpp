@@ -262,7 +262,7 @@ std::vector<FittedParameter> refined_light_beliefs(const LightAnswer& answer) {
 
 std::string light_sentence(const Diagnosis& d) {
   if (d.verdict == Verdict::consistent) {
-    return "Nothing is missing: what differs is noise or lies within the stated uncertainty.";
+    return "Nothing is missing: the differences are noise or lie within the stated uncertainty.";
   }
   if (d.verdict == Verdict::missing_physics) {
     std::string text = d.effects.size() == 1 ? "Missing: " : "Missing together: ";
@@ -280,7 +280,7 @@ std::string light_sentence(const Diagnosis& d) {
     }
     return text + ".";
   }
-  std::string text = "Something acts that no effect of the catalogue explains";
+  std::string text = "Not explained: no effect of the catalogue explains the recording";
   if (!d.where.depends_on.empty()) text += "; it depends on " + d.where.depends_on.front().variable;
   if (!d.because.empty()) text += " (" + d.because + ")";
   return text + ".";

@@ -301,8 +301,8 @@ Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
   d.data = data.quality;
   if (answer.decision.undecided) {
     d.warnings.push_back(
-        "fitted and held-out recordings together show an effect that neither shows alone, but not "
-        "which effect it is: see the alternatives");
+        "only fitted and held-out recordings together show an effect, and they do not determine "
+        "which one: see the alternatives");
   }
   if (!answer.decision.held_out_tests_names) d.warnings.push_back(untested_names(*d.holdout));
   if (lab.has_array()) {

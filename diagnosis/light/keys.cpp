@@ -56,7 +56,7 @@ std::vector<Key> light_sensor_keys() {
            Key::number(
                "tracker_step_V", Range::not_negative(),
                "voltage step of the tracker; its recorded voltage is then an input of the model")
-               .usually_is("the tracker is assumed to hold the highest maximum")},
+               .usually_is("the tracker is assumed to be at the highest maximum")},
           "instruments of the array")};
 }
 

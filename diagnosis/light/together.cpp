@@ -135,12 +135,12 @@ void add_tilt(const std::optional<Tilt>& tilt, Diagnosis& motion, Diagnosis& lig
   effect.probability = 1.0;
   if (!names_tilt(motion)) {
     effect.kind = of_motion;
-    effect.explanation = "the camera is not level: motion and light say so together";
+    effect.explanation = "the camera is not level, according to motion and light";
     effect.parameters = {{tilt_key, numbers(-tilt->bias_rad), numbers(tilt->sigma_rad)}};
     motion.effects.push_back(effect);
   }
   effect.kind = of_light;
-  effect.explanation = "the platform stands turned against its recorded attitude";
+  effect.explanation = "the platform is rotated relative to its recorded attitude";
   effect.parameters = {
       {"bias_deg", numbers(tilt->bias_rad / degree_rad), numbers(tilt->sigma_rad / degree_rad)}};
   light.effects.push_back(effect);
@@ -288,8 +288,7 @@ Diagnosis joined(const Diagnosis& motion, const Diagnosis& light, const std::opt
               : d.effects.empty() ? Verdict::consistent
                                   : Verdict::missing_physics;
   d.confidence = motion.confidence * light.confidence;
-  d.sentence = (is_tilted ? "The platform stands turned against its recorded attitude. Motion "
-                            "beside that: "
+  d.sentence = (is_tilted ? "The platform stands turned against its recorded attitude. Motion: "
                           : "Motion: ") +
                word_of(motion.verdict) + ". " + motion.sentence +
                " Light: " + word_of(light.verdict) + ". " + light.sentence;

@@ -337,7 +337,7 @@ const char* words_of(Termination termination) {
     case Termination::max_iterations:
       return "stopped at the largest number of iterations";
     case Termination::out_of_reach:
-      return "given up: too far from what is worth a fit";
+      return "stopped: the fit is far worse than the best one";
     case Termination::not_evaluable:
       return "the model cannot be evaluated";
   }

@@ -13,11 +13,10 @@ namespace day_key {
 constexpr double year_s = 366.0 * 86400.0;
 constexpr DaySettings usual;
 constexpr Range efficiency{0.0, 1.0, true, false};
-constexpr NumberKey load("load_W", usual.load_W, Range::not_negative(),
-                         "what is drawn all the time");
+constexpr NumberKey load("load_W", usual.load_W, Range::not_negative(), "constant load");
 constexpr NumberKey duration("duration_s", usual.duration_s, {0.0, year_s, true, false},
                              "in steps of at most 30 s");
-constexpr FlagKey lamps_on("lamps_on", true, "false: the battery alone");
+constexpr FlagKey lamps_on("lamps_on", true, "false: only the battery");
 constexpr NumberKey battery("battery_Wh", usual.battery.capacity_J, Range::positive(), "capacity");
 constexpr NumberKey battery_charge("battery_charge", usual.battery.charge, Range::fraction(),
                                    "at the start");

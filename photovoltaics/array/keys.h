@@ -27,7 +27,7 @@ inline constexpr NumberKey series("series_ohm", usual.series_ohm, series_ohm_ran
 namespace cell_key {
 inline constexpr NumberKey reference_area(
     "reference_area_m2", Range::positive(),
-    "the area that the others belong to; required beside currents and resistances");
+    "area to which currents and resistances refer; required with them");
 inline constexpr NumberKey reference_temperature("reference_temperature_K", Range::positive(),
                                                  "and the temperature");
 inline constexpr NumberKey saturation_1("saturation_1_A", Range::not_negative(),

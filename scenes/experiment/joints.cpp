@@ -77,7 +77,7 @@ Joint read_joint(const Settings& table) {
   if (table.has(joint_key::towards_sun)) {
     joint.towards_sun = read_direction(table, joint_key::towards_sun);
     if (!joint.schedule.empty()) {
-      throw table.error(joint_key::towards_sun, "a schedule beside it",
+      throw table.error(joint_key::towards_sun, "both a schedule and towards_sun",
                         "one of towards_sun and [[joint.at]]");
     }
     if (joint.towards_sun->cross(joint.axis).norm() < 1e-6) {

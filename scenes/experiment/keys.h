@@ -53,7 +53,7 @@ inline constexpr IntegerKey rays(
     "rays", 1, most_rays,
     "in total, rounded up per source and replicate to a power of two of at least 256; "
     "at most 2^31 for each of the replicates. Gathered direct light takes none of them "
-    "(see `direct`): its error goes down by `target_error` alone",
+    "(see `direct`): its error is reduced by `target_error` only",
     {.optional = true});
 inline constexpr IntegerKey replicates(
     "replicates", 8, 1024, "independent randomisations, from which the standard errors follow",

@@ -190,7 +190,7 @@ SourceFile read_source_file(const Settings& settings, const SourceContext& conte
   std::error_code unreadable;
   if (!std::filesystem::is_regular_file(path, unreadable)) {
     throw settings.error("file", "\"" + given.string() + "\"",
-                         "a file that exists beside the experiment");
+                         "an existing file, relative to the folder of the experiment");
   }
   SourceFile file{path.string(), read_file(path)};
   if (context.input) context.input(given.filename().string(), content_hash(file.bytes));

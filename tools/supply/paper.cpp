@@ -111,7 +111,8 @@ Table paper_supply_table(const SupplyTrade& trade) {
       "the best of them, at 41 mA/cm2 and 0.750 V");
   constexpr double gallium_arsenide_J = 1.424 * elementary_charge_C;
   row("laser_858_nm", 0.689, radiative_limit(858e-9, 11.4e4, gallium_arsenide_J, 298.15),
-      "ours is the limit of one junction without any loss but radiation at 858 nm, 11.4 W/cm2, 25 "
+      "photorque gives the limit of one junction without any loss but radiation at 858 nm, 11.4 "
+      "W/cm2, 25 "
       "degC; the cell of [42] reaches most of it");
   const SupplyOption* light = first_beam(trade);
   row("light_on_cells", 0.90, figure(light, "light_on_cells_fraction"),

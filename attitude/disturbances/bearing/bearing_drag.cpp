@@ -133,8 +133,8 @@ DisturbanceKind kind() {
       .name = "bearing_drag",
       .summary = "viscous drag of the bearing's air film, linear in the rate",
       .read = read,
-      .screening = {.parametrisations = {{"the bearing's viscous drag differs from what is stated, "
-                                          "beyond the uncertainty stated",
+      .screening = {.parametrisations = {{"the viscous drag of the bearing differs from the stated "
+                                          "one by more than its uncertainty",
                                           {EffectKey::number(coefficient.name, 2e-5)}}},
                     .needs = Requirement::bearing,
                     .least_sum = LeastSum{min_sum_N_m_s, "the bearing's drag would feed energy"}},

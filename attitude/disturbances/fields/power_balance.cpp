@@ -144,7 +144,7 @@ DisturbanceKind kind() {
           .read = read,
           .screening =
               {.reason_against =
-                   "acts on the battery alone; the motion shows it only through battery_discharge"},
+                   "acts on the battery; it affects the motion only through battery_discharge"},
           .sets = "the battery's current",
           .keys = {load, key::array_power, key::tilt, key::power, array_scale}};
 }

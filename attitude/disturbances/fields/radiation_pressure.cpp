@@ -113,8 +113,8 @@ Disturbance read_of_sun(const Settings& settings, const DisturbanceContext& cont
 std::vector<Parametrisation> of_experiment(const DisturbanceContext& context) {
   if (!context.environment.sun) return {};
   return {
-      {"the pressure of sunlight acts beside the centre of mass, and its torque changes with "
-       "the Sun's direction",
+      {"sunlight exerts a torque about the centre of mass that changes with the direction of the "
+       "Sun",
        {EffectKey::vector(area_moment.name, 1.0)}}};
 }
 

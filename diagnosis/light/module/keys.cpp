@@ -34,7 +34,7 @@ Key module_table() {
                    .range_that_varies(),
                Key::number_or("bypass_drop_V", 0.5, Range::positive(), "of a bypass diode"),
                Key::other("reference_curve", Key::a_text | Key::an_array,
-                          "curves of the module as it was, one file or several; *or* "
+                          "curves of the module before the fault, one file or several; *or* "
                           "`[[module.datasheet]]`")
                    .optional(),
                Key::tables("datasheet", rated_point_keys(), "the module as its maker rates it")},
@@ -43,12 +43,12 @@ Key module_table() {
                           "of the references, one for all or one for each")
                    .usually_is("298.15, or the first of the datasheet"),
                Key::other("reference_irradiance_W_m2", Key::a_number | Key::an_array,
-                          "that a sensor saw at the references, likewise")
+                          "measured by a sensor at the references, likewise")
                    .optional(),
                Key::uncertain("temperature_K", {1.0, 1000.0}, "of the curves that are diagnosed")
                    .usually_is("as the references"),
                Key::number_or("temperature_sigma_K", 2.0, Range::positive(),
-                              "how well temperatures are known"),
+                              "standard error of the temperatures"),
                Key::number("current_noise_A", Range::positive(), "of a reading")
                    .usually_is("found from second differences"),
                Key::number_or("voltage_noise_V", 0.0, Range::not_negative(), "of a reading")}}),
@@ -60,20 +60,20 @@ std::vector<Key::Choice> module_effects() {
       {"cell_shaded", "cells in the shade",
        joined({{count_key(), Key::number("factor", Range::fraction(), "of the light")},
                breakdown_keys()})},
-      {"cell_cracked", "cells of which a part is reached through a resistance alone",
+      {"cell_cracked", "cells with a part that is connected only through a resistance",
        joined({{count_key(), Key::number("fraction", {0.0, 1.0, true, true}, "of the area"),
                 resistance_key("in front of that part")},
                breakdown_keys()})},
       {"cell_shunted",
        "cells with a short cut",
-       {count_key(), resistance_key("beside each of the cells")}},
+       {count_key(), resistance_key("in parallel with each of the cells")}},
       {"shunt", "short cuts in every cell", {resistance_key("beside every cell")}},
       {"series_resistance", "a resistance in series", {resistance_key("of the module")}},
       {"temperature",
        "warmer or colder than stated",
        {Key::number("change_K", {-150.0, 150.0}, "of all cells")}},
       {"bypass_shorted", "a bypass diode that conducts always", {}},
-      {"bypass_open", "cells in the shade whose bypass diode is open",
+      {"bypass_open", "shaded cells whose bypass diode is open",
        joined({{count_key(), Key::number("factor", Range::fraction(), "of the light")},
                breakdown_keys()})},
       {"substring_shaded",

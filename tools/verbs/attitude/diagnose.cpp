@@ -276,7 +276,7 @@ void require_each_once(const std::vector<fs::path>& recordings,
           known, [&](const fs::path& other) { return fs::equivalent(path, other); });
       if (is_known) {
         throw InputError({path.string()}, all == &holdouts ? "--holdout" : "--recording",
-                         "a file that was given already", "another recording");
+                         "a file that is given twice", "another recording");
       }
       known.push_back(path);
     }
@@ -361,7 +361,7 @@ void add_options(Command& command, Options& options) {
     if (!options.guess.empty()) options.name = name_of_guess(options.guess);
     if (options.experiment.empty() != options.guess.empty()) return "";
     return options.guess.empty() ? "experiment is required, or --guess RECORDING"
-                                 : "an experiment beside --guess: one of the two";
+                                 : "both an experiment and --guess";
   };
 }
 
