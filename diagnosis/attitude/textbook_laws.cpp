@@ -4,8 +4,8 @@
 #include <cmath>
 #include <ranges>
 
-#include "diagnosis/attitude/beside_the_rest.h"
 #include "diagnosis/attitude/domain.h"
+#include "diagnosis/attitude/model_discrepancy.h"
 #include "inference/trials.h"
 
 namespace photorque {

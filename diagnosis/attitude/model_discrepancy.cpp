@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/beside_the_rest.h"
+#include "diagnosis/attitude/model_discrepancy.h"
 
 #include <algorithm>
 #include <cmath>
@@ -225,7 +225,7 @@ class Contest {
 // Refits the trial with its correlated residual as noise. A smaller residual gives the readings
 // more weight relative to the priors, so the refit is repeated while the held-out prediction
 // improves.
-Trial fitted_beside_the_rest(const Trial& named, const Candidates& all, const NoiseLevels& own,
+Trial refit_with_discrepancy(const Trial& named, const Candidates& all, const NoiseLevels& own,
                              RecordedData data) {
   constexpr int most_rounds = 6;
   Trial result = named;
@@ -275,7 +275,7 @@ void choose(const Contender& won, const Contest& contest, Answer& a) {
 }
 
 // Sets the finding and its probability, corrected for as many tests as there are candidates.
-void decide_beside_the_rest(Answer& a) {
+void decide_with_discrepancy(Answer& a) {
   a.rest_is_noise = true;
   a.decision.finding = inference::Finding::unknown;
   a.decision.beside_law.clear();
@@ -287,7 +287,7 @@ void decide_beside_the_rest(Answer& a) {
 
 }  // namespace
 
-Among among_beside_the_rest(const NominalModel& nominal, const RecordedData& data) {
+Among among_with_discrepancy(const NominalModel& nominal, const RecordedData& data) {
   const Vec3& axis = nominal.model.platform.axis;
   const bool sees_both = std::ranges::all_of(data.train, [&](const Observation& seen) {
     const bool has_rate = std::ranges::any_of(
@@ -304,8 +304,8 @@ bool leaves_only_noise(const Fit& fit, const RecordedData& data) {
   return at_readings.chi2_per_sample() < as_noise;
 }
 
-std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, RecordedData& data,
-                                            const DiagnoseOptions& options, const Trial* laws) {
+std::optional<Answer> identify_with_discrepancy(const NominalModel& nominal, RecordedData& data,
+                                                const DiagnoseOptions& options, const Trial* laws) {
   const NoiseLevels own = data.train.front().noise;
   std::optional<Answer> best;
   use_noise(patient_noise(data.train, own), data);
@@ -318,10 +318,10 @@ std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, Recorde
     use_noise(noise, data);
     tell(options, "naming effects, with the residual counted as noise");
     Answer next = searched(nominal, fit_nominal(nominal, data.train, options.limits), data, options,
-                           among_beside_the_rest(nominal, data), laws);
+                           among_with_discrepancy(nominal, data), laws);
     Contest contest(next, data, stretches_of(next, data, own), options.threads);
     Contender won = contest.winner();
-    Trial fitted = fitted_beside_the_rest(won.trial, next.all, own, data);
+    Trial fitted = refit_with_discrepancy(won.trial, next.all, own, data);
     for (;;) {
       const auto least = std::ranges::min_element(fitted.significance);
       if (least == fitted.significance.end() ||
@@ -329,13 +329,13 @@ std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, Recorde
         break;
       }
       won = contest.without(won, static_cast<size_t>(least - fitted.significance.begin()));
-      fitted = fitted_beside_the_rest(won.trial, next.all, own, data);
+      fitted = refit_with_discrepancy(won.trial, next.all, own, data);
     }
     left_by = won.trial.fit;
     if (won.trial.candidates.empty() || !fitted.objection.empty()) break;
     won.trial = std::move(fitted);
     choose(won, contest, next);
-    decide_beside_the_rest(next);
+    decide_with_discrepancy(next);
     best = std::move(next);
   }
   return best;
