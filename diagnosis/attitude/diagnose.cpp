@@ -114,13 +114,13 @@ std::vector<std::string> warnings_of(const RecordedData& data,
 }
 
 // Adds the gain in prediction of segments by each name, with model discrepancy.
-void say_gains_over_stretches(const Answer& answer, Diagnosis& d) {
+void report_gains_over_segments(const Answer& answer, Diagnosis& d) {
   if (!answer.beside) return;
   for (size_t i = 0; i < d.effects.size(); ++i) {
     d.warnings.push_back(
         written("%s: %zu segments, each predicted from the others, are predicted "
                 "better with it than without it by %.1f standard errors",
-                d.effects[i].kind.c_str(), answer.beside->stretches, answer.beside->sigma[i]));
+                d.effects[i].kind.c_str(), answer.beside->segments, answer.beside->sigma[i]));
   }
 }
 
@@ -235,7 +235,7 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
   }
   say_how_well(nominal_fit, answer, data, options.limits, d);
   d.warnings = warnings_of(data, answer.decision);
-  say_gains_over_stretches(answer, d);
+  report_gains_over_segments(answer, d);
   say_limits_of_held_out(d);
   for (const std::string& text : contradicted_beliefs(answer.chosen(), options.limits.decision)) {
     d.warnings.push_back(text);

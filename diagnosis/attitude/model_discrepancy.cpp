@@ -7,9 +7,9 @@
 #include "attitude/estimation/fit.h"
 #include "attitude/observation/noise_levels.h"
 #include "attitude/propagation/run.h"
+#include "diagnosis/attitude/cross_validation.h"
 #include "diagnosis/attitude/domain.h"
 #include "diagnosis/attitude/holdout.h"
-#include "diagnosis/attitude/stretches.h"
 
 namespace photorque {
 namespace {
@@ -20,12 +20,12 @@ void use_noise(const NoiseLevels& noise, RecordedData& data) {
   }
 }
 
-// Number of segments, limited to one to three times `limits.stretches`: the number of independent
+// Number of segments, limited to one to three times `limits.segments`: the number of independent
 // residuals of the best explanation, n (1 − ρ)/(1 + ρ) for n readings with neighbour correlation ρ.
 // With few segments, a difference that varies between them is not significant.
-size_t stretches_of(const Answer& answer, const RecordedData& data, const NoiseLevels& own) {
+size_t segment_count(const Answer& answer, const RecordedData& data, const NoiseLevels& own) {
   constexpr double most = 3.0;
-  const auto fewest = static_cast<double>(answer.all.limits.discrepancy.stretches);
+  const auto fewest = static_cast<double>(answer.all.limits.discrepancy.segments);
   const Trial* best = &answer.trials.front();
   for (const Trial& t : answer.trials) {
     if (t.objection.empty() && t.fit.chi2 < best->fit.chi2) best = &t;
@@ -57,15 +57,15 @@ struct Contender {
 // Compares explanations of one search by their predictions of segments.
 class Contest {
  public:
-  Contest(const Answer& answer, const RecordedData& data, size_t stretches, int threads)
+  Contest(const Answer& answer, const RecordedData& data, size_t segments, int threads)
       : answer_(answer),
         limits_(answer.all.limits.discrepancy),
         domain_(answer.all),
         train_(data.train),
         held_(data.held),
-        stretches_(domain_, data.train, data.held, stretches, threads) {}
+        segments_(domain_, data.train, data.held, segments, threads) {}
 
-  size_t stretches() const { return stretches_.count(); }
+  size_t segments() const { return segments_.count(); }
 
   // The best predictor, or a simpler or more likely explanation that is indistinguishable from it,
   // without names that no segment requires.
@@ -130,7 +130,7 @@ class Contest {
   Contender contender(const Trial& trial) const {
     const Trial held = domain_.predict(trial, held_);
     const double chi2 = std::isnan(held.fit.chi2) ? inference::infinity : held.fit.chi2;
-    return {trial, stretches_.chi2(trial), chi2, static_cast<double>(held.fit.samples)};
+    return {trial, segments_.chi2(trial), chi2, static_cast<double>(held.fit.samples)};
   }
 
   // Motion about three axes is flexible enough to fit anything. There a further name must halve the
@@ -217,7 +217,7 @@ class Contest {
   const Thresholds::Discrepancy& limits_;
   AttitudeDomain domain_;
   const std::vector<Observation>&train_, &held_;
-  Stretches stretches_;
+  CrossValidation segments_;
   std::vector<Contender> contenders_;
   std::vector<double> sigma_;
 };
@@ -267,7 +267,7 @@ void choose(const Contender& won, const Contest& contest, Answer& a) {
   chosen.log_evidence = weighed.log_evidence;
   chosen.predictive = weighed.predictive;
   a.decision.best_named = a.decision.chosen;
-  a.beside.emplace().stretches = contest.stretches();
+  a.beside.emplace().segments = contest.segments();
   a.beside->sigma = contest.sigma();
   for (size_t i = 0; i < chosen.candidates.size(); ++i) {
     a.beside->rivals.push_back(contest.rivals(won, i));
@@ -319,7 +319,7 @@ std::optional<Answer> identify_with_discrepancy(const NominalModel& nominal, Rec
     tell(options, "naming effects, with the residual counted as noise");
     Answer next = searched(nominal, fit_nominal(nominal, data.train, options.limits), data, options,
                            among_with_discrepancy(nominal, data), laws);
-    Contest contest(next, data, stretches_of(next, data, own), options.threads);
+    Contest contest(next, data, segment_count(next, data, own), options.threads);
     Contender won = contest.winner();
     Trial fitted = refit_with_discrepancy(won.trial, next.all, own, data);
     for (;;) {

@@ -21,7 +21,7 @@ namespace photorque {
 namespace {
 
 // Minimum number of blocks of a segment: enough to determine its initial conditions and some more.
-constexpr size_t least_of_stretch = 12;
+constexpr size_t min_segment_blocks = 12;
 
 // Warns of rows that are omitted where a file is cut into segments.
 void say_cuts(const std::string& name, const Segments& segments,
@@ -85,15 +85,15 @@ void say_assumed_sequence(const NamedRecording& r, const Platform& platform,
 // a model without any force, even the commanded one, then fits best (closed-loop identification, L.
 // Ljung, System Identification, 2nd ed. 1999, section 13.4). Short segments with separate initial
 // conditions make the forces visible.
-void begin_anew_under_commands(const std::string& name, const Platform& platform, size_t stretches,
-                               std::vector<Observation>& all, std::vector<std::string>& warnings) {
+void split_commanded_runs(const std::string& name, const Platform& platform, size_t segments,
+                          std::vector<Observation>& all, std::vector<std::string>& warnings) {
   std::vector<Observation> result;
   for (const Observation& seen : all) {
     const bool is_commanded =
         platform.slides() && std::ranges::any_of(seen.schedule.held, [](const ZeroOrderHold& held) {
           return held.commands_force();
         });
-    const size_t count = is_commanded ? std::min(stretches, seen.blocks() / least_of_stretch) : 1;
+    const size_t count = is_commanded ? std::min(segments, seen.blocks() / min_segment_blocks) : 1;
     for (size_t i = 0; i < count; ++i) {
       result.push_back(count == 1
                            ? seen
@@ -196,8 +196,8 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
       of_rates += repair_free_rates(segments.all, platform.inertia_kg_m2);
     if (convention.empty()) convention = of_rates;
     if (!convention.empty()) warnings.push_back(r.name + ": " + convention);
-    begin_anew_under_commands(r.name, platform, options.limits.discrepancy.stretches, segments.all,
-                              warnings);
+    split_commanded_runs(r.name, platform, options.limits.discrepancy.segments, segments.all,
+                         warnings);
     all.push_back(std::move(segments.all));
   }
   return all;
@@ -226,11 +226,11 @@ size_t cut_at(const Observation& seen, double fraction) {
 
 // Holds out the end of a recording in one piece. Of many segments, every (1/fraction)-th is held
 // out, so that held-out and fitted data cover equal times and conditions.
-void hold_out(std::vector<Observation> stretches, double fraction, RecordedData& data) {
+void hold_out(std::vector<Observation> segments, double fraction, RecordedData& data) {
   const auto every = static_cast<size_t>(std::lround(1.0 / fraction));
-  for (size_t i = 0; i < stretches.size(); ++i) {
-    Observation& seen = stretches[i];
-    if (stretches.size() >= every) {
+  for (size_t i = 0; i < segments.size(); ++i) {
+    Observation& seen = segments[i];
+    if (segments.size() >= every) {
       (i % every == every - 1 ? data.held : data.train).push_back(std::move(seen));
       continue;
     }
@@ -268,15 +268,15 @@ RecordedData read_data(const NominalModel& nominal, const std::vector<NamedRecor
                        const std::vector<NamedRecording>& holdouts,
                        const DiagnoseOptions& options) {
   RecordedData data;
-  for (auto& stretches : observe_all(recordings, nominal, options, data.warnings)) {
+  for (auto& segments : observe_all(recordings, nominal, options, data.warnings)) {
     if (holdouts.empty()) {
-      hold_out(std::move(stretches), options.holdout_fraction, data);
+      hold_out(std::move(segments), options.holdout_fraction, data);
     } else {
-      append_to(data.train, std::move(stretches));
+      append_to(data.train, std::move(segments));
     }
   }
-  for (auto& stretches : observe_all(holdouts, nominal, options, data.warnings)) {
-    append_to(data.held, std::move(stretches));
+  for (auto& segments : observe_all(holdouts, nominal, options, data.warnings)) {
+    append_to(data.held, std::move(segments));
   }
   const NoiseLevels noise = noise_of(nominal.sensors, data.train, data.warnings);
   for (auto* runs : {&data.train, &data.held}) {

@@ -218,7 +218,7 @@ struct Thresholds {
   struct Discrepancy {
     // Approximate number of segments into which all recordings are cut; standard errors by which
     // each name must improve their prediction; and those that distinguish two explanations (95 %).
-    size_t stretches = 16;
+    size_t segments = 16;
     double min_sigma = 3.0, min_rival_sigma = 1.645;
     // Ratio of the held-out χ² to that without the name above which the name is rejected.
     double max_held_growth = 1.1;
