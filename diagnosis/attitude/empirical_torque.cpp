@@ -8,7 +8,7 @@
 #include "attitude/model/platform.h"
 #include "core/constants.h"
 #include "core/text/format.h"
-#include "diagnosis/attitude/account.h"
+#include "diagnosis/attitude/findings.h"
 
 namespace photorque {
 

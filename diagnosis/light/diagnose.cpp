@@ -5,8 +5,8 @@
 
 #include "core/errors.h"
 #include "core/parallel.h"
-#include "diagnosis/light/account.h"
 #include "diagnosis/light/domain.h"
+#include "diagnosis/light/findings.h"
 #include "diagnosis/light/segments.h"
 #include "diagnosis/verdict.h"
 #include "inference/decide.h"
