@@ -237,7 +237,7 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
   d.warnings = warnings_of(data, answer.decision);
   report_gains_over_segments(answer, d);
   say_limits_of_held_out(d);
-  for (const std::string& text : contradicted_beliefs(answer.chosen(), options.limits.decision)) {
+  for (const std::string& text : contradicted_priors(answer.chosen(), options.limits.decision)) {
     d.warnings.push_back(text);
   }
   if (!answer.all.remark.empty() && !d.effects.empty()) d.warnings.push_back(answer.all.remark);

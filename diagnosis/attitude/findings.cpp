@@ -347,8 +347,8 @@ FoundEffect as_fitted(const Trial& chosen, size_t disturbance) {
   return effect;
 }
 
-std::vector<std::string> contradicted_beliefs(const Trial& chosen,
-                                              const Thresholds::Decision& limits) {
+std::vector<std::string> contradicted_priors(const Trial& chosen,
+                                             const Thresholds::Decision& limits) {
   std::vector<std::string> sentences;
   size_t shared = 0;
   for (const Free& f : chosen.fit.best.free) {
@@ -358,9 +358,9 @@ std::vector<std::string> contradicted_beliefs(const Trial& chosen,
     const auto& found = chosen.disturbances;
     const bool is_found = std::find(found.begin(), found.end(), f.disturbance) != found.end();
     const double off = (p.value - p.mean) / p.sigma;
-    if (is_found || !p.has_prior() || !(std::abs(off) > limits.doubtful_belief_sigma)) continue;
+    if (is_found || !p.has_prior() || !(std::abs(off) > limits.doubtful_prior_sigma)) continue;
     char text[200];
-    const bool is_contradicted = std::abs(off) > limits.contradicted_belief_sigma;
+    const bool is_contradicted = std::abs(off) > limits.contradicted_prior_sigma;
     std::snprintf(
         text, sizeof text, "%s: stated %.4g ± %.2g, fitted %.4g: %s by %.1f σ", p.name.c_str(),
         p.mean, p.sigma, p.value,

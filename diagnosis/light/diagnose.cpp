@@ -26,12 +26,12 @@ void tell(const LightDiagnoseOptions& options, const std::string& what) {
   if (options.progress) options.progress(what);
 }
 
-Eigen::VectorXd nominal_residuals(const FittedRun& run, const LightBelief& nominal) {
+Eigen::VectorXd nominal_residuals(const FittedRun& run, const NominalLight& nominal) {
   return run.run->residuals(nominal.state, run.run->signals(nominal.state, *run.nominal), nullptr);
 }
 
 // Thins a long recording and removes outliers.
-FittedRun observed(const LightLab& lab, const LightBelief& nominal, LightRecording recording,
+FittedRun observed(const LightLab& lab, const NominalLight& nominal, LightRecording recording,
                    int number, const LightDiagnoseOptions& options, DataQuality& quality) {
   quality.rows += recording.rows_read;
   for (const auto& [reason, count] : recording.rejected) quality.rejected[reason] += count;
@@ -86,7 +86,7 @@ void require_enough(const LightData& data, const std::string& first) {
       "at least 8 to fit and 2 to hold out");
 }
 
-LightData read_light_data(const LightLab& lab, const LightBelief& nominal,
+LightData read_light_data(const LightLab& lab, const NominalLight& nominal,
                           std::vector<LightRecording> recordings,
                           std::vector<LightRecording> holdouts,
                           const LightDiagnoseOptions& options) {
@@ -131,7 +131,7 @@ bool drop_wild(const LightTrial& about, const LightCandidates& all, LightData& d
   return true;
 }
 
-LightAnswer explain_light(const LightLab& lab, const LightBelief& nominal, LightData& data,
+LightAnswer explain_light(const LightLab& lab, const NominalLight& nominal, LightData& data,
                           const LightDiagnoseOptions& options) {
   LightAnswer answer{light_candidates(lab, nominal, data.train, options.limits), {}, {}};
   const LightDomain domain(answer.all);
@@ -255,7 +255,7 @@ std::vector<Where::ChannelMisfit> misfits(const LightAnswer& answer,
 
 }  // namespace
 
-Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
+Diagnosis diagnose_light(const LightLab& lab, const NominalLight& nominal,
                          std::vector<LightRecording> recordings,
                          std::vector<LightRecording> holdouts, const LightDiagnoseOptions& asked) {
   if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
@@ -290,7 +290,7 @@ Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
     lead_with_chosen_law(answer, about, d.where.depends_on);
   }
   d.alternatives = light_alternatives(answer);
-  d.priors_refined = refined_light_beliefs(answer);
+  d.priors_refined = refined_light_priors(answer);
   d.chi2_per_sample_before = answer.trials.front().fit.chi2_per_sample();
   d.chi2_per_sample_after = answer.chosen().fit.chi2_per_sample();
   d.samples = answer.trials.front().fit.samples;

@@ -238,14 +238,14 @@ std::vector<Where::Dependence> light_dependences(const LightTrial& about,
   return result;
 }
 
-std::vector<FittedParameter> refined_light_beliefs(const LightAnswer& answer) {
+std::vector<FittedParameter> refined_light_priors(const LightAnswer& answer) {
   std::vector<FittedParameter> refined;
-  const std::vector<LightPrior>& beliefs = answer.all.nominal.uncertain;
-  if (beliefs.empty()) return refined;
+  const std::vector<LightPrior>& priors = answer.all.nominal.uncertain;
+  if (priors.empty()) return refined;
   const LightTrial& chosen = answer.chosen();
   const Eigen::MatrixXd covariance = chosen.fit.shared_posterior();
-  for (size_t i = 0; i < beliefs.size(); ++i) {
-    const LightPrior& b = beliefs[i];
+  for (size_t i = 0; i < priors.size(); ++i) {
+    const LightPrior& b = priors[i];
     if (refined.empty() || refined.back().key != b.key) {
       refined.push_back({b.key, b.value, std::vector<double>(b.value.size(), 0.0)});
     }

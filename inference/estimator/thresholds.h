@@ -206,7 +206,7 @@ struct Thresholds {
     double max_held_out_fraction = 0.5;
     // Deviation of a nominal value from its stated value [sigma] above which it is doubtful or
     // contradicted.
-    double doubtful_belief_sigma = 3.0, contradicted_belief_sigma = 5.0;
+    double doubtful_prior_sigma = 3.0, contradicted_prior_sigma = 5.0;
     // Minimum probability of reported names or of effects indistinguishable from them.
     double min_probability = 0.7;
     // Residual structure [sigma] above which the best physics is insufficient; minimum confidence

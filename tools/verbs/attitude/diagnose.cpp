@@ -15,9 +15,9 @@
 #include "diagnosis/guess/guess.h"
 #include "diagnosis/improved.h"
 #include "diagnosis/json.h"
-#include "diagnosis/light/beliefs.h"
 #include "diagnosis/light/diagnose.h"
 #include "diagnosis/light/module/diagnose.h"
+#include "diagnosis/light/nominal_light.h"
 #include "diagnosis/light/together.h"
 #include "images/writers/staged_files.h"
 #include "scenes/experiment/document.h"
@@ -115,7 +115,7 @@ Progress progress_on(const Console& console, const std::string& of) {
 struct LightInput {
   Experiment experiment;
   LightLab lab{experiment};
-  LightBelief nominal{lab.nominal(), {}};
+  NominalLight nominal{lab.nominal(), {}};
   std::vector<LightRecording> recordings = {}, holdouts = {};
   Provenance provenance = {};
 };
@@ -133,7 +133,7 @@ std::unique_ptr<LightInput> read_light_input(const RunOptions& options,
   std::unique_ptr<LightInput> input(new LightInput{reread("")});
   input->provenance = build_provenance();
   input->provenance.inputs = input->experiment.inputs;
-  input->nominal = light_belief(
+  input->nominal = nominal_light(
       input->lab, uncertain_keys(options.experiment, text, options.all_overrides()), reread);
   const UsualCircumstances usual{
       input->experiment.lab_from_body.rotation,
