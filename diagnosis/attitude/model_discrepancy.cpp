@@ -308,7 +308,7 @@ std::optional<Answer> identify_with_discrepancy(const NominalModel& nominal, Rec
                                                 const DiagnoseOptions& options, const Trial* laws) {
   const NoiseLevels own = data.train.front().noise;
   std::optional<Answer> best;
-  use_noise(patient_noise(data.train, own), data);
+  use_noise(noise_from_spread(data.train, own), data);
   Fit left_by = laws != nullptr ? laws->fit : fit_nominal(nominal, data.train, options.limits);
   for (int round = 0; round < options.limits.discrepancy.max_rounds; ++round) {
     if (!std::isfinite(left_by.chi2)) break;

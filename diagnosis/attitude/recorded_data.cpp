@@ -366,19 +366,19 @@ bool use_noise(const NoiseFindings& findings, RecordedData& data) {
 // Limits the weight of readings that are not normally distributed, in fitted and held-out data:
 // bursts are dropped and heavy tails get pseudo-values. `near` is a fit that is near the readings.
 // Returns whether anything changed.
-bool tame_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
+bool robustify_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
   const int64_t in_bursts = drop_bursts(residuals_of(near, data.train), limits.noise, data.train);
   const std::vector<Prediction> residuals = residuals_of(near, data.train);
   const HeavyTails tails = heavy_tails(residuals, data.train, limits.noise);
   robustify(tails, residuals, data.train);
-  const std::vector<Prediction> tamed = residuals_of(near, data.train);
+  const std::vector<Prediction> robustified = residuals_of(near, data.train);
   bool changed = in_bursts > 0;
   for (int k = 0; k < 6; ++k) {
     const std::optional<HeavyTail>& tail = tails[static_cast<size_t>(k)];
     if (!tail) continue;
     changed = true;
     data.instruments.push_back(tail_finding(k, *tail));
-    const ChannelNoise now{deviation_level(tamed, data.train, k), 0.0, 0.0};
+    const ChannelNoise now{deviation_level(robustified, data.train, k), 0.0, 0.0};
     for (auto* runs : {&data.train, &data.held}) {
       for (Observation& seen : *runs) seen.noise.set(k, now);
     }
@@ -402,9 +402,9 @@ bool find_and_use_noise(const Fit& near, const Thresholds& limits, RecordedData&
   NoiseFindings findings = find_noise(data.train, residuals_of(near, data.train), limits.noise);
   data.noise_is_open = findings.is_open;
   if (findings.is_open) return false;
-  const bool tamed = tame_noise(near, limits, data);
-  if (tamed) findings = find_noise(data.train, residuals_of(near, data.train), limits.noise);
-  return use_noise(findings, data) || tamed;
+  const bool robustified = robustify_noise(near, limits, data);
+  if (robustified) findings = find_noise(data.train, residuals_of(near, data.train), limits.noise);
+  return use_noise(findings, data) || robustified;
 }
 
 }  // namespace
