@@ -335,10 +335,11 @@ class Weighing {
     // This model contains the nominal model, so a fit that is worse did not converge and is
     // skipped.
     if (!(joint.fit.chi2 < nominal().joint.fit.chi2 + limits_.leaders.near_chi2)) return;
-    const bool is_lost = !is_near(joint, from.joint, limits_);
-    Trial train = assembled(
-        joint, domain_.terms_of(joint),
-        is_lost ? Effort{.max_iterations = limits_.fitting.brief_iterations} : patient(limits_));
+    const bool is_out_of_reach = !is_near(joint, from.joint, limits_);
+    Trial train =
+        assembled(joint, domain_.terms_of(joint),
+                  is_out_of_reach ? Effort{.max_iterations = limits_.fitting.brief_iterations}
+                                  : patient(limits_));
     add_leader(std::move(train), std::move(joint));
   }
 
@@ -413,8 +414,8 @@ class Weighing {
     const double behind_chi2 = joint.fit.chi2 - best().joint.fit.chi2 - limits_.leaders.near_chi2;
     std::vector<size_t> order;
     for (size_t i = 0; i < untried.size(); ++i) {
-      const bool is_lost = forecast_error * gains[i] < behind_chi2;
-      if (!is_lost && beyond_chance(i) > limits_.scoring.min_joint_gain) order.push_back(i);
+      const bool is_out_of_reach = forecast_error * gains[i] < behind_chi2;
+      if (!is_out_of_reach && beyond_chance(i) > limits_.scoring.min_joint_gain) order.push_back(i);
     }
     std::stable_sort(order.begin(), order.end(),
                      [&](size_t a, size_t b) { return beyond_chance(a) > beyond_chance(b); });
