@@ -32,8 +32,8 @@ bool is_near(const Trial& trial, const Trial& best, const Thresholds& limits) {
 
 // Refits a trial from the end of the best fit on the same runs; keeps the better result.
 template <Domain D>
-void learn(const D& domain, const std::vector<typename D::Run>& runs, const typename D::Trial& best,
-           typename D::Trial& trial) {
+void refit_from_best(const D& domain, const std::vector<typename D::Run>& runs,
+                     const typename D::Trial& best, typename D::Trial& trial) {
   const Thresholds& limits = domain.limits();
   if (trial.fit.chi2 < best.fit.chi2 + limits.leaders.worth_a_fit) return;
   const Effort brief{.max_iterations = limits.fitting.brief_iterations};
@@ -65,7 +65,8 @@ void settle_leaders(const D& domain, const std::vector<typename D::Run>& runs, i
   });
   const Trial best = found[by_evidence(found).front()];
   parallel_for(leaders.size() + parents.size(), threads, [&](size_t i) {
-    learn(domain, runs, best, i < leaders.size() ? found[leaders[i]] : parents[i - leaders.size()]);
+    refit_from_best(domain, runs, best,
+                    i < leaders.size() ? found[leaders[i]] : parents[i - leaders.size()]);
   });
 }
 

@@ -53,7 +53,7 @@ class Weighing {
     const size_t found = trials_.size();
     add_what_only_all_show(trials_.front().candidates);
     add_what_only_all_show(best().joint.candidates);
-    learn();
+    refit_from_best();
     search_on();
     add_without_each();
     exchange_places();
@@ -78,7 +78,7 @@ class Weighing {
     size_t at;
     Trial joint;
     // χ² of the best and of this leader when a refit from the best last brought no improvement.
-    std::array<double, 2> learnt = {};
+    std::array<double, 2> refitted_at = {};
   };
 
   // The most likely and the nominal model come first; other fits stop when they cannot come near
@@ -91,7 +91,7 @@ class Weighing {
     }
     add_leaders(places, first, patient(limits_));
     add_leaders(places, others, within_reach(patient(limits_), leaders_.front().joint, limits_));
-    learn();
+    refit_from_best();
   }
 
   void add_leaders(const std::vector<size_t>& places, const std::vector<size_t>& which,
@@ -121,7 +121,7 @@ class Weighing {
   }
 
   // Refits every leader from the end of the best; skips those for which this failed before.
-  void learn() {
+  void refit_from_best() {
     const Trial best =
         std::min_element(leaders_.begin(), leaders_.end(), [](const Leader& a, const Leader& b) {
           return a.joint.fit.chi2 < b.joint.fit.chi2;
@@ -129,9 +129,9 @@ class Weighing {
     parallel_for(leaders_.size(), threads_, [&](size_t k) {
       Leader& leader = leaders_[k];
       const std::array<double, 2> now = {best.fit.chi2, leader.joint.fit.chi2};
-      if (leader.learnt == now) return;
-      inference::learn(domain_, all_runs_, best, leader.joint);
-      if (leader.joint.fit.chi2 == now[1]) leader.learnt = now;
+      if (leader.refitted_at == now) return;
+      inference::refit_from_best(domain_, all_runs_, best, leader.joint);
+      if (leader.joint.fit.chi2 == now[1]) leader.refitted_at = now;
     });
   }
 
