@@ -66,7 +66,7 @@ class Search {
     const Effort growing{.windows = limits_.fitting.diverged_windows};
     parallel_for(found.size(), threads_, [&](size_t i) {
       Trial& t = found[i];
-      const std::vector<typename D::Begin> begins = domain_.seen_begins(t, runs_);
+      const std::vector<typename D::Begin> begins = domain_.initial_conditions_from_data(t, runs_);
       if (i < refits) {
         t = domain_.refit(t, runs_, begins, growing);
       } else {

@@ -162,8 +162,8 @@ std::pair<RunSet<D>, typename D::Trial> near_pieces(const D& domain,
     // There are too few readings to cut further.
     if (shorter.empty()) break;
     RunSet<D> pieces{std::move(shorter), count};
-    typename D::Trial near =
-        domain.refit(parent, pieces.runs, domain.seen_begins(parent, pieces.runs), {});
+    typename D::Trial near = domain.refit(
+        parent, pieces.runs, domain.initial_conditions_from_data(parent, pieces.runs), {});
     tried.emplace_back(std::move(pieces), std::move(near));
     if (!has_diverged(tried.back().second, domain.limits())) return std::move(tried.back());
   }
