@@ -103,7 +103,7 @@ void sort_by_evidence(std::vector<Trial>& trials) {
 
 // Of trials with equal candidates in any order, keeps the best.
 template <class Trial>
-std::vector<Trial> without_twins(std::vector<Trial> trials) {
+std::vector<Trial> deduplicated(std::vector<Trial> trials) {
   std::vector<Trial> kept;
   for (Trial& trial : trials) {
     const auto twin = std::find_if(kept.begin(), kept.end(), [&](const Trial& t) {
