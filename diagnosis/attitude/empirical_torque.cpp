@@ -231,7 +231,7 @@ std::string likeness_to_yaw(const MotionFunction& f) {
   }
 }
 
-std::string likeness(const EmpiricalShape& shape, const Numbers& numbers) {
+std::string similar_effects(const EmpiricalShape& shape, const Numbers& numbers) {
   const MotionFunction& f = shape.functions.front();
   if (shape.functions.size() == 2) {
     return f.of == MotionVariable::yaw
@@ -289,7 +289,7 @@ EmpiricalFormula formula_of(const EmpiricalShape& shape,
     }
     formula.text += where;
   }
-  formula.looks_like = likeness(shape, numbers);
+  formula.looks_like = similar_effects(shape, numbers);
   return formula;
 }
 

@@ -68,7 +68,7 @@ constexpr const char* longer = "record longer, at larger tilt and over a wider r
 
 // Whether only the battery current distinguishes two kinds: effects of its charge do not depend on
 // the initial state.
-bool is_told_by_charge(const std::string& kind, const std::string& rival) {
+bool is_separated_by_charge(const std::string& kind, const std::string& rival) {
   const auto says = [](const std::string& one, const std::string& other) {
     const DisturbanceKind* known = find_kind(one);
     return known != nullptr &&
@@ -189,7 +189,7 @@ std::vector<Manoeuvre> manoeuvres(const std::vector<FoundEffect>& effects,
     for (const std::string& rival : effect.indistinguishable_from) {
       Manoeuvre m{{effect.kind, rival}, longer, 0.0};
       const Trial* other = stand_in(effect.kind, rival, chosen, trials, all);
-      if (is_told_by_charge(effect.kind, rival)) {
+      if (is_separated_by_charge(effect.kind, rival)) {
         m.text =
             "record through a change of the battery current: only the effect of the discharge "
             "follows the charge";
