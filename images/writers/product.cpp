@@ -21,7 +21,7 @@ std::vector<WriterKind> kinds_named(const std::vector<std::string>& formats) {
     if (kind == all.end()) {
       std::string known;
       for (const WriterKind& each : all) known += (known.empty() ? "" : ", ") + each.name;
-      throw InputError({}, "", "\"" + format + "\"", "one of " + known);
+      throw InputError({}, "format", "\"" + format + "\"", "one of " + known);
     }
     chosen.push_back(*kind);
   }
