@@ -65,7 +65,7 @@ inline constexpr NumberKey background_electrons("background_electrons", Range::n
 inline constexpr NumberKey full_well_electrons("full_well_electrons", Range::positive(),
                                                "of a pixel", {.optional = true});
 inline constexpr Vec3Key position("position_m", "of the camera, lab axes", {.optional = true});
-inline constexpr Vec3Key aim("aim_m", {0.0, 0.0, 0.0}, "where its optical axis passes, lab axes");
+inline constexpr Vec3Key aim("aim_m", {0.0, 0.0, 0.0}, "a point on the optical axis, lab axes");
 inline constexpr ChoiceKey pose("pose",
                                 {{"about_centre", "the centre of rotation is known"},
                                  {"free", "the position is estimated too"}},
@@ -99,7 +99,7 @@ inline constexpr NumbersKey focal_length("focal_length_mm", Range::positive(),
                                          "[from, to] of the map over lens and board",
                                          {.usually = "0.75 to 1.5 times the lens", .size = 2});
 inline constexpr NumbersKey board_scale("board_scale", Range::positive(),
-                                        "[from, to] of the same map",
+                                        "[from, to] of the scale of the board in this map",
                                         {.usually = "[0.5, 2]", .size = 2});
 inline constexpr TableKey camera_study("camera_study", "tables and maps of the command `camera`");
 }  // namespace study_key

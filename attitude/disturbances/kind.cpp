@@ -49,7 +49,7 @@ Key disturbance_table() {
   }
   return Key::tables(
       "disturbance",
-      {Key::choice("kind", std::move(kinds), "the effect"),
+      {Key::choice("kind", std::move(kinds), "kind of the effect"),
        Key::flag_or("per_recording", false,
                     "`diagnose` fits its parameters with a sigma separately for each recording")},
       "the effects on the platform");

@@ -27,7 +27,7 @@ void check_inertia(const Mat3& inertia_kg_m2, const InputLocation& where, const 
 namespace {
 
 namespace platform_key {
-constexpr UncertainNumberKey mass("mass_kg", Range::positive(), "of all rotating parts");
+constexpr UncertainNumberKey mass("mass_kg", Range::positive(), "mass of all rotating parts");
 constexpr OtherKey inertia("inertia_kg_m2", Key::an_array | Key::a_table,
                            "3 × 3, symmetric, positive, body axes, about the centre of rotation");
 // About the one axis that is free.
@@ -52,7 +52,7 @@ constexpr NumberKey battery_capacity(
     "`[array.day]`, the energy of the battery is this times `battery_voltage_V`",
     {.usually = "none: never empty"});
 constexpr NumberKey battery_voltage("battery_voltage_V", usual_battery_voltage_V, Range::positive(),
-                                    "nominal");
+                                    "nominal voltage of the battery");
 constexpr TableKey platform("platform", "the rotating body");
 }  // namespace platform_key
 

@@ -107,8 +107,9 @@ inline constexpr OtherKey cells(
     "(triangles that share an edge, on one instance of a mesh). The receiver's node must then "
     "contain cells only. Cells on a lattice are numbered as above, others in their order in the "
     "mesh, as one row; `cells.csv` has their centres");
-inline constexpr NumbersKey low("low_m", {}, "[u, v] of its lower corner", {.size = 2});
-inline constexpr NumbersKey high("high_m", {}, "[u, v] of its upper corner", {.size = 2});
+inline constexpr NumbersKey low("low_m", {}, "[u, v] of the lower corner of the cell", {.size = 2});
+inline constexpr NumbersKey high("high_m", {}, "[u, v] of the upper corner of the cell",
+                                 {.size = 2});
 inline constexpr TablesKey rectangle(
     "rectangle",
     "one rectangle per cell, instead of `cells`, anywhere on the irradiance map, in the "

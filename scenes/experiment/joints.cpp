@@ -26,7 +26,7 @@ constexpr Vec3Key towards_sun("towards_sun",
                               "in `propagate`: direction in the model file that follows the Sun, "
                               "as closely as the axis allows",
                               {.optional = true});
-constexpr NumberKey time("time_s", {}, "rising");
+constexpr NumberKey time("time_s", {}, "time of the angle, rising");
 constexpr NumberKey at_angle(
     "angle_deg", joint_angle,
     "angle at that time; linear between instants, constant before the first and after the last");

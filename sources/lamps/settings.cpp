@@ -44,7 +44,8 @@ constexpr NumberKey lens_index("lens_index", 1.0, {1.0, 5.0, false, false},
 namespace place_key {
 constexpr Vec3sKey positions("positions_m", "one lamp at each, instead of `position_m`",
                              {.optional = true});
-constexpr NumberKey turn("turn_deg", 0.0, {}, "about the beam, right-handed about its direction");
+constexpr NumberKey turn("turn_deg", 0.0, {},
+                         "rotation about the beam, right-handed about its direction");
 }  // namespace place_key
 
 namespace sunlight_key {

@@ -27,9 +27,9 @@ constexpr NumberKey max_tilt("max_tilt_deg", {0.0, pi, true, false},
 constexpr TextKey cache("cache",
                         "folder of stored tables, relative to the experiment; `\"\"`: none",
                         {.usually = "the user's cache folder"});
-constexpr NumberKey time("time_s", {}, "in order");
+constexpr NumberKey time("time_s", {}, "time of switching, rising");
 constexpr TextKey source("source", "", "by name; none: all");
-constexpr FlagKey on("on", true, "false: off");
+constexpr FlagKey on("on", true, "false: the lamps are switched off");
 constexpr TablesKey switch_key("switch", "lamps are switched");
 constexpr TableKey light("light", "light in a run of the motion");
 }  // namespace light_key

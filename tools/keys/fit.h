@@ -13,9 +13,11 @@ inline constexpr TextsKey curves(
     {.optional = true});
 inline constexpr TablesKey curve("curve", "curves whose light or temperature is stated; *or*");
 inline constexpr TextKey curve_file("file", "one of `curves`");
-inline constexpr NumberKey curve_irradiance("irradiance_W_m2", Range::positive(), "of its light",
+inline constexpr NumberKey curve_irradiance("irradiance_W_m2", Range::positive(),
+                                            "irradiance of the curve",
                                             {.usually = "that in the file, if any"});
-inline constexpr NumberKey curve_temperature("temperature_K", {1.0, 1000.0}, "of the cells",
+inline constexpr NumberKey curve_temperature("temperature_K", {1.0, 1000.0},
+                                             "temperature of the cells",
                                              {.usually = "that in the file, else that of `[fit]`"});
 inline constexpr ChoiceKey shunt(
     "shunt", {"best", "constant", "inverse", "exponential"}, 0,

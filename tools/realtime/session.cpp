@@ -23,7 +23,7 @@ constexpr ChoiceKey mode("mode",
                          0, "clock of the ticks");
 constexpr NumberKey rate("rate_Hz", usual.rate_Hz, {0.1, 1e5},
                          "ticks; also the rows of `recording.csv`");
-constexpr TextKey address("address", usual.address, "where UDP listens, IPv4");
+constexpr TextKey address("address", usual.address, "IPv4 address of the UDP socket");
 constexpr IntegerKey port("port", PHOTORQUE_PORT, 0, 65535,
                           "UDP port; 0: a free port, which the first line of the output states");
 constexpr FlagKey wait_for_client("wait_for_client", true, "before the first tick");

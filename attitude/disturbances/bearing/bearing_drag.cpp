@@ -21,10 +21,11 @@ constexpr auto coefficient =
     ScalarKey("coefficient_N_m_s", Range::not_negative(), "c in T = −c ω, about every axis; *or*")
         .optional();
 constexpr auto about_axis =
-    ScalarKey("axial_N_m_s", Range::not_negative(), "about the vertical; with the next").optional();
-constexpr auto across_axis =
-    ScalarKey("transverse_N_m_s", Range::not_negative(), "across it; *or*", about_axis.end())
+    ScalarKey("axial_N_m_s", Range::not_negative(), "about the vertical; with `transverse_N_m_s`")
         .optional();
+constexpr auto across_axis = ScalarKey("transverse_N_m_s", Range::not_negative(),
+                                       "about horizontal axes; *or*", about_axis.end())
+                                 .optional();
 
 namespace key {
 constexpr NumberKey radius("radius_m", Range::positive(), "of the ball");

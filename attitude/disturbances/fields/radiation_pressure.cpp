@@ -22,7 +22,7 @@
 namespace photorque::kinds::radiation_pressure {
 namespace {
 
-constexpr ScalarKey factor("scale", 1.0, {}, "factor");
+constexpr ScalarKey factor("scale", 1.0, {}, "factor on the torque");
 
 class RadiationPressure final : public TorqueLaw<RadiationPressure> {
  public:

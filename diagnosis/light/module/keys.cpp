@@ -18,9 +18,12 @@ Key count_key() {
 
 // Reverse conduction of shaded and cracked cells.
 std::vector<Key> breakdown_keys() {
-  return {Key::number_or("breakdown_fraction", 0.0, {0.0, 7.0}, "a of the reverse conduction"),
-          Key::number_or("breakdown_V", -15.0, {-1e308, 0.0, false, true}, "V_br of it"),
-          Key::number_or("breakdown_exponent", 3.0, {1.0, 1e3}, "m of it")};
+  return {
+      Key::number_or("breakdown_fraction", 0.0, {0.0, 7.0}, "parameter a of the reverse breakdown"),
+      Key::number_or("breakdown_V", -15.0, {-1e308, 0.0, false, true},
+                     "parameter V_br of the reverse breakdown"),
+      Key::number_or("breakdown_exponent", 3.0, {1.0, 1e3},
+                     "parameter m of the reverse breakdown")};
 }
 
 }  // namespace
@@ -71,7 +74,7 @@ std::vector<Key::Choice> module_effects() {
       {"series_resistance", "a resistance in series", {resistance_key("of the module")}},
       {"temperature",
        "warmer or colder than stated",
-       {Key::number("change_K", {-150.0, 150.0}, "of all cells")}},
+       {Key::number("change_K", {-150.0, 150.0}, "temperature difference of all cells")}},
       {"bypass_shorted", "a bypass diode that conducts always", {}},
       {"bypass_open", "shaded cells whose bypass diode is open",
        joined({{count_key(), Key::number("factor", Range::fraction(), "of the light")},
