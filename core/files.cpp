@@ -36,7 +36,7 @@ std::string host_mark() {
 std::string unpredictable() {
   uint64_t bits = 0;
   if (::getrandom(&bits, sizeof bits, 0) != static_cast<ssize_t>(sizeof bits)) {
-    throw NumericalError("the system gives no random bytes for the names of temporary files");
+    throw NumericalError("the system returned no random bytes for the names of temporary files");
   }
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(bits));
@@ -116,7 +116,7 @@ void require_plain_file(const fs::path& path) {
       refuse("no such file");
       break;
     default:
-      refuse("nothing that can be looked at");
+      refuse("a file of a type that is not supported");
   }
 }
 

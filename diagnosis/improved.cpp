@@ -169,8 +169,8 @@ std::string improved_experiment(TomlDocument document, const Diagnosis& diagnosi
                                                                      : diagnosis.replay;
   document.add_to_head("Written by photorque diagnose: " + diagnosis.sentence);
   document.add_to_head(
-      "The experiment with its values and comments, blank lines and line breaks apart; found "
-      "effects come last in each table.");
+      "The experiment with its values and comments (blank lines and line breaks may differ); the "
+      "effects found are at the end of each table.");
   std::vector<FittedParameter> others;
   for (const FittedParameter& p : diagnosis.priors_refined) {
     if (!refine(document, p)) others.push_back(p);

@@ -64,7 +64,7 @@ struct Decision {
   bool leaves_more = false;
   size_t chosen = 0;      // index of the trial whose model is reported
   size_t best_named = 0;  // index of the best trial without empirical candidates; 0: nominal
-  // Reason for the finding "unknown", as text: "the held-out recording is not predicted".
+  // Reason for the finding "unknown", as text: "the model does not predict the held-out recording".
   std::string because = {};
   // Candidates of the chosen trial that are certain although the finding is unknown. With an
   // empirical law: at most one, without which all other explanations are far less likely. With

@@ -130,7 +130,9 @@ concept Domain = std::derived_from<typename D::Trial, Explanation> &&
   { domain.predict(trial, runs) } -> std::same_as<typename D::Trial>;
   { domain.begins_of(trial) } -> std::same_as<std::vector<typename D::Begin>>;
   // Initial conditions from the first readings of each run.
-  { domain.seen_begins(trial, runs) } -> std::same_as<std::vector<typename D::Begin>>;
+  {
+    domain.initial_conditions_from_data(trial, runs)
+    } -> std::same_as<std::vector<typename D::Begin>>;
   // Returns the trial with these initial conditions for its next fit.
   { domain.with_begins(trial, begins) } -> std::same_as<typename D::Trial>;
 

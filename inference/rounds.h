@@ -294,7 +294,7 @@ class Rounds {
       found[i] = domain_.assemble(at, chosen[i], averages, within_reach(effort, rough, limits_));
     });
     for (Trial& t : found) t.log_evidence += at.log_evidence - rough.log_evidence;
-    found = without_twins(std::move(found));
+    found = deduplicated(std::move(found));
     sort_by_evidence(found);
     // A diverged trial is not refitted to all readings if the best trial did not diverge.
     const bool best_is_near = !has_diverged(found.front(), limits_);

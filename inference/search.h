@@ -33,7 +33,7 @@ class Search {
       const bool is_elsewhere =
           !(best.fit.chi2_per_sample() < as_near * limits_.diverged_chi2_per_sample);
       if (is_elsewhere || best.fit.samples != nominal.fit.samples) {
-        return without_twins(std::move(trials_));
+        return deduplicated(std::move(trials_));
       }
       from = best;
     }
@@ -50,7 +50,7 @@ class Search {
     auto found = rounds({runs_}, nominal).run(from);
     for (size_t i = 1; i < found.size(); ++i) trials_.push_back(std::move(found[i]));
     trials_.front() = std::move(found.front());
-    return without_twins(std::move(trials_));
+    return deduplicated(std::move(trials_));
   }
 
   // A prediction that has diverged does not reveal the cause. The runs are therefore cut into
@@ -66,7 +66,7 @@ class Search {
     const Effort growing{.windows = limits_.fitting.diverged_windows};
     parallel_for(found.size(), threads_, [&](size_t i) {
       Trial& t = found[i];
-      const std::vector<typename D::Begin> begins = domain_.seen_begins(t, runs_);
+      const std::vector<typename D::Begin> begins = domain_.initial_conditions_from_data(t, runs_);
       if (i < refits) {
         t = domain_.refit(t, runs_, begins, growing);
       } else {

@@ -32,8 +32,8 @@ bool is_near(const Trial& trial, const Trial& best, const Thresholds& limits) {
 
 // Refits a trial from the end of the best fit on the same runs; keeps the better result.
 template <Domain D>
-void learn(const D& domain, const std::vector<typename D::Run>& runs, const typename D::Trial& best,
-           typename D::Trial& trial) {
+void refit_from_best(const D& domain, const std::vector<typename D::Run>& runs,
+                     const typename D::Trial& best, typename D::Trial& trial) {
   const Thresholds& limits = domain.limits();
   if (trial.fit.chi2 < best.fit.chi2 + limits.leaders.worth_a_fit) return;
   const Effort brief{.max_iterations = limits.fitting.brief_iterations};
@@ -65,7 +65,8 @@ void settle_leaders(const D& domain, const std::vector<typename D::Run>& runs, i
   });
   const Trial best = found[by_evidence(found).front()];
   parallel_for(leaders.size() + parents.size(), threads, [&](size_t i) {
-    learn(domain, runs, best, i < leaders.size() ? found[leaders[i]] : parents[i - leaders.size()]);
+    refit_from_best(domain, runs, best,
+                    i < leaders.size() ? found[leaders[i]] : parents[i - leaders.size()]);
   });
 }
 
@@ -102,7 +103,7 @@ void sort_by_evidence(std::vector<Trial>& trials) {
 
 // Of trials with equal candidates in any order, keeps the best.
 template <class Trial>
-std::vector<Trial> without_twins(std::vector<Trial> trials) {
+std::vector<Trial> deduplicated(std::vector<Trial> trials) {
   std::vector<Trial> kept;
   for (Trial& trial : trials) {
     const auto twin = std::find_if(kept.begin(), kept.end(), [&](const Trial& t) {
@@ -161,8 +162,8 @@ std::pair<RunSet<D>, typename D::Trial> near_pieces(const D& domain,
     // There are too few readings to cut further.
     if (shorter.empty()) break;
     RunSet<D> pieces{std::move(shorter), count};
-    typename D::Trial near =
-        domain.refit(parent, pieces.runs, domain.seen_begins(parent, pieces.runs), {});
+    typename D::Trial near = domain.refit(
+        parent, pieces.runs, domain.initial_conditions_from_data(parent, pieces.runs), {});
     tried.emplace_back(std::move(pieces), std::move(near));
     if (!has_diverged(tried.back().second, domain.limits())) return std::move(tried.back());
   }

@@ -53,7 +53,7 @@ class Weighing {
     const size_t found = trials_.size();
     add_what_only_all_show(trials_.front().candidates);
     add_what_only_all_show(best().joint.candidates);
-    learn();
+    refit_from_best();
     search_on();
     add_without_each();
     exchange_places();
@@ -78,7 +78,7 @@ class Weighing {
     size_t at;
     Trial joint;
     // χ² of the best and of this leader when a refit from the best last brought no improvement.
-    std::array<double, 2> learnt = {};
+    std::array<double, 2> refitted_at = {};
   };
 
   // The most likely and the nominal model come first; other fits stop when they cannot come near
@@ -91,7 +91,7 @@ class Weighing {
     }
     add_leaders(places, first, patient(limits_));
     add_leaders(places, others, within_reach(patient(limits_), leaders_.front().joint, limits_));
-    learn();
+    refit_from_best();
   }
 
   void add_leaders(const std::vector<size_t>& places, const std::vector<size_t>& which,
@@ -121,7 +121,7 @@ class Weighing {
   }
 
   // Refits every leader from the end of the best; skips those for which this failed before.
-  void learn() {
+  void refit_from_best() {
     const Trial best =
         std::min_element(leaders_.begin(), leaders_.end(), [](const Leader& a, const Leader& b) {
           return a.joint.fit.chi2 < b.joint.fit.chi2;
@@ -129,9 +129,9 @@ class Weighing {
     parallel_for(leaders_.size(), threads_, [&](size_t k) {
       Leader& leader = leaders_[k];
       const std::array<double, 2> now = {best.fit.chi2, leader.joint.fit.chi2};
-      if (leader.learnt == now) return;
-      inference::learn(domain_, all_runs_, best, leader.joint);
-      if (leader.joint.fit.chi2 == now[1]) leader.learnt = now;
+      if (leader.refitted_at == now) return;
+      inference::refit_from_best(domain_, all_runs_, best, leader.joint);
+      if (leader.joint.fit.chi2 == now[1]) leader.refitted_at = now;
     });
   }
 
@@ -335,10 +335,11 @@ class Weighing {
     // This model contains the nominal model, so a fit that is worse did not converge and is
     // skipped.
     if (!(joint.fit.chi2 < nominal().joint.fit.chi2 + limits_.leaders.near_chi2)) return;
-    const bool is_lost = !is_near(joint, from.joint, limits_);
-    Trial train = assembled(
-        joint, domain_.terms_of(joint),
-        is_lost ? Effort{.max_iterations = limits_.fitting.brief_iterations} : patient(limits_));
+    const bool is_out_of_reach = !is_near(joint, from.joint, limits_);
+    Trial train =
+        assembled(joint, domain_.terms_of(joint),
+                  is_out_of_reach ? Effort{.max_iterations = limits_.fitting.brief_iterations}
+                                  : patient(limits_));
     add_leader(std::move(train), std::move(joint));
   }
 
@@ -413,8 +414,8 @@ class Weighing {
     const double behind_chi2 = joint.fit.chi2 - best().joint.fit.chi2 - limits_.leaders.near_chi2;
     std::vector<size_t> order;
     for (size_t i = 0; i < untried.size(); ++i) {
-      const bool is_lost = forecast_error * gains[i] < behind_chi2;
-      if (!is_lost && beyond_chance(i) > limits_.scoring.min_joint_gain) order.push_back(i);
+      const bool is_out_of_reach = forecast_error * gains[i] < behind_chi2;
+      if (!is_out_of_reach && beyond_chance(i) > limits_.scoring.min_joint_gain) order.push_back(i);
     }
     std::stable_sort(order.begin(), order.end(),
                      [&](size_t a, size_t b) { return beyond_chance(a) > beyond_chance(b); });

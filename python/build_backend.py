@@ -65,7 +65,7 @@ def _compile():
 
 
 def get_requires_for_build_wheel(config_settings=None):
-    """Nothing on a machine that has Debian's pybind11, so that no index is asked there."""
+    """An empty list on a machine with Debian's pybind11, so that no package index is used."""
     return [] if _has_pybind11_of_debian() else ["pybind11>=2.10"]
 
 

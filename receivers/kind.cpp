@@ -23,7 +23,7 @@ constexpr ChoiceKey over("over",
                          0, "surface of the bins");
 constexpr ChoiceKey side("side", {"front", "back", "both"}, "side of the surface that counts");
 constexpr Vec3Key facing("facing",
-                         "only faces turned towards this body direction; closed bodies need it",
+                         "only faces that point in this body direction; required for closed bodies",
                          {.usually = "all faces"});
 }  // namespace grid_key
 

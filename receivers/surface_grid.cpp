@@ -34,7 +34,7 @@ Vec3 normal_of(std::span<const SurfaceFace> faces, const SurfaceGridOptions& opt
   Vec3 sum = Vec3::Zero();
   for (const SurfaceFace& face : faces) sum += face.area_body_m2;
   if (sum.norm() < 1e-6 * area_of(faces)) {
-    throw error(options, "a closed surface, whose mean normal is zero",
+    throw error(options, "a closed surface with a mean normal of zero",
                 "an open surface, or the direction to look from: facing = [x, y, z], or over = "
                 "\"uv\"");
   }

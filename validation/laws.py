@@ -362,7 +362,7 @@ KINDS = {kind.name: kind for kind in CATALOGUE + OUTSIDE}
 
 # The other kinds of the catalogue, and why they are not injected.
 NOT_INJECTED = {
-    "stepper_quantization": "an offset of the centre of mass like any other",
+    "stepper_quantization": "found as static_unbalance, which has the same effect",
     "helmholtz_cage": "diagnose does not screen it",
     "orbit": "diagnose does not screen it",
     "power_balance": "diagnose does not screen it",

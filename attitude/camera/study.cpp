@@ -32,7 +32,8 @@ constexpr IntegerKey grid("grid", 5, 1000, "bins of the maps along a side", {.op
 constexpr NumbersKey focal_length("focal_length_mm", Range::positive(),
                                   "[from, to] of the map over lens and board",
                                   {.usually = "0.75 to 1.5 times the lens", .size = 2});
-constexpr NumbersKey board_scale("board_scale", Range::positive(), "[from, to] of the same map",
+constexpr NumbersKey board_scale("board_scale", Range::positive(),
+                                 "[from, to] of the scale of the board in this map",
                                  {.usually = "[0.5, 2]", .size = 2});
 constexpr TableKey camera_study("camera_study", "tables and maps of the command `camera`");
 }  // namespace study_key

@@ -35,7 +35,7 @@ constexpr NumberKey f_number("f_number", {0.5, 128.0}, "of the lens", {.optional
 constexpr NumberKey transmittance("transmittance", {0.0, 1.0, true, false}, "of lens and filter",
                                   {.optional = true});
 constexpr NumberKey spot("spot_px", {0.3, 50.0},
-                         "standard deviation of a spot besides diffraction and motion",
+                         "standard deviation of a spot without diffraction and motion",
                          {.optional = true});
 constexpr NumbersKey distortion("distortion", {-10.0, 10.0},
                                 "calibrated distortion of the lens: [k1, k2, p1, p2], radial and "
@@ -63,7 +63,7 @@ constexpr NumberKey background_electrons("background_electrons", Range::not_nega
 constexpr NumberKey full_well_electrons("full_well_electrons", Range::positive(), "of a pixel",
                                         {.optional = true});
 constexpr Vec3Key position("position_m", "of the camera, lab axes", {.optional = true});
-constexpr Vec3Key aim("aim_m", {0.0, 0.0, 0.0}, "where its optical axis passes, lab axes");
+constexpr Vec3Key aim("aim_m", {0.0, 0.0, 0.0}, "a point on the optical axis, lab axes");
 constexpr ChoiceKey pose("pose",
                          {{"about_centre", "the centre of rotation is known"},
                           {"free", "the position is estimated too"}},

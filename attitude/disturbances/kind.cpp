@@ -47,12 +47,12 @@ Key disturbance_table() {
   for (const DisturbanceKind& kind : disturbance_kinds()) {
     kinds.push_back({kind.name, kind.summary, kind.keys});
   }
-  return Key::tables("disturbance",
-                     {Key::choice("kind", std::move(kinds), "the effect"),
-                      FlagKey("per_recording", false,
-                              "its parameters with a sigma have other values in every "
-                              "recording that `diagnose` gets")},
-                     "the effects on the platform");
+  return Key::tables(
+      "disturbance",
+      {Key::choice("kind", std::move(kinds), "kind of the effect"),
+       FlagKey("per_recording", false,
+               "`diagnose` fits its parameters with a sigma separately for each recording")},
+      "the effects on the platform");
 }
 
 std::vector<Disturbance> read_disturbances(const Settings& root,

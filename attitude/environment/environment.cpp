@@ -22,8 +22,8 @@ constexpr OtherKey date("date", Key::a_number | Key::a_text | Key::a_date,
                         "2025-06-30, the same in quotes, or 2025.5; 1900 … 2035",
                         {.optional = true});
 constexpr NumberKey date_year("date_year", years, "instead of `date`", {.optional = true});
-constexpr NumberKey igrf_latitude("latitude_deg", latitudes, "geodetic");
-constexpr NumberKey longitude("longitude_deg", {}, "east");
+constexpr NumberKey igrf_latitude("latitude_deg", latitudes, "geodetic latitude");
+constexpr NumberKey longitude("longitude_deg", {}, "longitude, positive to the east");
 constexpr NumberKey height("height_m", 0.0, {-12e3, 1e10, false, false}, "above the ellipsoid");
 constexpr TableKey igrf("igrf", "the field by IGRF-14");
 constexpr NumberKey air_temperature("air_temperature_K", room_temperature_K,
@@ -34,7 +34,7 @@ constexpr NumberKey air_density("air_density_kg_m3", Range::not_negative(), "fro
                                 {.usually = "ideal gas, dry"});
 constexpr NumberKey air_viscosity("air_viscosity_Pa_s", Range::positive(), "from the temperature",
                                   {.usually = "Sutherland's law"});
-constexpr TableKey environment("environment", "what surrounds the platform");
+constexpr TableKey environment("environment", "fields, air and light around the platform");
 }  // namespace environment_key
 
 // date = 2025-06-30, or a decimal year.

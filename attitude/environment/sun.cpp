@@ -27,15 +27,17 @@ constexpr TextKey date("date",
 constexpr NumberKey semi_major_axis("semi_major_axis_au", Range::positive(), "of the ellipse");
 constexpr NumberKey eccentricity("eccentricity", 0.0, {0.0, 1.0, false, true}, "of the ellipse");
 constexpr NumberKey inclination("inclination_deg", 0.0, {}, "to the ecliptic of J2000");
-constexpr NumberKey ascending_node("ascending_node_deg", 0.0, {}, "longitude");
+constexpr NumberKey ascending_node("ascending_node_deg", 0.0, {},
+                                   "longitude of the ascending node");
 constexpr NumberKey perihelion("perihelion_deg", 0.0, {}, "argument, from the node");
 constexpr NumberKey mean_anomaly("mean_anomaly_deg", {}, "at the epoch");
 constexpr TextKey epoch("epoch", "of the mean anomaly", {.usually = "`date`"});
 constexpr TableKey orbit("orbit", "of the spacecraft about the Sun, with `date`",
                          {.usually = "the Earth's"});
 constexpr ChoiceKey axis("axis", {"x", "y", "z"}, 2, "the lab axis");
-constexpr NumberKey right_ascension("right_ascension_deg", {}, "J2000");
-constexpr NumberKey declination("declination_deg", declinations, "J2000");
+constexpr NumberKey right_ascension("right_ascension_deg", {},
+                                    "right ascension of the axis, J2000");
+constexpr NumberKey declination("declination_deg", declinations, "declination of the axis, J2000");
 constexpr NumberKey roll("roll_deg", 0.0, {},
                          "of the next axis (y after x) about it, from celestial north");
 constexpr TableKey pointing("pointing", "direction of a lab axis in the sky, with `date`",

@@ -29,7 +29,7 @@ size_t settled_row(size_t rows) {
 
 Table ways_table(const std::vector<Ingredients>& ways, const TruthTrack& truth) {
   Table table =
-      Table::of("ingredients", "What each ingredient brings",
+      Table::of("ingredients", "Contribution of each instrument and model",
                 {"way", "estimate", "rms_error_arcsec", "predicted_arcsec", "rms_rate_error_rad_s",
                  "nees_per_number", "rows_in_95_band", "nis_attitude", "nis_gyro", "rate_walk"});
   for (const Ingredients& way : ways) {
@@ -95,7 +95,7 @@ Plot::Curve error_curve(const std::string& label, const std::vector<AttitudeEsti
 Plot ways_plot(const std::vector<Ingredients>& ways, const TruthTrack& truth) {
   Plot plot;
   plot.name = "attitude_errors";
-  plot.title = "What each ingredient brings";
+  plot.title = "Contribution of each instrument and model";
   plot.x_label = "Time [s]";
   const std::string what = truth.empty() ? "predicted attitude error" : "attitude error";
   plot.y_label = "filter: " + what + " [arcsec]";
@@ -112,7 +112,7 @@ Plot ways_plot(const std::vector<Ingredients>& ways, const TruthTrack& truth) {
 }
 
 Table parameter_table(const Estimation& e) {
-  Table table = Table::of("parameters", "What the readings say of the parameters (SI)",
+  Table table = Table::of("parameters", "Parameters estimated from the readings (SI)",
                           {"parameter", "seen", "before", "sigma_before", "after", "sigma_after"});
   for (size_t i = 0; i < e.parameter_names.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);

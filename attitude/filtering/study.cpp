@@ -105,7 +105,9 @@ std::vector<std::string> unseen_by(const Platform& platform, const Readings& rea
   if (!readings.sees_attitude() && !readings.has_yaw) {
     lines.push_back("no attitude was read: it counts from the start, and its error grows");
   } else if (!readings.sees_attitude()) {
-    lines.push_back("of the attitude the yaw alone was read: level to 0.01 rad at the start");
+    lines.push_back(
+        "only the yaw of the attitude was measured; the tilt at the start is assumed to be 0 ± "
+        "0.01 rad");
   } else if (!platform.turns_about_one_axis() &&
              !(readings.sees_axis[0] && readings.sees_axis[1] && readings.sees_axis[2])) {
     std::string axes;
@@ -131,8 +133,8 @@ std::vector<std::string> unseen_by(const Platform& platform, const Readings& rea
   };
   if (odd(e.attitude) || odd(e.gyro)) {
     lines.push_back(
-        "innovations are not as large as predicted: noise or physics is not as stated "
-        "(diagnose says which)");
+        "the innovations differ from their prediction: noise or physics differs from the "
+        "experiment (diagnose finds the cause)");
   }
   const Table parameters = parameter_table(e);
   for (size_t i = 0; i < parameters.columns[0].texts.size(); ++i) {

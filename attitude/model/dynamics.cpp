@@ -69,7 +69,7 @@ Dynamics::Dynamics(AttitudeModel model) : model_(std::move(model)) {
     if (all[d].stage == Stage::measurement) instruments_.push_back(d);
   }
   if (model_.platform.slides() && translation_ < 0) {
-    throw NumericalError("a platform that slides has no place");
+    throw NumericalError("the platform has no position to estimate");
   }
   const Eigen::FullPivLU<Mat3> lu(model_.platform.inertia_kg_m2);
   if (!lu.isInvertible()) throw NumericalError("the platform's inertia is singular");
@@ -262,7 +262,7 @@ void Dynamics::put_attitude_rates(const T* y, T* rates) const {
   turn(QuatOf<T>(y[0], y[1], y[2], y[3]), Vec3Of<T>(y[4], y[5], y[6]), rates);
 }
 
-// The acceleration where bearings hold all but one axis.
+// The acceleration where the bearings allow rotation about one axis.
 template <class T>
 Vec3Of<T> Dynamics::about_axis(const Vec3Of<T>& torque_N_m, const Mat3Of<T>& inertia_kg_m2) const {
   const Vec3Of<T> axis = model_.platform.axis.cast<T>();

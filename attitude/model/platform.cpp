@@ -20,14 +20,14 @@ void check_inertia(const Mat3& inertia_kg_m2, const InputLocation& where, const 
   // Rounded tables of thin plates and rods touch the bound; a part in a thousand is theirs.
   if (principal[2] > (principal[0] + principal[1]) * (1.0 + 1e-3)) {
     throw InputError(where, key, found.str(),
-                     "moments that obey the triangle inequality: none above the sum of the others");
+                     "moments none of which exceeds the sum of the other two");
   }
 }
 
 namespace {
 
 namespace platform_key {
-constexpr UncertainNumberKey mass("mass_kg", Range::positive(), "of all rotating parts");
+constexpr UncertainNumberKey mass("mass_kg", Range::positive(), "mass of all rotating parts");
 constexpr OtherKey inertia("inertia_kg_m2", Key::an_array | Key::a_table,
                            "3 × 3, symmetric, positive, body axes, about the centre of rotation");
 // About the one axis that is free.
@@ -39,7 +39,7 @@ constexpr ChoiceKey topology(
      {"tabletop", "a plate on an air bearing"},
      {"hollow", "a ball around its payload"},
      {"free", "no bearing"},
-     {"one_axis", "bearings hold all but one axis"},
+     {"one_axis", "the bearings allow rotation about one axis"},
      {"planar", "slides on a table: x and y in the lab, and a rotation about the vertical"}},
     "kind of platform and its bearing");
 constexpr ChoiceKey axis("axis", {"x", "y", "z"}, 2, "axis of rotation");
@@ -52,7 +52,7 @@ constexpr NumberKey battery_capacity(
     "`[array.day]`, the energy of the battery is this times `battery_voltage_V`",
     {.usually = "none: never empty"});
 constexpr NumberKey battery_voltage("battery_voltage_V", usual_battery_voltage_V, Range::positive(),
-                                    "nominal");
+                                    "nominal voltage of the battery");
 constexpr TableKey platform("platform", "the rotating body");
 }  // namespace platform_key
 

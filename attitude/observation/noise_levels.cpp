@@ -350,7 +350,7 @@ NoiseLevels with_discrepancy(const std::vector<Prediction>& residuals,
   return noise;
 }
 
-NoiseLevels patient_noise(const std::vector<Observation>& runs, const NoiseLevels& own) {
+NoiseLevels noise_from_spread(const std::vector<Observation>& runs, const NoiseLevels& own) {
   constexpr double part = 0.1;
   NoiseLevels noise = own;
   for (int channel = 3; channel < channel_count; ++channel) {

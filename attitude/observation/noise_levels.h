@@ -51,6 +51,6 @@ bool is_quieter(const NoiseLevels& now, const NoiseLevels& before);
 
 // Noise under which what was stated holds, whatever the motion does: a tenth of the readings' own
 // spread, or `own` where that is louder.
-NoiseLevels patient_noise(const std::vector<Observation>& runs, const NoiseLevels& own);
+NoiseLevels noise_from_spread(const std::vector<Observation>& runs, const NoiseLevels& own);
 
 }  // namespace photorque

@@ -44,7 +44,8 @@ constexpr NumberKey initial_yaw("initial_yaw_deg", {}, "azimuth of body x",
 constexpr NumbersKey initial_attitude("initial_attitude", {},
                                       "[w, x, y, z], lab from body, unit to 1e-3",
                                       {.optional = true, .size = 4});
-constexpr Vec3Key initial_rate("initial_rate_rad_s", {0.0, 0.0, 0.0}, "body axes");
+constexpr Vec3Key initial_rate("initial_rate_rad_s", {0.0, 0.0, 0.0},
+                               "angular rate at the start, body axes");
 constexpr NumbersKey initial_position("initial_position_m", {}, "of a planar platform, lab x and y",
                                       {.usually = "0, 0", .size = 2});
 constexpr NumbersKey initial_velocity("initial_velocity_m_s", {},
@@ -61,13 +62,13 @@ constexpr TextKey commands(
     "a sliding body), `battery_current_A`, "
     "`led_current_A`, each row held until the next (zero-order hold); *or*",
     {.usually = "none"});
-constexpr NumberKey time("time_s", {}, "rising");
+constexpr NumberKey time("time_s", {}, "time of the command, rising");
 constexpr Vec3Key torque("torque_N_m", {0.0, 0.0, 0.0}, "commanded, body axes");
 constexpr NumbersKey force("force_N", {}, "commanded force of a planar platform, lab x and y",
                            {.usually = "0, 0", .size = 2});
 constexpr NumbersKey force_body("force_body_N", {}, "likewise along body x and y",
                                 {.usually = "0, 0", .size = 2});
-constexpr NumberKey battery_current("battery_current_A", 0.0, {}, "drawn");
+constexpr NumberKey battery_current("battery_current_A", 0.0, {}, "current drawn from the battery");
 constexpr NumberKey led_current("led_current_A", Range::not_negative(),
                                 "of lamps; not given: constant light", {.optional = true});
 constexpr TablesKey command("command", "each held until the next");
@@ -255,14 +256,14 @@ void check_begins_about_axis(const Settings& settings, const Platform& platform,
   constexpr double rounding = 1e-6;
   if (beside(rate_rad_s) > rounding * rate_rad_s.norm()) {
     throw settings.error(propagate_key::initial_rate,
-                         "a rate beside the axis that the bearings leave",
-                         "a rate about platform.axis alone");
+                         "a rate about another axis than that of the bearings",
+                         "a rate about platform.axis only");
   }
   if (beside(lab_from_body.vec()) > rounding) {
     throw settings.error(
         settings.has(propagate_key::initial_attitude) ? propagate_key::initial_attitude.name
                                                       : propagate_key::initial_tilt.name,
-        "a turn about another axis than the bearings leave", "a turn about platform.axis alone");
+        "a turn about another axis than the bearings leave", "a rotation about platform.axis only");
   }
 }
 

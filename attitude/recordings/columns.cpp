@@ -186,7 +186,7 @@ std::string columns_in_words(const Recording& recording) {
     }
   }
   if (recording.channels.size() > most) names += ", …";
-  if (names.empty()) return "no column beside t_s";
+  if (names.empty()) return "no column except t_s";
   const bool is_rate = bare.starts_with("gyro") || bare.starts_with("rate");
   const std::string unit = is_rate ? "_deg_s or " : "_deg or ", SI = is_rate ? "_rad_s" : "_rad";
   return "the columns " + names +
@@ -241,16 +241,16 @@ MotionColumns::MotionColumns(const Recording& recording, const Platform& platfor
   if (platform.slides()) {
     take_places();
     if (has_scalars()) return;
-    throw InputError({name, 0}, "header", "no channel of a place or a velocity",
-                     "x_m, y_m, velocity_x_m_s or velocity_y_m_s, or [recording.columns] that says "
-                     "which column is one");
+    throw InputError({name, 0}, "header", "no channel of a position or a velocity",
+                     "x_m, y_m, velocity_x_m_s or velocity_y_m_s, or a table [recording.columns] "
+                     "that names one");
   }
   if (has_attitude() || has_gyro() || has_scalars()) return;
   throw InputError({name, 0}, "header",
                    "neither an angle nor a rate (" + columns_in_words(recording) + ")",
                    platform.turns_about_one_axis()
-                       ? "angle_rad, rate_rad_s, a gyro axis, or [recording.columns] that says "
-                         "which column is one (photorque diagnose --guess writes it)"
+                       ? "angle_rad, rate_rad_s, a gyro axis, or a table [recording.columns] that "
+                         "names one (photorque diagnose --guess writes it)"
                        : "q_w, q_x, q_y, q_z or roll_rad, pitch_rad, yaw_rad; gyro_x_rad_s …; "
                          "tilt_rad, rate_magnitude_rad_s; or [recording.columns], which photorque "
                          "diagnose --guess writes");

@@ -198,8 +198,8 @@ class RecordingReader {
     }
     throw InputError({path_.string(), 1}, "header",
                      "no line that names t_s (the first is " + in_quotes(first_line) + ")",
-                     "a header with t_s [s] and the channels, or [recording.columns] that says "
-                     "which column is which; photorque diagnose --guess " +
+                     "a header with t_s [s] and the channels, or a table [recording.columns] with "
+                     "the names of the columns; photorque diagnose --guess " +
                          path_.filename().string() + " writes one");
   }
 

@@ -34,13 +34,14 @@ constexpr TableKey accelerometer("accelerometer", "specific force; for `diagnose
 constexpr NumberKey magnetometer_noise("noise_T", 0.0, Range::not_negative(),
                                        "per reading and axis; 0: found in the readings");
 constexpr Vec3Key magnetometer_bias("bias_T", {0.0, 0.0, 0.0},
-                                    "the platform's own field, body axes");
+                                    "the field of the platform, body axes");
 constexpr TableKey magnetometer("magnetometer",
                                 "magnetic field of the environment; for `diagnose`");
 constexpr NumberKey place_noise("noise_m", 0.0, Range::not_negative(),
                                 "per reading and axis; 0: found in the readings");
-constexpr NumberKey velocity_noise("noise_m_s", 0.0, Range::not_negative(),
-                                   "the same of a velocity; 0: none is recorded");
+constexpr NumberKey velocity_noise(
+    "noise_m_s", 0.0, Range::not_negative(),
+    "of the velocity, per reading and axis; 0: no velocity is recorded");
 constexpr TableKey place("position", "position of a planar platform");
 constexpr NumberKey resolution("resolution_arcsec", Range::positive(), "step of the yaw");
 constexpr TableKey encoder("encoder", "yaw");

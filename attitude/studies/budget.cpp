@@ -18,7 +18,7 @@ namespace {
 namespace budget_key {
 constexpr BearingDatasheet usual;
 constexpr NumberKey source_to_cell("source_to_cell", Range::fraction(),
-                                   "light on the cells over what is emitted",
+                                   "light on the cells divided by the emitted light",
                                    {.usually = "the paper's"});
 constexpr NumberKey conversion("conversion", Range::fraction(), "of light on the cells to power",
                                {.usually = "the paper's"});

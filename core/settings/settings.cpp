@@ -233,9 +233,9 @@ void Settings::finish() const {
   for (const auto& [key, node] : std::get<SettingsNode::Table>(node_->value)) {
     if (!log_->read.contains(&node)) {
       const auto asked = log_->asked.find(node_);
-      throw InputError(node.where, full_name(key), "an unknown key",
-                       asked == log_->asked.end() ? "only known keys here"
-                                                  : known_instead_of(key, asked->second));
+      throw InputError(
+          node.where, full_name(key), "an unknown key",
+          asked == log_->asked.end() ? "only known keys" : known_instead_of(key, asked->second));
     }
     if (node.is_table()) Settings(&node, root_, log_, full_name(key)).finish();
     if (const auto* array = std::get_if<SettingsNode::Array>(&node.value)) {

@@ -7,11 +7,11 @@
 #include "attitude/estimation/fit.h"
 #include "attitude/observation/noise_levels.h"
 #include "attitude/propagation/run.h"
-#include "diagnosis/attitude/account.h"
-#include "diagnosis/attitude/beside_the_rest.h"
 #include "diagnosis/attitude/domain.h"
+#include "diagnosis/attitude/findings.h"
 #include "diagnosis/attitude/holdout.h"
 #include "diagnosis/attitude/locate.h"
+#include "diagnosis/attitude/model_discrepancy.h"
 #include "diagnosis/attitude/refine.h"
 #include "diagnosis/attitude/textbook_laws.h"
 #include "inference/search.h"
@@ -210,7 +210,7 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
     tell(options, "fitting the laws of a textbook together");
     laws = fit_textbook_laws(
         nominal_fit,
-        candidates_among(among_beside_the_rest(nominal, data), nominal, data.train, limits), data);
+        candidates_among(among_with_discrepancy(nominal, data), nominal, data.train, limits), data);
   }
   if (laws && leaves_only_noise(laws->fit, data)) {
     fine = at_noise_of_readings(nominal, data, options, nominal_fit, &*laws);
@@ -221,7 +221,7 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
   }
   RecordedData rough = data;
   std::optional<Answer> named =
-      named_beside_the_rest(nominal, rough, options, laws ? &*laws : nullptr);
+      identify_with_discrepancy(nominal, rough, options, laws ? &*laws : nullptr);
   if (named && is_far && leaves_only_noise(named->chosen().fit, data)) {
     return at_noise_of_readings(nominal, data, options, nominal_fit, &named->chosen());
   }

@@ -25,7 +25,7 @@ struct Answer {
   // Set if so and if effects are named: gains in prediction for the names of the chosen trial.
   // `sigma`: standard errors by which a name improves the prediction of segments.
   struct BesideTheRest {
-    size_t stretches = 0;
+    size_t segments = 0;
     std::vector<double> sigma;                     // for each candidate of the chosen trial
     std::vector<std::vector<std::string>> rivals;  // for each: indistinguishable names
   };

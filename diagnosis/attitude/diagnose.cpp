@@ -10,9 +10,9 @@
 #include "attitude/estimation/fit.h"
 #include "core/constants.h"
 #include "core/errors.h"
-#include "diagnosis/attitude/account.h"
 #include "diagnosis/attitude/answer.h"
 #include "diagnosis/attitude/empirical_torque.h"
+#include "diagnosis/attitude/findings.h"
 #include "diagnosis/attitude/free_bodies.h"
 #include "diagnosis/attitude/holdout.h"
 #include "diagnosis/attitude/locate.h"
@@ -107,20 +107,20 @@ std::vector<std::string> warnings_of(const RecordedData& data,
   for (const InstrumentFinding& finding : data.instruments) warnings.push_back(finding.text);
   if (decision.undecided) {
     warnings.push_back(
-        "fitted and held-out recordings together show an effect that neither shows alone, but not "
-        "which effect it is: see the alternatives");
+        "only fitted and held-out recordings together show an effect, and they do not determine "
+        "which one: see the alternatives");
   }
   return warnings;
 }
 
 // Adds the gain in prediction of segments by each name, with model discrepancy.
-void say_gains_over_stretches(const Answer& answer, Diagnosis& d) {
+void report_gains_over_segments(const Answer& answer, Diagnosis& d) {
   if (!answer.beside) return;
   for (size_t i = 0; i < d.effects.size(); ++i) {
     d.warnings.push_back(
         written("%s: %zu segments, each predicted from the others, are predicted "
                 "better with it than without it by %.1f standard errors",
-                d.effects[i].kind.c_str(), answer.beside->stretches, answer.beside->sigma[i]));
+                d.effects[i].kind.c_str(), answer.beside->segments, answer.beside->sigma[i]));
   }
 }
 
@@ -137,7 +137,7 @@ void say_limits_of_held_out(Diagnosis& d) {
   const double sigma = (after - 1.0) * std::sqrt(0.5 * static_cast<double>(d.holdout->samples));
   if (sigma < too_quiet_sigma) {
     d.warnings.push_back(written(
-        "the held-out data scatter less than the noise that was used (χ² per sample %.3g, %.0f "
+        "the held-out data scatter less than the noise used in the fit (χ² per sample %.3g, %.0f "
         "standard errors below 1): the stated noise is too large, or an effect was counted as "
         "noise",
         after, -sigma));
@@ -235,9 +235,9 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
   }
   say_how_well(nominal_fit, answer, data, options.limits, d);
   d.warnings = warnings_of(data, answer.decision);
-  say_gains_over_stretches(answer, d);
+  report_gains_over_segments(answer, d);
   say_limits_of_held_out(d);
-  for (const std::string& text : contradicted_beliefs(answer.chosen(), options.limits.decision)) {
+  for (const std::string& text : contradicted_priors(answer.chosen(), options.limits.decision)) {
     d.warnings.push_back(text);
   }
   if (!answer.all.remark.empty() && !d.effects.empty()) d.warnings.push_back(answer.all.remark);

@@ -59,7 +59,8 @@ Trial AttitudeDomain::predict(const Trial& trial, const Runs& runs) const {
   return predicted;
 }
 
-std::vector<RunStart> AttitudeDomain::seen_begins(const Trial& trial, const Runs& runs) const {
+std::vector<RunStart> AttitudeDomain::initial_conditions_from_data(const Trial& trial,
+                                                                   const Runs& runs) const {
   return seen_starts(trial.fit.best, runs);
 }
 

@@ -8,7 +8,7 @@
 #include "attitude/model/platform.h"
 #include "core/constants.h"
 #include "core/text/format.h"
-#include "diagnosis/attitude/account.h"
+#include "diagnosis/attitude/findings.h"
 
 namespace photorque {
 
@@ -219,7 +219,7 @@ std::string of_drag(const EmpiricalShape& shape, const Numbers& numbers) {
 std::string likeness_to_yaw(const MotionFunction& f) {
   switch (f.orders.front()) {
     case 1:
-      return "one direction of the room: a draught from one side, a magnet or iron beside the "
+      return "a fixed direction in the room: a draught from one side, a magnet or iron beside the "
              "platform, a bearing that is not level, a cable that pulls to one side";
     case 2:
       return "a bearing that is slightly elliptic, or soft iron in the field";
@@ -231,11 +231,11 @@ std::string likeness_to_yaw(const MotionFunction& f) {
   }
 }
 
-std::string likeness(const EmpiricalShape& shape, const Numbers& numbers) {
+std::string similar_effects(const EmpiricalShape& shape, const Numbers& numbers) {
   const MotionFunction& f = shape.functions.front();
   if (shape.functions.size() == 2) {
     return f.of == MotionVariable::yaw
-               ? "a bearing whose gap is not the same all round, or that scrapes over part of a "
+               ? "a bearing whose gap varies along the circumference, or that rubs over part of a "
                  "turn"
                : "a film of air that gets thinner on one side as the platform leans";
   }
@@ -246,14 +246,13 @@ std::string likeness(const EmpiricalShape& shape, const Numbers& numbers) {
       if (f.form == FunctionForm::table) {
         return "a stop, seal or cable that is reached at a certain tilt";
       }
-      return "a cable or hose that stiffens as it bends, a bearing whose centre moves as it leans, "
-             "contact near the rim";
+      return "a cable or hose that stiffens as it bends, a bearing whose centre moves with the "
+             "tilt, contact near the rim";
     case MotionVariable::rate:
       if (f.form == FunctionForm::power && numbers.own_value(0) > 2.5) {
         return "air that is thrown out or pumped, parts that bend outwards with the rate";
       }
-      return "drag that is not the same about the three axes: plates, cables and the bearing each "
-             "have their own";
+      return "drag that differs between the three axes: plates, cables, the bearing";
     case MotionVariable::time:
       if (f.form == FunctionForm::decay) {
         return "evaporation or outgassing, warming up, a draught or a supply pressure that "
@@ -265,11 +264,11 @@ std::string likeness(const EmpiricalShape& shape, const Numbers& numbers) {
       }
       return "draughts of the room, people who walk, a cable that sags or creeps";
     case MotionVariable::charge:
-      return "mass that moves in the battery, gas that is used up along with the charge, the "
-             "magnetic field of the leads";
+      return "mass that moves in the battery, gas that is consumed with the charge, the magnetic "
+             "field of the leads";
     case MotionVariable::command:
       return shape.axes.front() == TorqueAxes::cross_talk
-                 ? "actuators that are turned against the body axes, or act on each other"
+                 ? "actuators that are rotated from the body axes, or that affect each other"
                  : "actuators whose torque is not proportional to the command";
   }
   return "";
@@ -290,7 +289,7 @@ EmpiricalFormula formula_of(const EmpiricalShape& shape,
     }
     formula.text += where;
   }
-  formula.looks_like = likeness(shape, numbers);
+  formula.looks_like = similar_effects(shape, numbers);
   return formula;
 }
 

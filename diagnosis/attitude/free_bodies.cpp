@@ -115,7 +115,8 @@ std::vector<BodyOfRecordings> different_bodies(const Platform& platform, const R
 std::string sentence_of(const std::vector<BodyOfRecordings>& bodies) {
   if (bodies.empty()) return "";
   const auto number = [](double x) { return readable_number(x, 3); };
-  std::string text = "different bodies: the recordings cannot be of one body as it is mounted. ";
+  std::string text =
+      "different bodies: the recordings do not agree with one body in one mounting. ";
   for (const BodyOfRecordings& body : bodies) {
     std::string names;
     for (const std::string& name : body.recordings) {
@@ -208,11 +209,10 @@ std::vector<InstrumentFinding> clock_findings(const Platform& platform, const Re
       continue;
     }
     char text[400];
-    std::snprintf(
-        text, sizeof text,
-        "%s: rates and clock contradict each other: only with rates %.3g times as large, or "
-        "times %.3g times as long, do the rates change as any inertia makes them",
-        std::filesystem::path(name).filename().c_str(), best.value, best.value);
+    std::snprintf(text, sizeof text,
+                  "%s: rates and clock are inconsistent: only with rates %.3g times as large, or "
+                  "times %.3g times as long, do the rates change as any inertia makes them",
+                  std::filesystem::path(name).filename().c_str(), best.value, best.value);
     findings.push_back({"time", "clock_factor", best.value, 0.0, text});
   }
   return findings;

@@ -51,7 +51,7 @@ void lean_further(PlatformState& state) {
 std::vector<StartManoeuvre> start_manoeuvres() {
   return {
       {"spin the platform up to three times its present rate, 0.3 rad/s at least, and let it run "
-       "down: laws of drag and errors of gyros grow with the rate, each in its own way",
+       "down: laws of drag and errors of gyros increase differently with the rate",
        spin_up},
       {"repeat the run with the opposite sense of rotation: a driving torque keeps its sign, "
        "friction changes it",
@@ -59,8 +59,7 @@ std::vector<StartManoeuvre> start_manoeuvres() {
       {"repeat the run from a yaw a quarter turn further: effects fixed to the body turn with "
        "it, those fixed to the room do not",
        turn_a_quarter},
-      {"start the run at 0.2 rad more tilt: righting torques depart from the sine, each in its own "
-       "way",
+      {"start the run at 0.2 rad more tilt: righting torques deviate from the sine differently",
        lean_further},
   };
 }
@@ -69,7 +68,7 @@ constexpr const char* longer = "record longer, at larger tilt and over a wider r
 
 // Whether only the battery current distinguishes two kinds: effects of its charge do not depend on
 // the initial state.
-bool is_told_by_charge(const std::string& kind, const std::string& rival) {
+bool is_separated_by_charge(const std::string& kind, const std::string& rival) {
   const auto says = [](const std::string& one, const std::string& other) {
     const DisturbanceKind* known = find_kind(one);
     return known != nullptr &&
@@ -151,8 +150,7 @@ Manoeuvre best_start(Manoeuvre m, const Trial& truth, const Trial& rival, const 
   m.text = known[best].text;
   if (lead[best] < all.limits.search.min_log_evidence_gain) {
     m.text = std::string(longer) +
-             "; none of four other starts of the same run would distinguish "
-             "them; the best of the four: " +
+             "; none of four other initial states would distinguish them; the best of the four: " +
              m.text;
   }
   return m;
@@ -191,9 +189,9 @@ std::vector<Manoeuvre> manoeuvres(const std::vector<FoundEffect>& effects,
     for (const std::string& rival : effect.indistinguishable_from) {
       Manoeuvre m{{effect.kind, rival}, longer, 0.0};
       const Trial* other = stand_in(effect.kind, rival, chosen, trials, all);
-      if (is_told_by_charge(effect.kind, rival)) {
+      if (is_separated_by_charge(effect.kind, rival)) {
         m.text =
-            "record through a change of the battery current: only a shift by discharge "
+            "record through a change of the battery current: only the effect of the discharge "
             "follows the charge";
       } else if (other != nullptr) {
         m = best_start(std::move(m), chosen, *other, all, runs, threads);

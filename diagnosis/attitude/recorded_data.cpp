@@ -21,7 +21,7 @@ namespace photorque {
 namespace {
 
 // Minimum number of blocks of a segment: enough to determine its initial conditions and some more.
-constexpr size_t least_of_stretch = 12;
+constexpr size_t min_segment_blocks = 12;
 
 // Warns of rows that are omitted where a file is cut into segments.
 void say_cuts(const std::string& name, const Segments& segments,
@@ -78,22 +78,22 @@ void say_assumed_sequence(const NamedRecording& r, const Platform& platform,
   if (!columns.has_angles() || columns.has_gyro() || !r.recording.angle_sequence.empty()) return;
   warnings.push_back(r.name + ": roll, pitch and yaw are taken in the sequence zyx, " +
                      formula_of(angle_sequences[0]) +
-                     "; no rates are there to test it, and [recording] angle_sequence states it");
+                     "; there are no rates to test it; [recording] angle_sequence states it");
 }
 
 // A sliding body under forces commanded in response to its position hardly moves. Over a whole run
 // a model without any force, even the commanded one, then fits best (closed-loop identification, L.
 // Ljung, System Identification, 2nd ed. 1999, section 13.4). Short segments with separate initial
 // conditions make the forces visible.
-void begin_anew_under_commands(const std::string& name, const Platform& platform, size_t stretches,
-                               std::vector<Observation>& all, std::vector<std::string>& warnings) {
+void split_commanded_runs(const std::string& name, const Platform& platform, size_t segments,
+                          std::vector<Observation>& all, std::vector<std::string>& warnings) {
   std::vector<Observation> result;
   for (const Observation& seen : all) {
     const bool is_commanded =
         platform.slides() && std::ranges::any_of(seen.schedule.held, [](const ZeroOrderHold& held) {
           return held.commands_force();
         });
-    const size_t count = is_commanded ? std::min(stretches, seen.blocks() / least_of_stretch) : 1;
+    const size_t count = is_commanded ? std::min(segments, seen.blocks() / min_segment_blocks) : 1;
     for (size_t i = 0; i < count; ++i) {
       result.push_back(count == 1
                            ? seen
@@ -101,7 +101,7 @@ void begin_anew_under_commands(const std::string& name, const Platform& platform
     }
     if (count > 1) {
       warnings.push_back(
-          written("%s: forces are commanded, which may answer the motion: %zu "
+          written("%s: commanded forces may depend on the motion: %zu "
                   "segments, each with its own initial state",
                   name.c_str(), count));
     }
@@ -178,10 +178,10 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
     say_unused(r, nominal, options.read_elsewhere, warnings);
     say_assumed_sequence(r, platform, warnings);
     if (MotionColumns(r.recording, platform, r.name).has_scalar(Scalar::tilt)) {
-      warnings.push_back(r.name +
-                         ": a tilt has no direction: an answer has a mirror "
-                         "image with equal readings, which leans the other way. Priors alone "
-                         "decide between them; found signs may be those of the image");
+      warnings.push_back(
+          r.name +
+          ": a tilt has no direction: the mirror image of the motion has equal readings. Only the "
+          "priors distinguish them, so that the signs found may be those of the mirror image");
     }
     std::string convention = segments.angles ? segments.angles->text : "";
     for (Observation& seen : segments.all) {
@@ -196,8 +196,8 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
       of_rates += repair_free_rates(segments.all, platform.inertia_kg_m2);
     if (convention.empty()) convention = of_rates;
     if (!convention.empty()) warnings.push_back(r.name + ": " + convention);
-    begin_anew_under_commands(r.name, platform, options.limits.discrepancy.stretches, segments.all,
-                              warnings);
+    split_commanded_runs(r.name, platform, options.limits.discrepancy.segments, segments.all,
+                         warnings);
     all.push_back(std::move(segments.all));
   }
   return all;
@@ -226,11 +226,11 @@ size_t cut_at(const Observation& seen, double fraction) {
 
 // Holds out the end of a recording in one piece. Of many segments, every (1/fraction)-th is held
 // out, so that held-out and fitted data cover equal times and conditions.
-void hold_out(std::vector<Observation> stretches, double fraction, RecordedData& data) {
+void hold_out(std::vector<Observation> segments, double fraction, RecordedData& data) {
   const auto every = static_cast<size_t>(std::lround(1.0 / fraction));
-  for (size_t i = 0; i < stretches.size(); ++i) {
-    Observation& seen = stretches[i];
-    if (stretches.size() >= every) {
+  for (size_t i = 0; i < segments.size(); ++i) {
+    Observation& seen = segments[i];
+    if (segments.size() >= every) {
       (i % every == every - 1 ? data.held : data.train).push_back(std::move(seen));
       continue;
     }
@@ -268,15 +268,15 @@ RecordedData read_data(const NominalModel& nominal, const std::vector<NamedRecor
                        const std::vector<NamedRecording>& holdouts,
                        const DiagnoseOptions& options) {
   RecordedData data;
-  for (auto& stretches : observe_all(recordings, nominal, options, data.warnings)) {
+  for (auto& segments : observe_all(recordings, nominal, options, data.warnings)) {
     if (holdouts.empty()) {
-      hold_out(std::move(stretches), options.holdout_fraction, data);
+      hold_out(std::move(segments), options.holdout_fraction, data);
     } else {
-      append_to(data.train, std::move(stretches));
+      append_to(data.train, std::move(segments));
     }
   }
-  for (auto& stretches : observe_all(holdouts, nominal, options, data.warnings)) {
-    append_to(data.held, std::move(stretches));
+  for (auto& segments : observe_all(holdouts, nominal, options, data.warnings)) {
+    append_to(data.held, std::move(segments));
   }
   const NoiseLevels noise = noise_of(nominal.sensors, data.train, data.warnings);
   for (auto* runs : {&data.train, &data.held}) {
@@ -366,19 +366,19 @@ bool use_noise(const NoiseFindings& findings, RecordedData& data) {
 // Limits the weight of readings that are not normally distributed, in fitted and held-out data:
 // bursts are dropped and heavy tails get pseudo-values. `near` is a fit that is near the readings.
 // Returns whether anything changed.
-bool tame_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
+bool robustify_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
   const int64_t in_bursts = drop_bursts(residuals_of(near, data.train), limits.noise, data.train);
   const std::vector<Prediction> residuals = residuals_of(near, data.train);
   const HeavyTails tails = heavy_tails(residuals, data.train, limits.noise);
   robustify(tails, residuals, data.train);
-  const std::vector<Prediction> tamed = residuals_of(near, data.train);
+  const std::vector<Prediction> robustified = residuals_of(near, data.train);
   bool changed = in_bursts > 0;
   for (int k = 0; k < 6; ++k) {
     const std::optional<HeavyTail>& tail = tails[static_cast<size_t>(k)];
     if (!tail) continue;
     changed = true;
     data.instruments.push_back(tail_finding(k, *tail));
-    const ChannelNoise now{deviation_level(tamed, data.train, k), 0.0, 0.0};
+    const ChannelNoise now{deviation_level(robustified, data.train, k), 0.0, 0.0};
     for (auto* runs : {&data.train, &data.held}) {
       for (Observation& seen : *runs) seen.noise.set(k, now);
     }
@@ -402,9 +402,9 @@ bool find_and_use_noise(const Fit& near, const Thresholds& limits, RecordedData&
   NoiseFindings findings = find_noise(data.train, residuals_of(near, data.train), limits.noise);
   data.noise_is_open = findings.is_open;
   if (findings.is_open) return false;
-  const bool tamed = tame_noise(near, limits, data);
-  if (tamed) findings = find_noise(data.train, residuals_of(near, data.train), limits.noise);
-  return use_noise(findings, data) || tamed;
+  const bool robustified = robustify_noise(near, limits, data);
+  if (robustified) findings = find_noise(data.train, residuals_of(near, data.train), limits.noise);
+  return use_noise(findings, data) || robustified;
 }
 
 }  // namespace

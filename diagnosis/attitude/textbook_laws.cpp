@@ -4,8 +4,8 @@
 #include <cmath>
 #include <ranges>
 
-#include "diagnosis/attitude/beside_the_rest.h"
 #include "diagnosis/attitude/domain.h"
+#include "diagnosis/attitude/model_discrepancy.h"
 #include "inference/trials.h"
 
 namespace photorque {
@@ -69,7 +69,7 @@ Trial lengthened(const Trial& in_pieces, const inference::RunSet<AttitudeDomain>
     const std::vector<Observation> longer =
         count < pieces.pieces ? domain.cut(runs, count) : std::vector<Observation>();
     if (longer.empty()) continue;
-    Trial next = domain.refit(found, longer, domain.seen_begins(found, longer),
+    Trial next = domain.refit(found, longer, domain.initial_conditions_from_data(found, longer),
                               inference::patient(all.limits));
     if (!std::isfinite(next.fit.chi2)) continue;
     found = without_superfluous(std::move(next), domain, all, longer);
@@ -93,7 +93,8 @@ std::pair<inference::RunSet<AttitudeDomain>, Trial> near_short_pieces(
   if (!inference::has_diverged(near.second, limits) || count <= near.first.pieces) return near;
   inference::RunSet<AttitudeDomain> pieces{domain.cut(runs, count), count};
   if (pieces.runs.empty()) return near;
-  Trial parted = domain.refit(nominal, pieces.runs, domain.seen_begins(nominal, pieces.runs), {});
+  Trial parted = domain.refit(nominal, pieces.runs,
+                              domain.initial_conditions_from_data(nominal, pieces.runs), {});
   return {std::move(pieces), std::move(parted)};
 }
 
@@ -127,7 +128,8 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
     const Trial all_laws =
         domain.assemble(parted, members, pieces.runs, inference::patient(all.limits));
     const auto in_the_whole = [&](const Trial& laws) {
-      return domain.refit(laws, data.train, domain.seen_begins(laws, data.train), growing);
+      return domain.refit(laws, data.train, domain.initial_conditions_from_data(laws, data.train),
+                          growing);
     };
     // The whole leaves more than the pieces, but not that much more.
     constexpr double alike = 100.0, useless = 0.01;

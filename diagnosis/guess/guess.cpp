@@ -86,12 +86,12 @@ void guess_module(TomlDocument& document, const std::vector<fs::path>& recording
       recordings.size() > 1
           ? "CONFIRM: of these curves one diode describes this one best (to " +
                 readable_number(100.0 * clearest.misfit, 2) +
-                " % of the short-circuit current): it stands for the module as it was."
-          : "CONFIRM: no curve of the module as it was is at hand, so this one stands for it, and "
-            "what one diode cannot describe is all that can be found. A curve from before, or "
-            "[[module.datasheet]] (docs/light_diagnosis.md), says more.");
+                " % of the short-circuit current): it is the reference of the nominal module."
+          : "CONFIRM: there is no curve of the module before the fault. This curve is the "
+            "reference, so that only deviations from the single-diode model can be found. A curve "
+            "from before, or [[module.datasheet]] (docs/light_diagnosis.md), says more.");
   document.set(module, "reference_curve", {reference.generic_string()});
-  document.comment("CONFIRM: the temperature of the cells, and how well it is known.");
+  document.comment("CONFIRM: the temperature of the cells and its standard error.");
   document.set(module, "temperature_K", {298.15});
   document.set(module, "temperature_sigma_K", {int64_t{20}});
   document.comment("CONFIRM: no bypass diodes are stated (bypass_every = cells under one).");

@@ -54,7 +54,7 @@ bool can_show(const LightEffectKind& kind, const std::vector<FittedRun>& runs) {
 
 }  // namespace
 
-FittedRun prepared_run(LightRun run, const LightBelief& nominal) {
+FittedRun prepared_run(LightRun run, const NominalLight& nominal) {
   FittedRun result;
   result.run = std::make_shared<const LightRun>(std::move(run));
   // Includes the light reflected by every wall, which most trials lack.
@@ -70,7 +70,7 @@ FittedRun prepared_run(LightRun run, const LightBelief& nominal) {
 }
 
 FittedRun part_of(const FittedRun& whole, const std::vector<size_t>& rows,
-                  const LightBelief& nominal) {
+                  const NominalLight& nominal) {
   // In fewer rows the knots of a run over time lie elsewhere, so it is prepared again.
   const bool is_scan = whole.run->recording().kind == LightRecording::Kind::scan;
   if (!is_scan) return prepared_run(whole.run->part(rows), nominal);
@@ -103,7 +103,7 @@ bool LightCandidate::is_linear() const {
                              [](const Number& n) { return n.is_strength || !n.is_fitted; });
 }
 
-LightCandidates light_candidates(const LightLab& lab, const LightBelief& nominal,
+LightCandidates light_candidates(const LightLab& lab, const NominalLight& nominal,
                                  const std::vector<FittedRun>& runs, const Thresholds& limits) {
   LightCandidates all{{}, limits, &lab, nominal};
   for (const LightEffectKind& kind : all_light_effect_kinds()) {

@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "diagnosis/light/beliefs.h"
 #include "diagnosis/light/model/run.h"
+#include "diagnosis/light/nominal_light.h"
 #include "inference/estimator/thresholds.h"
 #include "scenes/effects/kind.h"
 
@@ -20,10 +20,10 @@ struct FittedRun {
   std::shared_ptr<const Eigen::MatrixXd> prior_slopes;  // ∂(predicted/noise), one column per prior
 };
 
-FittedRun prepared_run(LightRun run, const LightBelief& nominal);
+FittedRun prepared_run(LightRun run, const NominalLight& nominal);
 // Selects rows of a prepared run.
 FittedRun part_of(const FittedRun& whole, const std::vector<size_t>& rows,
-                  const LightBelief& nominal);
+                  const NominalLight& nominal);
 
 struct LightCandidate {
   LightEffectKind kind;
@@ -53,13 +53,13 @@ struct LightCandidates {
   std::vector<LightCandidate> list;
   Thresholds limits;
   const LightLab* lab = nullptr;
-  LightBelief nominal;
+  NominalLight nominal;
 
   const LightCandidate& operator[](size_t i) const { return list[i]; }
 };
 
 // All candidates that these recordings can reveal.
-LightCandidates light_candidates(const LightLab& lab, const LightBelief& nominal,
+LightCandidates light_candidates(const LightLab& lab, const NominalLight& nominal,
                                  const std::vector<FittedRun>& runs, const Thresholds& limits);
 
 // Smooth laws of position, irradiance, time, temperature, attitude and voltage.

@@ -2,7 +2,7 @@
 // both models.
 #include <algorithm>
 
-#include "diagnosis/light/account.h"
+#include "diagnosis/light/findings.h"
 #include "scenes/effects/kind.h"
 
 namespace photorque {

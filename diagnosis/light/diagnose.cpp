@@ -5,8 +5,8 @@
 
 #include "core/errors.h"
 #include "core/parallel.h"
-#include "diagnosis/light/account.h"
 #include "diagnosis/light/domain.h"
+#include "diagnosis/light/findings.h"
 #include "diagnosis/light/segments.h"
 #include "diagnosis/verdict.h"
 #include "inference/decide.h"
@@ -26,12 +26,12 @@ void tell(const LightDiagnoseOptions& options, const std::string& what) {
   if (options.progress) options.progress(what);
 }
 
-Eigen::VectorXd nominal_residuals(const FittedRun& run, const LightBelief& nominal) {
+Eigen::VectorXd nominal_residuals(const FittedRun& run, const NominalLight& nominal) {
   return run.run->residuals(nominal.state, run.run->signals(nominal.state, *run.nominal), nullptr);
 }
 
 // Thins a long recording and removes outliers.
-FittedRun observed(const LightLab& lab, const LightBelief& nominal, LightRecording recording,
+FittedRun observed(const LightLab& lab, const NominalLight& nominal, LightRecording recording,
                    int number, const LightDiagnoseOptions& options, DataQuality& quality) {
   quality.rows += recording.rows_read;
   for (const auto& [reason, count] : recording.rejected) quality.rejected[reason] += count;
@@ -86,7 +86,7 @@ void require_enough(const LightData& data, const std::string& first) {
       "at least 8 to fit and 2 to hold out");
 }
 
-LightData read_light_data(const LightLab& lab, const LightBelief& nominal,
+LightData read_light_data(const LightLab& lab, const NominalLight& nominal,
                           std::vector<LightRecording> recordings,
                           std::vector<LightRecording> holdouts,
                           const LightDiagnoseOptions& options) {
@@ -131,7 +131,7 @@ bool drop_wild(const LightTrial& about, const LightCandidates& all, LightData& d
   return true;
 }
 
-LightAnswer explain_light(const LightLab& lab, const LightBelief& nominal, LightData& data,
+LightAnswer explain_light(const LightLab& lab, const NominalLight& nominal, LightData& data,
                           const LightDiagnoseOptions& options) {
   LightAnswer answer{light_candidates(lab, nominal, data.train, options.limits), {}, {}};
   const LightDomain domain(answer.all);
@@ -255,7 +255,7 @@ std::vector<Where::ChannelMisfit> misfits(const LightAnswer& answer,
 
 }  // namespace
 
-Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
+Diagnosis diagnose_light(const LightLab& lab, const NominalLight& nominal,
                          std::vector<LightRecording> recordings,
                          std::vector<LightRecording> holdouts, const LightDiagnoseOptions& asked) {
   if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
@@ -290,7 +290,7 @@ Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
     lead_with_chosen_law(answer, about, d.where.depends_on);
   }
   d.alternatives = light_alternatives(answer);
-  d.priors_refined = refined_light_beliefs(answer);
+  d.priors_refined = refined_light_priors(answer);
   d.chi2_per_sample_before = answer.trials.front().fit.chi2_per_sample();
   d.chi2_per_sample_after = answer.chosen().fit.chi2_per_sample();
   d.samples = answer.trials.front().fit.samples;
@@ -301,8 +301,8 @@ Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
   d.data = data.quality;
   if (answer.decision.undecided) {
     d.warnings.push_back(
-        "fitted and held-out recordings together show an effect that neither shows alone, but not "
-        "which effect it is: see the alternatives");
+        "only fitted and held-out recordings together show an effect, and they do not determine "
+        "which one: see the alternatives");
   }
   if (!answer.decision.held_out_tests_names) d.warnings.push_back(untested_names(*d.holdout));
   if (lab.has_array()) {

@@ -43,7 +43,7 @@ std::vector<size_t> rows_without_strays(const LightRun& run, const Eigen::Vector
 
 // Throws InputError for recordings that the experiment cannot model: curves without an array. The
 // result is independent of the number of threads.
-Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
+Diagnosis diagnose_light(const LightLab& lab, const NominalLight& nominal,
                          std::vector<LightRecording> recordings,
                          std::vector<LightRecording> holdouts,
                          const LightDiagnoseOptions& options = {});

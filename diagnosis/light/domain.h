@@ -32,7 +32,7 @@ class LightDomain {
   std::vector<Begin> begins_of(const Trial& trial) const {
     return std::vector<Begin>(trial.fit.run_chi2.size());
   }
-  std::vector<Begin> seen_begins(const Trial&, const Runs& runs) const {
+  std::vector<Begin> initial_conditions_from_data(const Trial&, const Runs& runs) const {
     return std::vector<Begin>(runs.size());
   }
   Trial with_begins(Trial trial, const std::vector<Begin>&) const { return trial; }

@@ -36,7 +36,8 @@ std::vector<Key> place_keys(LightEffectKind::Index index) {
     case LightEffectKind::Index::wall:
       return {TextKey("node", "of the scene, beside the receiver")};
     case LightEffectKind::Index::frame:
-      return {Key::choice_or("axes", words({"lab", "body"}), 0, "in which it is fixed")};
+      return {
+          Key::choice_or("axes", words({"lab", "body"}), 0, "axes to which the object is fixed")};
   }
   return {};
 }

@@ -1,4 +1,4 @@
-#include "diagnosis/light/account.h"
+#include "diagnosis/light/findings.h"
 
 #include <algorithm>
 #include <cmath>

@@ -27,7 +27,7 @@ std::vector<size_t> segments_of(const LightRun& run, size_t count) {
 class Segments {
  public:
   Segments(const LightCandidates& all, const std::vector<FittedRun>& runs, int threads)
-      : all_(all), runs_(runs), threads_(threads), count_(all.limits.discrepancy.stretches) {
+      : all_(all), runs_(runs), threads_(threads), count_(all.limits.discrepancy.segments) {
     for (const FittedRun& run : runs) segment_.push_back(segments_of(*run.run, count_));
     fitted_.resize(folds);
     parallel_for(folds, threads, [&](size_t fold) {
@@ -76,7 +76,7 @@ std::optional<double> gain_over_segments(const LightTrial& trial, size_t which,
                                          const LightCandidates& all,
                                          const std::vector<FittedRun>& runs, int threads) {
   for (const FittedRun& run : runs) {
-    if (run.run->rows() < 2 * all.limits.discrepancy.stretches) return std::nullopt;
+    if (run.run->rows() < 2 * all.limits.discrepancy.segments) return std::nullopt;
   }
   const Segments segments(all, runs, threads);
   std::vector<size_t> candidates = trial.candidates;

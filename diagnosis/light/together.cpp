@@ -8,7 +8,7 @@
 
 #include "attitude/disturbances/kind.h"
 #include "core/constants.h"
-#include "diagnosis/light/beliefs.h"
+#include "diagnosis/light/nominal_light.h"
 
 namespace photorque {
 namespace {
@@ -34,15 +34,15 @@ bool has_tilt(const AttitudeModel& model) {
 }
 
 Diagnosis light_believing(const LightRecorded& light, const Tilt& tilt) {
-  LightBelief belief = light.nominal;
-  believe_tilt(light.lab, tilt.bias_rad, tilt.sigma_rad, belief);
-  return diagnose_light(light.lab, belief, light.recordings, light.holdouts, light.how);
+  NominalLight nominal = light.nominal;
+  add_tilt_prior(light.lab, tilt.bias_rad, tilt.sigma_rad, nominal);
+  return diagnose_light(light.lab, nominal, light.recordings, light.holdouts, light.how);
 }
 
 // The tilt determined by the light.
 std::optional<Tilt> tilt_of_light(const Diagnosis& light) {
   for (const FittedParameter& p : light.priors_refined) {
-    if (p.key != tilt_belief) continue;
+    if (p.key != tilt_prior) continue;
     return Tilt{Vec2(p.value[0], p.value[1]) * degree_rad,
                 Vec2(p.sigma[0], p.sigma[1]) * degree_rad};
   }
@@ -123,7 +123,7 @@ Disturbance believed_tilt(const NominalModel& nominal, const Tilt& tilt) {
 void add_tilt(const std::optional<Tilt>& tilt, Diagnosis& motion, Diagnosis& light) {
   // No experiment states its prior.
   const auto is_tilt = [](const FittedParameter& p) {
-    return p.key == tilt_belief || p.key.ends_with(std::string("].") + tilt_key);
+    return p.key == tilt_prior || p.key.ends_with(std::string("].") + tilt_key);
   };
   std::erase_if(light.priors_refined, is_tilt);
   if (!tilt) return;
@@ -135,12 +135,12 @@ void add_tilt(const std::optional<Tilt>& tilt, Diagnosis& motion, Diagnosis& lig
   effect.probability = 1.0;
   if (!names_tilt(motion)) {
     effect.kind = of_motion;
-    effect.explanation = "the camera is not level: motion and light say so together";
+    effect.explanation = "the camera is not level, according to motion and light";
     effect.parameters = {{tilt_key, numbers(-tilt->bias_rad), numbers(tilt->sigma_rad)}};
     motion.effects.push_back(effect);
   }
   effect.kind = of_light;
-  effect.explanation = "the platform stands turned against its recorded attitude";
+  effect.explanation = "the platform is rotated relative to its recorded attitude";
   effect.parameters = {
       {"bias_deg", numbers(tilt->bias_rad / degree_rad), numbers(tilt->sigma_rad / degree_rad)}};
   light.effects.push_back(effect);
@@ -280,8 +280,7 @@ Diagnosis joined(const Diagnosis& motion, const Diagnosis& light, const std::opt
               : d.effects.empty() ? Verdict::consistent
                                   : Verdict::missing_physics;
   d.confidence = motion.confidence * light.confidence;
-  d.sentence = (is_tilted ? "The platform stands turned against its recorded attitude. Motion "
-                            "beside that: "
+  d.sentence = (is_tilted ? "The platform stands turned against its recorded attitude. Motion: "
                           : "Motion: ") +
                word_of(motion.verdict) + ". " + motion.sentence +
                " Light: " + word_of(light.verdict) + ". " + light.sentence;

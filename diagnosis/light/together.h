@@ -32,7 +32,7 @@ struct MotionRecorded {
 
 struct LightRecorded {
   const LightLab& lab;
-  LightBelief nominal;
+  NominalLight nominal;
   std::vector<LightRecording> recordings, holdouts;
   LightDiagnoseOptions how;
 };

@@ -13,7 +13,7 @@ namespace photorque {
 namespace hdf5 {
 
 hid_t required(hid_t id) {
-  if (id < 0) throw NumericalError("HDF5 could not keep a result");
+  if (id < 0) throw NumericalError("HDF5 could not store a result");
   return id;
 }
 
@@ -194,10 +194,10 @@ void Hdf5File::stamp(const std::string& place, const Provenance& provenance) {
 void Hdf5File::write(const std::filesystem::path& path) const {
   required(H5Fflush(state_->file.get(), H5F_SCOPE_GLOBAL));
   const ssize_t size = H5Fget_file_image(state_->file.get(), nullptr, 0);
-  if (size <= 0) throw NumericalError("HDF5 could not keep a result");
+  if (size <= 0) throw NumericalError("HDF5 could not store a result");
   std::string bytes(static_cast<size_t>(size), '\0');
   if (H5Fget_file_image(state_->file.get(), bytes.data(), bytes.size()) != size) {
-    throw NumericalError("HDF5 could not keep a result");
+    throw NumericalError("HDF5 could not store a result");
   }
   write_file_whole(path, bytes);
 }

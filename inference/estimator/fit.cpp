@@ -78,14 +78,14 @@ class Outlook {
 
   // Call after each step, accepted or not. The logarithm of χ² is assumed to fall at most twice as
   // fast per remaining step as over the last steps.
-  bool is_lost(const SumsOfRuns& sums, int iteration) {
+  bool is_out_of_reach(const SumsOfRuns& sums, int iteration) {
     constexpr double acceleration = 2.0;
     fallen_.push_back(sums.chi2);
     if (fallen_.size() <= memory || !(sums.chi2 > worth_chi2_)) return false;
     const double left = static_cast<double>(max_iterations_ - iteration);
     return std::log(sums.chi2 / worth_chi2_) > acceleration * fall() * left;
   }
-  // Call after is_lost(). A good fit is iterated to convergence.
+  // Call after is_out_of_reach(). A good fit is iterated to convergence.
   bool creeps(const SumsOfRuns& sums) const {
     constexpr double misfit_per_sample = 1.2;
     if (fallen_.size() <= memory || fall() >= creep_) return false;
@@ -125,9 +125,9 @@ class Fitter {
     bool is_hopeless = false;
     for (size_t w = 0; w < options_.windows.size() && !is_hopeless; ++w) {
       result.termination = fit_window(options_.windows[w]);
-      is_hopeless = result.termination == Termination::not_evaluable || is_lost_;
+      is_hopeless = result.termination == Termination::not_evaluable || is_out_of_reach_;
     }
-    if (is_lost_) result.termination = Termination::out_of_reach;
+    if (is_out_of_reach_) result.termination = Termination::out_of_reach;
     const Request whole{!is_hopeless, 1.0, is_hopeless ? 0.0 : infinity};
     Evaluation last = ended_at_ ? std::move(*ended_at_) : evaluate(model_, now_, whole);
     result.parameters = model_.parameters(now_);
@@ -139,7 +139,7 @@ class Fitter {
     result.first_shared = result.parameters.first_shared();
     result.run_chi2 = std::move(last.run_chi2);
     result.run_samples = std::move(last.run_samples);
-    if (!std::isfinite(result.chi2) && !is_lost_) {
+    if (!std::isfinite(result.chi2) && !is_out_of_reach_) {
       result.termination = Termination::not_evaluable;
     }
     result.converged = result.termination == Termination::converged;
@@ -162,7 +162,7 @@ class Fitter {
     const Termination termination = iterate(now, window);
     // χ² grows monotonically with the window.
     const double margin = termination == Termination::max_iterations ? still_falling : 1.0;
-    is_lost_ = window < 1.0 && now.sums.chi2 > margin * options_.worth_chi2;
+    is_out_of_reach_ = window < 1.0 && now.sums.chi2 > margin * options_.worth_chi2;
     if (window == 1.0 && termination != Termination::not_evaluable) ended_at_ = std::move(now);
     return termination;
   }
@@ -207,7 +207,7 @@ class Fitter {
         damping = std::max(damping, 1e-5) * 10.0;
         if (damping > options_.max_damping) return Termination::no_step_lowers;
         was_refused = true;
-        if (outlook.is_lost(now.sums, iteration)) return Termination::out_of_reach;
+        if (outlook.is_out_of_reach(now.sums, iteration)) return Termination::out_of_reach;
         if (outlook.creeps(now.sums)) return Termination::max_iterations;
         continue;
       }
@@ -219,7 +219,7 @@ class Fitter {
       damping = std::max(is_on_course ? eased : damping * 3.0, options_.min_damping);
       was_refused = false;
       now = at_once ? std::move(at) : evaluate(model_, now_, {true, window});
-      if (outlook.is_lost(now.sums, iteration)) return Termination::out_of_reach;
+      if (outlook.is_out_of_reach(now.sums, iteration)) return Termination::out_of_reach;
       if (outlook.creeps(now.sums)) return Termination::max_iterations;
     }
     return Termination::max_iterations;
@@ -254,7 +254,7 @@ class Fitter {
   Eigen::VectorXd now_;
   std::optional<Evaluation> ended_at_;
   int iterations_ = 0;
-  bool is_lost_ = false;  // χ² of a window alone exceeds worth_chi2
+  bool is_out_of_reach_ = false;  // χ² of a window alone exceeds worth_chi2
 };
 
 }  // namespace
@@ -337,7 +337,7 @@ const char* words_of(Termination termination) {
     case Termination::max_iterations:
       return "stopped at the largest number of iterations";
     case Termination::out_of_reach:
-      return "given up: too far from what is worth a fit";
+      return "stopped: the fit is far worse than the best one";
     case Termination::not_evaluable:
       return "the model cannot be evaluated";
   }

@@ -206,7 +206,7 @@ struct Thresholds {
     double max_held_out_fraction = 0.5;
     // Deviation of a nominal value from its stated value [sigma] above which it is doubtful or
     // contradicted.
-    double doubtful_belief_sigma = 3.0, contradicted_belief_sigma = 5.0;
+    double doubtful_prior_sigma = 3.0, contradicted_prior_sigma = 5.0;
     // Minimum probability of reported names or of effects indistinguishable from them.
     double min_probability = 0.7;
     // Residual structure [sigma] above which the best physics is insufficient; minimum confidence
@@ -218,7 +218,7 @@ struct Thresholds {
   struct Discrepancy {
     // Approximate number of segments into which all recordings are cut; standard errors by which
     // each name must improve their prediction; and those that distinguish two explanations (95 %).
-    size_t stretches = 16;
+    size_t segments = 16;
     double min_sigma = 3.0, min_rival_sigma = 1.645;
     // Ratio of the held-out χ² to that without the name above which the name is rejected.
     double max_held_growth = 1.1;

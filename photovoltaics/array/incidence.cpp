@@ -45,7 +45,7 @@ IncidenceReceiver::IncidenceReceiver(const Scene& scene, const SurfaceGrid& grid
       half_(grid.bins() * bands_),
       table_of_(2 * scene.instances.size(), 0) {
   if (front && has_own_front(scene, grid)) {
-    throw InputError(where, "array.cover", "cells whose surface loses light by angle already",
+    throw InputError(where, "array.cover", "cells whose material already has an angular loss",
                      "no cover, or no refractive_index in the material of the cells");
   }
   if (front) {

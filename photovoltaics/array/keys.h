@@ -27,7 +27,7 @@ inline constexpr NumberKey series("series_ohm", usual.series_ohm, series_ohm_ran
 namespace cell_key {
 inline constexpr NumberKey reference_area(
     "reference_area_m2", Range::positive(),
-    "the area that the others belong to; required beside currents and resistances");
+    "area to which currents and resistances refer; required with them");
 inline constexpr NumberKey reference_temperature("reference_temperature_K", Range::positive(),
                                                  "and the temperature");
 inline constexpr NumberKey saturation_1("saturation_1_A", Range::not_negative(),
@@ -107,8 +107,9 @@ inline constexpr OtherKey cells(
     "(triangles that share an edge, on one instance of a mesh). The receiver's node must then "
     "contain cells only. Cells on a lattice are numbered as above, others in their order in the "
     "mesh, as one row; `cells.csv` has their centres");
-inline constexpr NumbersKey low("low_m", {}, "[u, v] of its lower corner", {.size = 2});
-inline constexpr NumbersKey high("high_m", {}, "[u, v] of its upper corner", {.size = 2});
+inline constexpr NumbersKey low("low_m", {}, "[u, v] of the lower corner of the cell", {.size = 2});
+inline constexpr NumbersKey high("high_m", {}, "[u, v] of the upper corner of the cell",
+                                 {.size = 2});
 inline constexpr TablesKey rectangle(
     "rectangle",
     "one rectangle per cell, instead of `cells`, anywhere on the irradiance map, in the "

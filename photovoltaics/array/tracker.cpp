@@ -19,7 +19,7 @@ constexpr TextsKey kinds(
     "of `\"perturb_and_observe\"`, `\"incremental_conductance\"`, `\"global_scan\"`, "
     "`\"periodic_sweep\"`; the list of losses uses the first",
     {.usually = "all four"});
-constexpr NumberKey period("period_s", usual.period_s, Range::positive(), "between decisions");
+constexpr NumberKey period("period_s", usual.period_s, Range::positive(), "time between decisions");
 constexpr NumberKey step_fraction("step_fraction", usual.step_fraction, {0.0, 0.5, true, false},
                                   "voltage step, as a fraction of the voltage range");
 constexpr NumberKey start_fraction(

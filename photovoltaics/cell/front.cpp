@@ -12,16 +12,18 @@ namespace {
 namespace cover_key {
 constexpr NumberKey refractive_index("refractive_index", CellFront{}.index, {1.0, 10.0},
                                      "of the glass over the cells");
-constexpr NumberKey coating_index(
-    "coating_index", {1.0, 10.0},
-    "of a film on it, for the mean wavelength of each band; with the next", {.usually = "no film"});
+constexpr NumberKey coating_index("coating_index", {1.0, 10.0},
+                                  "refractive index of a film on the glass, for the mean "
+                                  "wavelength of each band; with `coating_thickness_m`",
+                                  {.usually = "no film"});
 constexpr NumberKey coating_thickness("coating_thickness_m", Range::positive(), "of that film",
                                       {.optional = true});
 constexpr NumbersKey angle("angle_deg", {0.0, 0.5 * pi},
                            "instead of these: angles of incidence, from 0, rising",
                            {.optional = true});
 constexpr NumbersKey transmittance("transmittance", Range::fraction(),
-                                   "T at each of them; only ratios count", {.optional = true});
+                                   "T at each of these angles; only ratios matter",
+                                   {.optional = true});
 constexpr FlagKey cosine_twice(
     "cosine_twice", false,
     "instead of all these, T = cos θ: the light on the cells, which holds the cosine already, "

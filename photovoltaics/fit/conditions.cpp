@@ -487,7 +487,7 @@ ConditionsFit fit_conditions(std::span<const CurveAt> curves, const SweepNoise& 
     predicted = std::move(squares);
   }
   if (!std::isfinite(best.chi2)) {
-    throw InputError({}, "curves", "curves and noise that no diode fits together",
+    throw InputError({}, "curves", "curves that no diode fits together with this noise",
                      "curves of one lit device, their temperatures and their noise");
   }
   ConditionsFit result = described(fitted, best, std::move(outliers));

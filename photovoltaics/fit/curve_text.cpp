@@ -121,7 +121,7 @@ std::optional<Header> header_of(std::string_view line, const InputLocation& wher
       // A plain name counts before a qualified one, and of two qualified ones the first.
       if (!needed || name.is_qualified) continue;
       if (!is_qualified[name.column]) {
-        throw InputError(where, std::string(unquoted(cells[i])), "a second such column",
+        throw InputError(where, std::string(unquoted(cells[i])), "a second column of this quantity",
                          "one voltage and one current; one curve a file, or a column \"curve\"");
       }
     }

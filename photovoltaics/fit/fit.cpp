@@ -170,7 +170,7 @@ VectorXd start_from(const IvSweep& sweep, const SweepNoise& noise) {
     if (fit.chi2 < best.chi2) best = fit;
   }
   if (best.at.size() == 0) {
-    throw InputError({}, "curves", "a sweep and noise that no diode fits",
+    throw InputError({}, "curves", "a sweep that no diode fits with this noise",
                      "a current-voltage curve of a lit cell and its noise");
   }
   return best.at;
@@ -286,7 +286,7 @@ SweepFit fit_sweeps(std::span<const IvSweep> sweeps, const SweepNoise& noise) {
   }
   sweeps = kept;
   if (!std::isfinite(best.chi2)) {
-    throw InputError({}, "curves", "sweeps and noise that no diode fits together",
+    throw InputError({}, "curves", "sweeps that no diode fits together with this noise",
                      "sweeps of one lit cell and their noise");
   }
   const VectorXd& x = best.at;

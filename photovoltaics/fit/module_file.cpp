@@ -223,7 +223,7 @@ ListedModule of_pan(const Listing& pan) {
   const double saturation_A = (sum_A - voc / shunt_ohm) / (at_open - at_short);
   if (!(saturation_A > 0.0) || !std::isfinite(saturation_A)) {
     throw InputError(pan.where(), "RShunt", pan.text("RShunt"),
-                     "resistances and Gamma with which a diode gives Isc and Voc");
+                     "resistances and Gamma of a diode with this Isc and Voc");
   }
   const double photocurrent_A = sum_A + saturation_A * at_short;
   set_cell({photocurrent_A, saturation_A, n, series_ohm, shunt_ohm}, m);

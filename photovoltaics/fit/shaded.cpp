@@ -95,7 +95,7 @@ std::vector<inference::Parameter> parameters_from(const VectorXd& x, const Sweep
 
 std::vector<NamedBound> named_bounds(Index substrings) {
   std::vector<NamedBound> all = resistance_bounds(series, shunt);
-  all.push_back({drop, "bypass_drop_V", 1.0, "the bypass diodes drop nothing",
+  all.push_back({drop, "bypass_drop_V", 1.0, "the bypass diodes have no forward voltage",
                  "no substring is bypassed: is the curve of a partly shaded string?"});
   for (Index k = 0; k < substrings; ++k) {
     all.push_back({first_light + k, "a photocurrent", 1.0, "a substring is dark", ""});
@@ -195,7 +195,7 @@ ShadedFit fit_shaded_string(const IvSweep& sweep, int substrings, const SweepNoi
   }
   const auto [best, residuals] = best_fit(sweep, substrings, noise);
   if (!std::isfinite(best.chi2)) {
-    throw InputError({}, "curves", "a sweep and noise that no string fits",
+    throw InputError({}, "curves", "a sweep that no string of cells fits with this noise",
                      "a current-voltage curve of a lit string and its noise");
   }
   const VectorXd& x = best.at;

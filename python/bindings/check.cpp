@@ -30,7 +30,7 @@ std::shared_ptr<RunOptions> nothing(const ExperimentHandle& experiment, int thre
 
 void bind_check(py::module_& module) {
   py::class_<CheckReport, std::shared_ptr<CheckReport>>(
-      module, "CheckReport", "What is wrong with an experiment, and what could be done with it.")
+      module, "CheckReport", "Errors of an experiment, and the commands that can run with it.")
       .def_property_readonly(
           "commands",
           [](const CheckReport& report) {
@@ -40,7 +40,7 @@ void bind_check(py::module_& module) {
             }
             return commands;
           },
-          "What each command would do, by its name.")
+          "Description of each command that can run, by its name.")
       .def_property_readonly(
           "mistakes",
           [](const CheckReport& report) {
@@ -51,7 +51,7 @@ void bind_check(py::module_& module) {
           "One line each; the first of every table.")
       .def_readonly("notes", &CheckReport::notes);
   module.def("check", &check_of, py::arg("experiment"),
-             "Reads the experiment as every command would, and runs nothing.");
+             "Reads the experiment as every command does, without running one.");
   // For the benchmark of calls.
   const py::class_<RunOptions, std::shared_ptr<RunOptions>> options(module, "_Nothing");
   module.def("_nothing", &nothing, py::arg("experiment"), py::kw_only(), py::arg("threads") = 0,

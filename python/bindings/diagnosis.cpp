@@ -44,7 +44,7 @@ py::dict parameters_of(const FoundEffect& effect) {
 }
 
 void bind_effect(py::module_& module) {
-  py::class_<FoundEffect>(module, "Effect", "An effect beyond what the experiment states.")
+  py::class_<FoundEffect>(module, "Effect", "An effect that the experiment lacks.")
       .def_readonly("kind", &FoundEffect::kind)
       .def_readonly("probability", &FoundEffect::probability)
       .def_readonly("explanation", &FoundEffect::explanation)
@@ -73,15 +73,13 @@ void bind_diagnosis(py::module_& module) {
       .def_property_readonly("chi2_per_sample_after", of(&Diagnosis::chi2_per_sample_after))
       .def_property_readonly(
           "provenance", [](const DiagnosisHandle& run) { return provenance_of(run.provenance); })
-      .def_property_readonly("json", &DiagnosisHandle::json,
-                             "What the program writes as diagnosis.json.")
+      .def_property_readonly("json", &DiagnosisHandle::json, "The content of diagnosis.json.")
       .def(
           "improved",
           [](const DiagnosisHandle& run, const std::filesystem::path& folder) {
             return run.improved(folder);
           },
-          py::arg("folder") = ".",
-          "The improved experiment, as TOML, as it would stand in a folder.")
+          py::arg("folder") = ".", "The improved experiment as TOML text.")
       .def_property_readonly(
           "report_html", [](const DiagnosisHandle& run) { return run.report(); },
           "A page with charts.")

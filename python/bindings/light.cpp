@@ -72,9 +72,10 @@ void bind_flux_map(py::module_& module) {
   const auto layer = [](FluxLayer FluxMap::*of, double Estimate::*number) {
     return [of, number](const py::object& self) { return layer_view(self, of, number); };
   };
-  py::class_<FluxMap>(module, "FluxMap",
-                      "Light on a surface, bin by bin: arrays of shape (bins along v, bins along "
-                      "u), both rising; NaN where there is no surface.")
+  py::class_<FluxMap>(
+      module, "FluxMap",
+      "Irradiance of each bin of a surface: arrays of shape (bins along v, bins along "
+      "u), both rising; NaN where there is no surface.")
       .def_property_readonly("irradiance_W_m2", layer(&FluxMap::incident, &Estimate::value))
       .def_property_readonly("irradiance_standard_error_W_m2",
                              layer(&FluxMap::incident, &Estimate::standard_error))
@@ -115,7 +116,7 @@ py::object cells_view(const py::object& self, const std::vector<double>& cells) 
 
 void bind_runs(py::module_& module) {
   auto trace = py::class_<LightHandle, std::shared_ptr<LightHandle>>(
-      module, "Trace", "Where the light went and what it did.");
+      module, "Trace", "Power balance, irradiance, force and torque of a trace.");
   add_result(trace, "trace");
   trace.def_property_readonly("flux_maps", &flux_maps_of, "A FluxMap for every such receiver.")
       .def_property_readonly(
@@ -137,9 +138,9 @@ void bind_runs(py::module_& module) {
             return write_alone(
                 path, [&] { return light_page(*self.run, self.light, self.result, self.head); });
           },
-          py::arg("path"), "The run as one HTML page to look at in a browser; gives its path.");
+          py::arg("path"), "Writes the run as one HTML page; returns its path.");
   auto power = py::class_<PowerHandle, LightHandle, std::shared_ptr<PowerHandle>>(
-      module, "Power", "A trace and what the solar array makes of it.");
+      module, "Power", "A trace and the power of the solar array.");
   add_result(power, "power");
   power
       .def_property_readonly("curve", table_view<PowerHandle>("iv"),

@@ -89,12 +89,13 @@ py::list events_of(const MotionHandle& run) {
 
 void bind_motion(py::module_& module) {
   auto type = py::class_<MotionHandle, std::shared_ptr<MotionHandle>>(
-      module, "Motion", "The motion of the platform: what happened and what instruments saw.");
+      module, "Motion",
+      "The motion of the platform: states, events and readings of the instruments.");
   add_result(type, "propagate");
   type.def_property_readonly("history", table_view<MotionHandle>("time_history"),
                              "Table over time: tilt, heading, yaw, rates, charge, every torque.")
       .def_property_readonly("recording", &recording_of,
-                             "Channels of camera, gyro and power as recording.csv holds them.")
+                             "Channels of camera, gyro and power, as in recording.csv.")
       .def_property_readonly("events", &events_of, "(name, time_s) in order of time.")
       .def_property_readonly(
           "time_s",
@@ -117,7 +118,7 @@ void bind_motion(py::module_& module) {
               return motion_page(self, self.options, head_of(self.options, "propagate"));
             });
           },
-          py::arg("path"), "The motion as one HTML page that plays it; gives its path.")
+          py::arg("path"), "Writes the motion as one HTML page; returns its path.")
       .def_property_readonly("charge_drawn_C", [](const py::object& self) {
         return state_view(self, &motion_of(self).states.front().charge_drawn_C, 1);
       });

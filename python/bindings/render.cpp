@@ -33,8 +33,8 @@ void bind_render(py::module_& module) {
   py::class_<RenderRun, std::shared_ptr<RenderRun>>(
       module, "Render", "A picture of the scene with the irradiance on its receivers.")
       .def_property_readonly("pixels", &pixels_of,
-                             "Red, green, blue (rows from the top, columns, 3), 0 to 255, sRGB: as "
-                             "matplotlib's imshow takes them.")
+                             "Red, green, blue (rows from the top, columns, 3), 0 to 255, sRGB: "
+                             "for matplotlib's imshow.")
       .def_property_readonly("title", [](const RenderRun& run) { return run.title; })
       .def_property_readonly("provenance",
                              [](const RenderRun& run) { return provenance_of(run.provenance); })

@@ -86,7 +86,7 @@ void bind_map(py::module_& module) {
           [](const Map& map) {
             return py::make_tuple(map.x_low, map.x_high, map.y_low, map.y_high);
           },
-          "Outer edges (x, x, y, y), as matplotlib's imshow takes them with origin=\"lower\".")
+          "Outer edges (x, x, y, y), for matplotlib's imshow with origin=\"lower\".")
       .def_readonly("is_signed", &Map::signed_values, "Positive and negative: centred on zero.")
       .def_readonly("has_equal_scale", &Map::equal_scale, "x and y are lengths of one unit.")
       .def(
@@ -94,7 +94,7 @@ void bind_map(py::module_& module) {
           [](const py::object& self, const py::object& axes) {
             return py::module_::import("photorque.plots").attr("draw_map")(self, axes);
           },
-          py::arg("axes") = py::none(), "Draws with matplotlib; gives the Axes.")
+          py::arg("axes") = py::none(), "Draws with matplotlib; returns the Axes.")
       .def(
           "to_xarray",
           [](const py::object& self) {
@@ -153,7 +153,7 @@ void bind_plot(py::module_& module) {
           [](const py::object& self, const py::object& axes) {
             return py::module_::import("photorque.plots").attr("draw_plot")(self, axes);
           },
-          py::arg("axes") = py::none(), "Draws with matplotlib; gives the Axes.");
+          py::arg("axes") = py::none(), "Draws with matplotlib; returns the Axes.");
 }
 
 }  // namespace

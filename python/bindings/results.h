@@ -85,14 +85,14 @@ void add_result(py::class_<Run, More...>& type, const std::string& command) {
             for (const std::string& line : result_of(self).provenance.warnings) lines.append(line);
             return lines;
           },
-          "One line for each of the run's own checks that failed.")
+          "One line for each check of the run that failed.")
       .def_property_readonly(
           "provenance",
           [result_of](const py::object& self) { return provenance_of(result_of(self).provenance); },
           "Version, git hash, seed and the hashes of all inputs.")
       .def_property_readonly(
           "summary_json", [result_of](const py::object& self) { return result_of(self).summary(); },
-          "What the program writes as summary.json.")
+          "The content of summary.json.")
       .def("__repr__", [result_of, command](
                            const py::object& self) { return text_of(result_of(self), command); })
       .def(

@@ -69,7 +69,7 @@ const Estimation& chosen_of(const EstimateRun& run, size_t recording) {
 
 void bind_tracking(py::module_& module) {
   auto camera = py::class_<CameraRun, std::shared_ptr<CameraRun>>(
-      module, "Camera", "How well a camera of markers knows the attitude: its tables and maps.");
+      module, "Camera", "Attitude error of a camera that tracks markers: tables and maps.");
   add_result(camera, "camera");
   camera.def_readonly("images_per_s", &CameraRun::images_per_s,
                       "Images exposed, read and solved in a second on one thread.");
@@ -106,7 +106,7 @@ void bind_tracking(py::module_& module) {
             }
             return lines;
           },
-          "What the readings cannot say, a line each.");
+          "Quantities that the readings do not determine, one line each.");
   module.def(
       "estimate", &estimate_attitude, py::arg("experiment"),
       py::arg("recordings") = std::vector<std::filesystem::path>(), py::kw_only(),

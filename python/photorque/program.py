@@ -1,4 +1,4 @@
-"""The program `photorque` that a binary wheel carries beside the module."""
+"""The program `photorque` in a binary wheel."""
 
 import os
 import pathlib

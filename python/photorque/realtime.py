@@ -32,7 +32,7 @@ _CHECKSUM_AT = 12
 
 @dataclass(frozen=True)
 class Measurement:
-    """One packet of the server; NaN where an instrument says nothing in this tick."""
+    """One packet of the server; NaN if an instrument has no reading at this tick."""
 
     tick: int  # when it was read
     now_tick: int  # when it arrived
@@ -141,7 +141,7 @@ class Client:
         return packet
 
     def receive(self) -> Measurement | None:
-        """The next measurement; None after timeout_s without one. Says hello until the first."""
+        """The next measurement; None after timeout_s without one. Sends hello until the first one."""
         end = time.monotonic() + self._timeout_s
         while time.monotonic() < end:
             if self._run == 0:
@@ -163,7 +163,7 @@ class Client:
         return None
 
     def measurements(self) -> Iterator[Measurement]:
-        """All that come until the run is over or silent for timeout_s."""
+        """All measurements until the run ends or is silent for timeout_s."""
         while (measurement := self.receive()) is not None:
             if measurement.is_last:
                 return

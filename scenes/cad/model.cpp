@@ -103,10 +103,9 @@ GltfModel read_cad_bytes(const std::string& bytes, const std::string& file, CadF
   const std::set<std::string> described = described_materials(options);
   for (const std::string& material : materials) {
     if (described.contains(material)) continue;
-    model.notices.push_back(
-        "material '" + material +
-        "': the file says nothing of optics; taken to absorb 0.5 and scatter 0.5 of the light, as "
-        "long as no [[material]] of this name says otherwise");
+    model.notices.push_back("material '" + material +
+                            "': the file contains no optical properties; assumed: 0.5 absorbed and "
+                            "0.5 scattered, unless a [[material]] of this name states others");
   }
   return model;
 }

@@ -106,7 +106,7 @@ LightParts light_parts(const Experiment& experiment) {
   if (arrays.size() == 1) {
     if (arrays[0].has(array_key::back)) {
       throw arrays[0].error(array_key::back, "bifacial cells",
-                            "none here: the effects of light know the front only");
+                            "no back: the effects of light support the front only");
     }
     parts.design =
         read_array_design(arrays[0], read_cell_places(arrays[0], experiment.scene, *parts.grid));

@@ -185,7 +185,7 @@ void require_scene_file(const ExperimentFile& file) {
   if (std::filesystem::is_regular_file(*file.scene_file, unreadable)) return;
   const Settings scene = file.settings.get(scene_key::scene);
   throw scene.error(scene_key::file, "\"" + scene.get(scene_key::file) + "\"",
-                    "a file that exists beside the experiment");
+                    "an existing file, relative to the folder of the experiment");
 }
 
 // The bytes of files whose names are relative to a file's folder.

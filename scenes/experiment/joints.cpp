@@ -26,7 +26,7 @@ constexpr Vec3Key towards_sun("towards_sun",
                               "in `propagate`: direction in the model file that follows the Sun, "
                               "as closely as the axis allows",
                               {.optional = true});
-constexpr NumberKey time("time_s", {}, "rising");
+constexpr NumberKey time("time_s", {}, "time of the angle, rising");
 constexpr NumberKey at_angle(
     "angle_deg", joint_angle,
     "angle at that time; linear between instants, constant before the first and after the last");
@@ -75,7 +75,7 @@ Joint read_joint(const Settings& table) {
   if (table.has(joint_key::towards_sun)) {
     joint.towards_sun = read_direction(table, joint_key::towards_sun);
     if (!joint.schedule.empty()) {
-      throw table.error(joint_key::towards_sun, "a schedule beside it",
+      throw table.error(joint_key::towards_sun, "both a schedule and towards_sun",
                         "one of towards_sun and [[joint.at]]");
     }
     if (joint.towards_sun->cross(joint.axis).norm() < 1e-6) {

@@ -40,7 +40,7 @@ Key material_table() {
 Key source_table() {
   return Key::tables(
       "source",
-      {Key::choice("kind", choices_of(all_source_kinds()), "what shines"),
+      {Key::choice("kind", choices_of(all_source_kinds()), "kind of the source"),
        TextKey("light",
                "name of a lamp in the glTF file, which supplies the keys that are not given",
                {.optional = true})},
@@ -52,7 +52,7 @@ Key receiver_table() {
   size_t flux_map = 0;
   while (kinds[flux_map].name != "flux_map") ++flux_map;
   return Key::tables("receiver",
-                     {Key::choice_or("kind", choices_of(kinds), flux_map, "what is measured")},
+                     {Key::choice_or("kind", choices_of(kinds), flux_map, "kind of the receiver")},
                      "where light is measured");
 }
 

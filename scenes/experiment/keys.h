@@ -53,7 +53,7 @@ inline constexpr IntegerKey rays(
     "rays", 1, most_rays,
     "in total, rounded up per source and replicate to a power of two of at least 256; "
     "at most 2^31 for each of the replicates. Gathered direct light takes none of them "
-    "(see `direct`): its error goes down by `target_error` alone",
+    "(see `direct`): its error is reduced by `target_error` only",
     {.optional = true});
 inline constexpr IntegerKey replicates(
     "replicates", 8, 1024, "independent randomisations, from which the standard errors follow",
@@ -138,8 +138,10 @@ inline constexpr Vec3Key target("target_m", {0.0, 0.0, 0.0}, "point in the middl
 inline constexpr NumberKey field_of_view("field_of_view_deg",
                                          {1e-3 * degree_rad, 179.0 * degree_rad},
                                          "across the width", {.usually = "34.4"});
-inline constexpr IntegerKey width("width", 16, 16384, "pixels", {.optional = true});
-inline constexpr IntegerKey height("height", 16, 16384, "pixels", {.optional = true});
+inline constexpr IntegerKey width("width", 16, 16384, "width of the picture in pixels",
+                                  {.optional = true});
+inline constexpr IntegerKey height("height", 16, 16384, "height of the picture in pixels",
+                                   {.optional = true});
 inline constexpr FlagKey lamps("lamps", true, "lamps near the scene and some rays are drawn");
 inline constexpr TableKey camera("camera", "camera of the picture of the scene");
 }  // namespace camera_key

@@ -204,14 +204,13 @@ class Assembly {
       }
     }
     for (const std::string& name : uncoloured) {
-      model_.notices.push_back(
-          "material '" + name +
-          "': its picture is left out where a mesh has no texture coordinates");
+      model_.notices.push_back("material '" + name +
+                               "': its picture is ignored if a mesh has no texture coordinates");
     }
     for (const std::string& name : of_other_coordinates) {
-      model_.notices.push_back("material '" + name +
-                               "': its picture is left out: it is not laid on by the first texture "
-                               "coordinates (texCoord)");
+      model_.notices.push_back(
+          "material '" + name +
+          "': its picture is ignored: it does not use the first texture coordinates (texCoord)");
     }
     model_.scene.instances = std::move(all);
   }

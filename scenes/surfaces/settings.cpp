@@ -59,7 +59,7 @@ constexpr NumberKey refractive_index(
 constexpr TextKey brdf_file("brdf_file", "instead of the fractions: measured scattering",
                             {.optional = true});
 constexpr NumberKey brdf_scale("brdf_scale", 1.0, Range::positive(),
-                               "a factor on it; a number or one per band", {.several = true});
+                               "factor on the BRDF; a number or one per band", {.several = true});
 constexpr TableKey back("back", "the same for the other side", {.usually = "as the front"});
 constexpr NumberKey reemitted(
     "reemitted", 0.0, Range::fraction(),

@@ -33,7 +33,7 @@ inline constexpr NumberKey aperture_diameter("aperture_diameter_m", opening_diam
 
 // Where light travels that comes from nowhere near.
 inline constexpr Vec3Key light_direction("direction",
-                                         "in which light travels, lab axes, any length");
+                                         "direction of the light, lab axes, any length");
 }  // namespace source_key
 
 // read_sunlight().

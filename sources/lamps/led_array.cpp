@@ -30,11 +30,11 @@ constexpr ChoiceKey layout("layout",
 constexpr NumbersKey grid_count("count", {1.0, max_leds, false, false},
                                 "of LEDs, [along x, along y]", {.size = 2});
 constexpr NumberKey grid_pitch("pitch_m", Range::positive(),
-                               "from one LED to the next; or [along x, along y]",
+                               "distance from one LED to the next; or [along x, along y]",
                                {.several = true});
-constexpr IntegerKey count("count", 1, max_leds, "of LEDs");
+constexpr IntegerKey count("count", 1, max_leds, "number of LEDs");
 constexpr NumberKey ring_radius("ring_radius_m", Range::positive(), "of the circle");
-constexpr NumberKey pitch("pitch_m", Range::positive(), "from one LED to the next");
+constexpr NumberKey pitch("pitch_m", Range::positive(), "distance from one LED to the next");
 constexpr Vec3sKey positions("positions_m", "of the LEDs, lab axes");
 constexpr ChoiceKey aim("aim",
                         {{"parallel", "all along `direction`"}, {"converging", "all at one point"}},
@@ -44,7 +44,8 @@ constexpr NumberKey focus(
     "instead of `aim_m`: distance of the point from the centre along `direction`",
     {.optional = true});
 constexpr NumberKey total_power("total_power_W", Range::positive(),
-                                "of all LEDs, instead of `power_W` of each", {.optional = true});
+                                "radiant power of all LEDs, instead of `power_W` of each LED",
+                                {.optional = true});
 constexpr NumberKey power_spread("power_spread", 0.0, {0.0, 0.5},
                                  "relative standard deviation of the LEDs' powers");
 constexpr NumberKey aim_spread(

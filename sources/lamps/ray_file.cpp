@@ -174,7 +174,7 @@ std::string sum_notice(const RaySet& set) {
 double read_power(const Settings& settings, const RaySet& set) {
   if (settings.has(source_key::power)) return settings.get(source_key::power);
   if (set.stated_radiant_flux_W) return *set.stated_radiant_flux_W;
-  throw settings.error(source_key::power, "nothing, and a file without radiant flux",
+  throw settings.error(source_key::power, "nothing, in a file without radiant flux",
                        "a power in watts");
 }
 
@@ -188,7 +188,7 @@ Spectrum read_spectrum(const Settings& settings, const RaySet& set, std::string&
   }
   if (flux > 0.0) notice = "wavelengths of single rays are replaced by their mean";
   if (!(flux > 0.0) && !set.wavelength_m) {
-    throw settings.error(source_key::wavelength, "nothing, and a file without wavelength",
+    throw settings.error(source_key::wavelength, "nothing, in a file without wavelength",
                          "a wavelength");
   }
   Spectrum spectrum;
@@ -205,7 +205,7 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
   std::string wavelengths;
   const Spectrum spectrum = read_spectrum(settings, set, wavelengths);
   const std::string noise = std::to_string(set.rays.size()) +
-                            " rays; the noise of the file itself is not in the standard errors";
+                            " rays; the standard errors do not include the noise of the file";
   for (const std::string& line : {sum_notice(set), wavelengths, noise}) {
     if (context.notice && !line.empty()) context.notice(name + ": " + line);
   }

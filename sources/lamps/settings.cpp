@@ -44,7 +44,8 @@ constexpr NumberKey lens_index("lens_index", 1.0, {1.0, 5.0, false, false},
 namespace place_key {
 constexpr Vec3sKey positions("positions_m", "one lamp at each, instead of `position_m`",
                              {.optional = true});
-constexpr NumberKey turn("turn_deg", 0.0, {}, "about the beam, right-handed about its direction");
+constexpr NumberKey turn("turn_deg", 0.0, {},
+                         "rotation about the beam, right-handed about its direction");
 }  // namespace place_key
 
 namespace sunlight_key {
@@ -190,7 +191,7 @@ SourceFile read_source_file(const Settings& settings, const SourceContext& conte
   std::error_code unreadable;
   if (!std::filesystem::is_regular_file(path, unreadable)) {
     throw settings.error("file", "\"" + given.string() + "\"",
-                         "a file that exists beside the experiment");
+                         "an existing file, relative to the folder of the experiment");
   }
   SourceFile file{path.string(), read_file(path)};
   if (context.input) context.input(given.filename().string(), content_hash(file.bytes));

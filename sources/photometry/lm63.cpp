@@ -134,7 +134,7 @@ void read_tilt(std::string_view line, NumberStream& stream, PhotometricFile& fil
 Opening read_opening(double width_m, double length_m, double height_m, PhotometricFile& file) {
   if (height_m != 0.0) {
     file.notices.emplace_back(
-        "the height of the luminous opening is passed over: light leaves a plane");
+        "the height of the luminous opening is ignored: the light source is flat");
   }
   Opening opening;
   opening.x_m = std::abs(length_m);

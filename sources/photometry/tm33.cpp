@@ -213,9 +213,9 @@ Opening opening_of(const XmlText& text, const pugi::xml_node& emitter, Photometr
     ++pieces;
   }
   if (faces > (face ? 1u : 0u)) {
-    file.notices.emplace_back(
-        pieces > 0 ? "light leaves the bottom face alone; the other faces are passed over"
-                   : "no luminous area on the bottom face: light leaves a point");
+    file.notices.emplace_back(pieces > 0
+                                  ? "only the bottom face emits light; the other faces are ignored"
+                                  : "no luminous area on the bottom face: the source is a point");
   }
   if (pieces > 1) {
     file.notices.push_back(std::to_string(pieces) +

@@ -76,7 +76,7 @@ RaySet read_zemax_rays(const std::string& bytes, const std::string& name) {
     ray.flux = in.float32("rays");
     if (header.spectral) ray.wavelength_m = micrometre * in.float32("rays");
     if (!(ray.wavelength_m >= 0.0 && std::isfinite(ray.wavelength_m))) {
-      throw InputError({name}, "ray " + std::to_string(i), "a wavelength that is none",
+      throw InputError({name}, "ray " + std::to_string(i), "an invalid wavelength",
                        "a number >= 0");
     }
     require_sound(ray, i, {name});

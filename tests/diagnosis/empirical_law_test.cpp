@@ -7,9 +7,9 @@
 
 #include "attitude/estimation/fit.h"
 #include "attitude/propagation/run.h"
-#include "diagnosis/attitude/account.h"
 #include "diagnosis/attitude/effects/scan.h"
 #include "diagnosis/attitude/empirical_torque.h"
+#include "diagnosis/attitude/findings.h"
 #include "diagnosis/improved.h"
 #include "scenes/experiment/toml.h"
 #include "tests/diagnosis/rigid_body_recording.h"

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/account.h"
+#include "diagnosis/attitude/findings.h"
 
 #include <gtest/gtest.h>
 

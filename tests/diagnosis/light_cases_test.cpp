@@ -2,9 +2,9 @@
 // the first recording alone does not determine: the names and places must be right.
 #include <gtest/gtest.h>
 
-#include "diagnosis/light/beliefs.h"
 #include "diagnosis/light/diagnose.h"
 #include "diagnosis/light/model/run.h"
+#include "diagnosis/light/nominal_light.h"
 #include "scenes/experiment/experiment.h"
 #include "tests/diagnosis/named.h"
 #include "tests/outside.h"
@@ -19,7 +19,8 @@ Diagnosis answer_to(const std::string& name) {
   const auto curves = [&](const char* file) -> std::vector<LightRecording> {
     return {read_light_recording(folder / file, {Quat::Identity(), 298.15})};
   };
-  const LightBelief stated = light_belief(lab, {}, [&](const std::string&) { return experiment; });
+  const NominalLight stated =
+      nominal_light(lab, {}, [&](const std::string&) { return experiment; });
   return diagnose_light(lab, stated, curves("iv1.csv.gz"), curves("iv2.csv.gz"));
 }
 

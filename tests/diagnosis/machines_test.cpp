@@ -60,7 +60,7 @@ TEST(Machines, AWheelThatCoastsDownIsNamedByItsDryTorqueAndItsDrag) {
   EXPECT_LT(d.holdout->chi2_per_sample_after, 2.0);
   EXPECT_GT(d.holdout->chi2_per_sample_before, 100.0);
   // One way only a steady torque of any origin brakes like a dry one: one name, and a word on that.
-  EXPECT_THAT(d.warnings, Contains(HasSubstr("turns one way only")));
+  EXPECT_THAT(d.warnings, Contains(HasSubstr("rotates in one sense only")));
   for (const Alternative& a : d.alternatives) EXPECT_THAT(a.kinds, Not(Contains("room_draft")));
 }
 

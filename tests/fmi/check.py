@@ -512,7 +512,7 @@ with tempfile.TemporaryDirectory() as name:
         unit.call("fmi3FreeInstance")
         if title == "lit":
             # The table came with the unit, in a folder that an importer may not write to.
-            expect(any("kept from an earlier run" in message for _, _, message in unit.said), f"the table: {unit.said}")
+            expect(any("stored by an earlier run" in message for _, _, message in unit.said), f"the table: {unit.said}")
         check_equal_to_propagate(place, experiment, rows)
         if title == "platform":
             # Three ticks a step: commands act for three ticks.

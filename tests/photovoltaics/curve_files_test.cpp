@@ -187,7 +187,8 @@ TEST(PhotovoltaicFit, FilesOfInstrumentsAreRead) {
   EXPECT_NE(message("V,I\n0.1,0.5\nO.2,0.4\n0.3,0.3\n").find("curve.csv:3"), std::string::npos);
   EXPECT_TRUE(curves_in("V,J (mA/cm2)\n0.1,35\n", "x")[0].is_density);
   EXPECT_FALSE(is_curve_header("t,motor voltage,motor current,omega"));
-  EXPECT_NE(message("V,I,V,I\n0.1,0.5,0.1,0.4\n").find("second such column"), std::string::npos);
+  EXPECT_NE(message("V,I,V,I\n0.1,0.5,0.1,0.4\n").find("second column of this quantity"),
+            std::string::npos);
   EXPECT_NE(message("V,I\n0.1,a\n").find("curve.csv:2"), std::string::npos);
   EXPECT_NE(message("V,I,temperature\n0.1,0.5,25\n").find("K or °C"), std::string::npos);
 }

@@ -227,7 +227,8 @@ TEST(Obj, ManyCornersTakeTheirSquareAtMost) {
 
 TEST(Cad, MaterialsAreTheExperimentsOrSaid) {
   const std::string text = "usemtl black\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-  EXPECT_THAT(obj(text).notices, Contains(HasSubstr("'black': the file says nothing of optics")));
+  EXPECT_THAT(obj(text).notices,
+              Contains(HasSubstr("'black': the file contains no optical properties")));
   SettingsNode::Table table;
   table["name"] = {std::string("black")};
   table["absorptance"] = {1.0};

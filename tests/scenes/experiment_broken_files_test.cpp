@@ -113,7 +113,7 @@ const Broken cases[] = {
      "expected at least one [[source]]"},
     // Scene
     {"missing_scene", 2, "file = \"missing.gltf\"", ":2: scene.file",
-     "found \"missing.gltf\", expected a file that exists beside the experiment"},
+     "found \"missing.gltf\", expected an existing file, relative to the folder of the experiment"},
     {"scene_is_a_folder", 2, "file = \".\"", ":2: scene.file", "found \".\""},
     {"scene_file_a_number", 2, "file = 7", ":2: scene.file", "found 7, expected a text in quotes"},
     {"unit_zero", 2, "file = \"x.gltf\"\nmetres_per_unit = 0", ":3: scene.metres_per_unit",

@@ -406,10 +406,10 @@ TEST_F(CoupledCommand, ATableIsKeptByTheContentOfItsInputs) {
   EXPECT_THAT(first.out, HasSubstr("attitudes traced in"));
   // Neither the platform nor the load changes the light; the same numbers come back.
   const Outcome again = run("propagate " + file + cached + at("b"));
-  EXPECT_THAT(again.out, HasSubstr("kept from an earlier run"));
+  EXPECT_THAT(again.out, HasSubstr("stored by an earlier run"));
   EXPECT_EQ(files("a").at("time_history.csv"), files("b").at("time_history.csv"));
   const Outcome heavier = run("propagate " + file + cached + at("c") + " --set platform.mass_kg=6");
-  EXPECT_THAT(heavier.out, HasSubstr("kept from an earlier run"));
+  EXPECT_THAT(heavier.out, HasSubstr("stored by an earlier run"));
   const Outcome brighter =
       run("propagate " + file + cached + at("d") + " --set source[0].irradiance_W_m2=900");
   EXPECT_THAT(brighter.out, HasSubstr("attitudes traced in"));

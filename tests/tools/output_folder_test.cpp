@@ -92,7 +92,7 @@ TEST_F(OutputFolders, ThatCannotBeWrittenAreFoundBeforeTheWork) {
   if (::access(at("locked").c_str(), W_OK) == 0) GTEST_SKIP() << "the superuser may write anywhere";
   const Outcome locked = run("trace " + lit_platform + endless + " --out " + at("locked"));
   EXPECT_EQ(locked.status, 2);
-  EXPECT_THAT(locked.err, HasSubstr("a folder that takes no files"));
+  EXPECT_THAT(locked.err, HasSubstr("a folder that is not writable"));
 }
 
 TEST_F(OutputFolders, AreNotLeftBehindByRunsThatAreRefused) {

@@ -109,7 +109,7 @@ TEST_F(SweepDatabase, IsSharedByProcessesThatDoEachDesignOnce) {
     EXPECT_EQ(end_of(all[static_cast<size_t>(i)]), 0);
     made += number_before(file_text(at("said" + std::to_string(i))), "run now");
   }
-  EXPECT_EQ(made, 41);  // with the experiment as it stands
+  EXPECT_EQ(made, 41);  // with the nominal experiment
   EXPECT_EQ(count("SELECT count(*) FROM run"), 41);
   EXPECT_EQ(file_text(at("out/sweep.csv")), whole);
 }

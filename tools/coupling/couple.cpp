@@ -92,9 +92,10 @@ void require_light_once(const ExperimentFile& file) {
   for (const Settings& disturbance : file.others("disturbance")) {
     const std::string kind = disturbance.text_or("kind", "");
     if (kind == "radiation_pressure") {
-      throw disturbance.error("kind", "\"radiation_pressure\" beside a scene with sources",
-                              "one of them: light presses as it is traced ([light] mode = \"off\" "
-                              "leaves the scene out)");
+      throw disturbance.error(
+          "kind", "\"radiation_pressure\" beside a scene with sources",
+          "one of them: the traced light also exerts pressure ([light] mode = \"off\" "
+          "leaves the scene out)");
     }
     if (kind == "power_balance" && has_array) {
       throw disturbance.error("kind", "\"power_balance\" beside [array]",
@@ -290,8 +291,7 @@ std::vector<std::string> missed_tolerance(const RotationTable& table, double tol
   }
   if (off.empty()) return {};
   return {"the table of light over attitude misses light.tolerance = " + shortest(tolerance) +
-          " of the largest: " + off +
-          "; more light.max_traces or light.rays would bring it nearer"};
+          " of the largest: " + off + "; increase light.max_traces or light.rays"};
 }
 
 // The state of a run that is kept now and then, and its messages.

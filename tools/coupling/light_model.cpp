@@ -262,7 +262,7 @@ std::shared_ptr<const RotationTable> LightModel::make_table(const Console& conso
                                    : std::string());
   if (settings_.cache && read_cached_table(*settings_.cache, key, *table)) {
     console.line(what + ": " + std::to_string(table->samples() * table->twists()) +
-                 " attitudes, kept from an earlier run");
+                 " attitudes, stored by an earlier run");
     return table;
   }
   RotationTableOptions options;
@@ -302,7 +302,7 @@ std::shared_ptr<const RotationTable> LightModel::make_table(const Console& conso
   console.line(what + ": " + std::to_string(traced) + " attitudes traced in " +
                show(std::round(10 * wall.count()) / 10) + " s");
   if (settings_.cache && !write_cached_table(*settings_.cache, key, *table)) {
-    console.line("note: the table could not be kept in " + settings_.cache->string());
+    console.line("note: the table could not be stored in " + settings_.cache->string());
   }
   return table;
 }

@@ -11,7 +11,7 @@ namespace light_key {
 constexpr ChoiceKey mode("mode",
                          {{"table", "traced once over the attitudes"},
                           {"trace", "traced at every exchange of the run"},
-                          {"off", "light and array left out"}},
+                          {"off", "without light and array"}},
                          0, "method");
 constexpr NumberKey tolerance("tolerance", 1e-3, {1e-6, 0.1},
                               "error of the table, of torque, force, photocurrents and light on "
@@ -25,11 +25,11 @@ constexpr NumberKey max_tilt("max_tilt_deg", {0.0, pi, true, false},
                              "tilt of the first table; motion beyond it starts a wider one",
                              {.usually = "twice the initial tilt, at least 5"});
 constexpr TextKey cache("cache",
-                        "where tables are kept, relative to the experiment; `\"\"`: nowhere",
+                        "folder of stored tables, relative to the experiment; `\"\"`: none",
                         {.usually = "the user's cache folder"});
-constexpr NumberKey time("time_s", {}, "in order");
+constexpr NumberKey time("time_s", {}, "time of switching, rising");
 constexpr TextKey source("source", "", "by name; none: all");
-constexpr FlagKey on("on", true, "false: off");
+constexpr FlagKey on("on", true, "false: the lamps are switched off");
 constexpr TablesKey switch_key("switch", "lamps are switched");
 constexpr TableKey light("light", "light in a run of the motion");
 }  // namespace light_key

@@ -44,7 +44,7 @@ constexpr std::string_view unit_definitions = R"(<UnitDefinitions>
 </UnitDefinitions>)";
 
 constexpr std::string_view log_categories = R"(<LogCategories>
-  <Category name="logEvents" description="what the run says"/>
+  <Category name="logEvents" description="output of the run"/>
   <Category name="logStatusDiscard" description="values that were refused"/>
   <Category name="logStatusError" description="what went wrong"/>
 </LogCategories>)";
@@ -188,7 +188,7 @@ struct StagingFolder {
   StagingFolder() {
     std::string name = (fs::temp_directory_path() / "photorque-fmu-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) {
-      throw InputError({name}, "", "a folder that cannot be made", "a place for temporary files");
+      throw InputError({name}, "", "a folder that cannot be made", "a folder for temporary files");
     }
     path = name;
   }

@@ -13,9 +13,11 @@ inline constexpr TextsKey curves(
     {.optional = true});
 inline constexpr TablesKey curve("curve", "curves whose light or temperature is stated; *or*");
 inline constexpr TextKey curve_file("file", "one of `curves`");
-inline constexpr NumberKey curve_irradiance("irradiance_W_m2", Range::positive(), "of its light",
+inline constexpr NumberKey curve_irradiance("irradiance_W_m2", Range::positive(),
+                                            "irradiance of the curve",
                                             {.usually = "that in the file, if any"});
-inline constexpr NumberKey curve_temperature("temperature_K", {1.0, 1000.0}, "of the cells",
+inline constexpr NumberKey curve_temperature("temperature_K", {1.0, 1000.0},
+                                             "temperature of the cells",
                                              {.usually = "that in the file, else that of `[fit]`"});
 inline constexpr ChoiceKey shunt(
     "shunt", {"best", "constant", "inverse", "exponential"}, 0,
@@ -25,9 +27,9 @@ inline constexpr TablesKey datasheet("datasheet", "one to several points at one 
 inline constexpr TextKey module_file(
     "module_file", "*or* instead: a library of modules of SAM (CSV), or a PAN file of PVsyst",
     {.optional = true});
-inline constexpr TextKey module_name("module_name",
-                                     "the Name of one of a library, or a part that no other has",
-                                     {.optional = true});
+inline constexpr TextKey module_name(
+    "module_name", "Name of a module in the library, or a part of it that no other Name has",
+    {.optional = true});
 inline constexpr IntegerKey cells_in_series("cells_in_series", 1, 1, 2000, "of the device");
 inline constexpr NumberKey temperature(
     "temperature_K", 298.15, {1.0, 1000.0},
@@ -38,8 +40,8 @@ inline constexpr NumberKey rounding_current("rounding_A", Range::not_negative(),
 inline constexpr NumberKey rounding_voltage("rounding_V", Range::not_negative(),
                                             "step of its voltages",
                                             {.usually = "the last decimal that any of them has"});
-inline constexpr NumberKey tolerance("tolerance", 0.0, {0.0, 0.5},
-                                     "a fraction of every figure of it, one sigma");
+inline constexpr NumberKey tolerance(
+    "tolerance", 0.0, {0.0, 0.5}, "standard error of every figure of the datasheet, as a fraction");
 inline constexpr NumberKey current_noise(
     "current_noise", 1e-3, {1e-12, 1.0},
     "of curves: fraction of each reading (with `substrings`, of the short-circuit current)");
@@ -53,7 +55,7 @@ inline constexpr IntegerKey substrings(
     "instead: one curve of a partly shaded string; 0: a whole string in even light");
 inline constexpr FlagKey even_voltage_steps(
     "even_voltage_steps", false,
-    "repeats of one even ramp: averages the noise of the voltages away");
+    "repeats of one even ramp: reduces the noise of the voltages by averaging");
 inline constexpr TableKey fit("fit", "parameters of cells from measurements");
 }  // namespace fit_key
 

@@ -43,7 +43,7 @@ Key effect_table() {
   };
   return Key::tables(
       "effect",
-      {Key::choice("kind", std::move(kinds), "the effect").range_that_varies(),
+      {Key::choice("kind", std::move(kinds), "kind of the effect").range_that_varies(),
        said("u_m", Key::a_number | Key::an_array), said("v_m", Key::a_number | Key::an_array),
        said("darkest", Key::a_number), said("count_between", Key::a_text)},
       "an effect on light or power, for example of a diagnosis");

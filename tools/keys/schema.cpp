@@ -362,12 +362,11 @@ Json object_schema(const std::vector<Key>& keys, Definitions& definitions) {
 }  // namespace
 
 std::string json_schema(const std::vector<Key>& tables) {
-  Json schema = {
-      {"$schema", "http://json-schema.org/draft-07/schema#"},
-      {"title", "An experiment of photorque"},
-      {"description",
-       "Written by `photorque schema`. Keys carry their unit as a suffix; another unit of "
-       "the same quantity will do."}};
+  Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},
+                 {"title", "An experiment of photorque"},
+                 {"description",
+                  "Written by `photorque schema`. The name of a key ends with its unit; other "
+                  "units of the same quantity are accepted."}};
   Definitions definitions;
   schema.update(object_schema(tables, definitions));
   schema["definitions"] = definitions.all();

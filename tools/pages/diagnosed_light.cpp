@@ -103,7 +103,7 @@ void show_scans(const std::vector<ScanGroup>& groups, const OpticalRun& run, boo
                    stage.radius_m, std::min<size_t>(400, 24'000 / groups.size())));
   }
   if (groups.size() > 1) stage.axes = {std::move(axis)};
-  stage.remark = "Painted are the readings at the places where they were taken.";
+  stage.remark = "The colours show the readings at their positions.";
   page.stage = std::move(stage);
 }
 

@@ -198,7 +198,7 @@ RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageH
   if (const double turn_rad = largest_turn_rad(states); turn_rad > 0.5 * pi) {
     add_sentence(stage.remark, "Between two instants of this page the body turns by up to " +
                                    show(std::round(turn_rad / degree_rad)) +
-                                   " deg: how it turns between them is not to be seen.");
+                                   " deg: the rotation between them is not shown.");
   }
   page.stage = std::move(stage);
   for (const Plot& plot : run.result.product.plots) {

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <regex>
 #include <set>
 #include <string_view>
 
@@ -279,7 +280,10 @@ CommandLine read_command_line(int argc, char** argv, const std::vector<Verb>& ve
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return {app.exit(error)};  // --help, --version
-    return refused(error.what() + hint_at(error, argc, argv));
+    static const std::regex range(R"(Value (\S+) not in range (\S+) to (\S+))");
+    const std::string mistake =
+        std::regex_replace(error.what(), range, "found $1, expected a number from $2 to $3");
+    return refused(mistake + hint_at(error, argc, argv));
   }
   if (manual.page || !manual.shell.empty()) {
     const std::string text =
@@ -293,7 +297,7 @@ CommandLine read_command_line(int argc, char** argv, const std::vector<Verb>& ve
     if (!mistake.empty()) return refused(mistake, verbs[i].name);
     return {std::nullopt, &verbs[i], std::move(commands[i])};
   }
-  return refused("A subcommand is required");
+  return refused("found no command, expected one such as: photorque power EXPERIMENT.toml");
 }
 
 }  // namespace photorque

@@ -12,8 +12,9 @@ namespace {
 
 namespace link_key {
 constexpr Range up_to_an_hour{0.0, 3600.0};
-constexpr NumberKey delay("delay_s", 0.0, up_to_an_hour, "the least that a packet takes");
-constexpr NumberKey jitter("jitter_s", 0.0, up_to_an_hour, "beyond it, as `jitter` says");
+constexpr NumberKey delay("delay_s", 0.0, up_to_an_hour, "minimum delay of a packet");
+constexpr NumberKey jitter("jitter_s", 0.0, up_to_an_hour,
+                           "additional delay, distributed according to `jitter`");
 constexpr ChoiceKey jitter_law("jitter",
                                {{"exponential", "of this mean"},
                                 {"uniform", "up to this"},
@@ -23,8 +24,10 @@ constexpr NumberKey loss("loss", 0.0, Range::fraction(), "fraction of packets, i
 constexpr NumberKey burst_begin(
     "burst_begin", 0.0, Range::fraction(),
     "Gilbert and Elliott's two states: probability per packet that a burst begins");
-constexpr NumberKey burst_end("burst_end", 1.0, {0.0, 1.0, true, false}, "that it ends");
-constexpr NumberKey burst_loss("burst_loss", 1.0, Range::fraction(), "that a packet is lost in it");
+constexpr NumberKey burst_end("burst_end", 1.0, {0.0, 1.0, true, false},
+                              "probability per packet that the burst ends");
+constexpr NumberKey burst_loss("burst_loss", 1.0, Range::fraction(),
+                               "probability that a packet of a burst is lost");
 constexpr FlagKey reorder("reorder", true, "packets may overtake each other");
 constexpr TextKey trace("trace",
                         "a CSV with `delay_s`, measured delays taken in turn instead (−1: lost)",

@@ -17,7 +17,7 @@ namespace photorque {
 
 struct LinkSettings {
   enum class Jitter { exponential, uniform, gaussian };
-  double delay_s = 0.0;  // the least that a packet takes
+  double delay_s = 0.0;  // minimum delay of a packet
   double jitter_s =
       0.0;  // beyond: mean of an exponential, width of a uniform, scale of a half-normal
   Jitter jitter = Jitter::exponential;

@@ -23,9 +23,9 @@ constexpr ChoiceKey mode("mode",
                          0, "clock of the ticks");
 constexpr NumberKey rate("rate_Hz", usual.rate_Hz, {0.1, 1e5},
                          "ticks; also the rows of `recording.csv`");
-constexpr TextKey address("address", usual.address, "where UDP listens, IPv4");
+constexpr TextKey address("address", usual.address, "IPv4 address of the UDP socket");
 constexpr IntegerKey port("port", PHOTORQUE_PORT, 0, 65535,
-                          "of UDP; 0: any that is free, which the first line says");
+                          "UDP port; 0: a free port, which the first line of the output states");
 constexpr FlagKey wait_for_client("wait_for_client", true, "before the first tick");
 constexpr NumberKey client_timeout(
     "client_timeout_s", usual.client_timeout_s, {1e-3, 1e6},
@@ -273,7 +273,7 @@ bool Session::take_in(int64_t until_ns) {
   if (packet->kind == PHOTORQUE_GOODBYE) {
     client_left_ = true;
     end_command();
-    note("the client says goodbye: no torque");
+    note("goodbye of the client: no torque");
   }
   if (packet->kind != PHOTORQUE_COMMAND) return true;
   if (is_paced()) {

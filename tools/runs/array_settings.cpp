@@ -15,7 +15,8 @@ constexpr NumberKey wall_plug("wall_plug_efficiency", efficiency, "light over ma
                               {.usually = "left out"});
 constexpr NumberKey collimator("collimator_efficiency", efficiency, "of the lamps' optics",
                                {.usually = "left out"});
-constexpr NumberKey converter("converter_efficiency", efficiency, "after the array",
+constexpr NumberKey converter("converter_efficiency", efficiency,
+                              "efficiency of the converter after the array",
                               {.usually = "left out"});
 }  // namespace chain_key
 

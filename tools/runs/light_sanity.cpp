@@ -93,14 +93,13 @@ std::vector<InputError> light_mistakes(const OpticalRun& run) {
     const std::string part = inside_of(experiment, few.inside, result.sums.back(), emitted_W);
     if (!part.empty() && is_turned_inwards(experiment.scene, part)) {
       mistakes.push_back({source.where(), "scene.file",
-                          "\"" + part + "\", whose faces look inwards: light falls on their backs",
+                          "\"" + part + "\", whose faces point inwards: light falls on their backs",
                           "faces that look outwards (turn them where the model was made)"});
     } else if (!part.empty() && has_place(beams)) {
       mistakes.push_back(
           source.error("position_m", "a place inside of \"" + part + "\"", "one outside of it"));
     } else if (result.power_balance.escaped_W.value >= (1.0 - rounding) * emitted_W) {
-      mistakes.push_back(
-          source.error("direction", "light that misses the scene", "light that meets it"));
+      mistakes.push_back(source.error("direction", "light that misses the scene", "light on it"));
     }
     for (size_t i = 0; i < experiment.receivers.size(); ++i) {
       if (!experiment.receivers[i].flux_map) continue;

@@ -377,7 +377,7 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
   if (loses) row("truncated", power_balance.truncated_W);
   if (misses_everything(power_balance)) {
     console.line(
-        "  note: no light meets the scene: check the position and direction of the sources");
+        "  note: no light reaches the scene: check the position and direction of the sources");
   }
   for (size_t i = 0; i < run.experiment().receivers.size(); ++i) {
     const NamedReceiver& receiver = run.experiment().receivers[i];

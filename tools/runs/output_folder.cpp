@@ -66,14 +66,14 @@ bool is_of_the_system(const fs::path& place) {
 // every file to one user.
 void require_own(const fs::path& place) {
   if (is_of_the_system(place)) {
-    throw refused(place, "a folder of the system", "a folder of your own, or a new one");
+    throw refused(place, "a folder of the system", "a folder that belongs to you, or a new one");
   }
   struct stat had {};
   std::error_code failure;
   if (::stat(place.c_str(), &had) == 0 && had.st_uid != ::geteuid() &&
       !fs::exists(place / "files.json", failure)) {
     throw refused(place, "a folder of user " + std::to_string(had.st_uid),
-                  "a folder of your own, or a new one");
+                  "a folder that belongs to you, or a new one");
   }
 }
 
@@ -126,7 +126,8 @@ void OutputFolder::try_to_write() const {
     ::unlink(trial.c_str());
   }
   if (error != 0) {
-    throw refused(path_, std::string("a folder that takes no files (") + std::strerror(error) + ")",
+    throw refused(path_,
+                  std::string("a folder that is not writable (") + std::strerror(error) + ")",
                   "space and permission");
   }
 }

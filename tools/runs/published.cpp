@@ -9,15 +9,15 @@ namespace {
 
 namespace published_key {
 constexpr TextKey quantity("quantity", "a name in `summary.json`");
-constexpr NumberKey value("value", {}, "in its unit");
-constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi}, "at which it holds");
+constexpr NumberKey value("value", {}, "published value, in its unit");
+constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi}, "tilt to which the value applies");
 constexpr NumberKey rounded_to(
     "rounded_to", Range::positive(),
     "one unit of its last printed digit (38 %: 0.01): the computed one is compared with it, and "
     "`published_misfit` of the summary is the sum of ((ours − `value`)/(½ "
     "`rounded_to`))²: for `optimise`, at most 1 for each figure that agrees",
     {.optional = true});
-constexpr TextKey source("source", "who printed it");
+constexpr TextKey source("source", "publication");
 constexpr TextKey why("why", "", "reason of the difference");
 constexpr TablesKey published("published", "a published figure, compared at the same tilt");
 }  // namespace published_key

@@ -9,13 +9,14 @@ namespace photorque {
 namespace {
 
 namespace beam_key {
-constexpr TextKey name("name", "of the way");
-constexpr TextKey experiment("experiment",
-                             "beside this one; with `[scene]`, sources and `[array]`");
-constexpr NumberKey lamp_efficiency("lamp_efficiency", 0.5, conversion_range, "light over mains");
+constexpr TextKey name("name", "name of the supply");
+constexpr TextKey experiment(
+    "experiment", "experiment file in the same folder, with `[scene]`, sources and `[array]`");
+constexpr NumberKey lamp_efficiency("lamp_efficiency", 0.5, conversion_range,
+                                    "light divided by mains power");
 constexpr NumberKey converter_efficiency("converter_efficiency", 0.97, conversion_range,
-                                         "after the array");
-constexpr NumberKey array_mass("array_mass_kg", 0.25, Range::not_negative(), "carried");
+                                         "efficiency of the converter after the array");
+constexpr NumberKey array_mass("array_mass_kg", 0.25, Range::not_negative(), "mass of the array");
 constexpr IntegerKey rays("rays", 256, int64_t{1} << 40, "of the trace",
                           {.usually = "those of that experiment"});
 constexpr TablesKey beam("beam", "light on an array");

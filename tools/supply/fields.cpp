@@ -17,19 +17,21 @@ namespace coil_key {
 constexpr SpiralCoil usual{0.06, 0.10, 12, 3e-6, 1.5};
 
 constexpr NumberKey inner_radius("inner_radius_m", usual.inner_radius_m, Range::positive(),
-                                 "of the spiral");
+                                 "inner radius of the spiral");
 constexpr NumberKey outer_radius("outer_radius_m", usual.outer_radius_m, Range::positive(),
-                                 "of it, beyond the inner");
-constexpr IntegerKey turns("turns", usual.turns, 1, 200, "of it");
+                                 "outer radius of the spiral, above `inner_radius_m`");
+constexpr IntegerKey turns("turns", usual.turns, 1, 200, "number of turns");
 constexpr NumberKey copper_area("copper_area_mm2", usual.copper_area_m2, Range::positive(),
                                 "of the wire");
 constexpr NumberKey ac_factor("ac_factor", usual.ac_factor, {1.0, 1e3},
-                              "resistance over that of direct current");
+                              "resistance divided by that of direct current");
 }  // namespace coil_key
 
 namespace induction_key {
-constexpr NumberKey transmitter_height("transmitter_height_m", -0.085, {}, "lab");
-constexpr NumberKey receiver_height("receiver_height_m", -0.02, {}, "body");
+constexpr NumberKey transmitter_height("transmitter_height_m", -0.085, {},
+                                       "height of the coil in the lab, lab axes");
+constexpr NumberKey receiver_height("receiver_height_m", -0.02, {},
+                                    "height of the coil on the platform, body axes");
 constexpr NumberKey frequency("frequency_kHz", 1e5, Range::positive(), "of the current");
 constexpr UncertainNumberKey detuning("detuning", {0.0, 0.005}, {},
                                       "of the frequency; the default is ± 0.005");
@@ -39,7 +41,7 @@ constexpr UncertainNumberKey rectifier_efficiency("rectifier_efficiency", {0.95,
                                                   conversion_range, "the default is ± 0.02");
 constexpr NumberKey ball_radius("ball_radius_m", 0.03175, Range::positive(), "of the bearing");
 constexpr NumberKey ball_conductivity("ball_conductivity_S_m", 2.5e7, Range::positive(),
-                                      "of its metal");
+                                      "conductivity of the metal of the ball");
 constexpr TableKey transmitter("transmitter", "the coil in the lab");
 constexpr TableKey receiver("receiver", "that on the platform");
 constexpr TableKey induction("induction", "two coils");
@@ -47,16 +49,18 @@ constexpr TableKey induction("induction", "two coils");
 
 namespace microwave_key {
 constexpr NumberKey frequency("frequency_GHz", Range::positive(), "of the beam");
-constexpr ChoiceKey plane("plane", {"E", "H"}, 0, "in which it tilts");
+constexpr ChoiceKey plane("plane", {"E", "H"}, 0, "plane of the tilt");
 constexpr UncertainNumberKey transmitter_diameter("transmitter_diameter_m", {0.4, 0.0},
-                                                  Range::positive(), "of the aperture");
+                                                  Range::positive(), "diameter of the aperture");
 constexpr UncertainNumberKey rectenna_side("rectenna_side_m", {0.322, 0.0}, Range::positive(),
-                                           "of the square on the platform");
-constexpr UncertainNumberKey distance("distance_m", {1.0, 0.0}, Range::positive(), "between them");
+                                           "side of the square rectenna on the platform");
+constexpr UncertainNumberKey distance("distance_m", {1.0, 0.0}, Range::positive(),
+                                      "distance between the apertures");
 constexpr UncertainNumberKey height("height_m", {0.0238, 0.0}, {},
-                                    "of the rectenna over the centre of rotation");
+                                    "height of the rectenna above the centre of rotation");
 constexpr UncertainNumberKey rectifier_efficiency("rectifier_efficiency", {0.82, 0.0},
-                                                  conversion_range, "of its elements");
+                                                  conversion_range,
+                                                  "efficiency of the rectifying elements");
 constexpr UncertainNumberKey transmitter_efficiency("transmitter_efficiency", {0.6, 0.1},
                                                     conversion_range,
                                                     "of mains to beam; the default is ± 0.1");

@@ -84,46 +84,49 @@ Table paper_supply_table(const SupplyTrade& trade) {
   row("energy_25_W_24_h_Wh", 360.0, energy_Wh, "25 W x 24 h is 600 Wh; 360 Wh is 15 W x 24 h");
   row("load_of_360_Wh_in_24_h_W", paper_load_W, 360.0 / day_h, "360 Wh in 24 h is 15 W");
   row("battery_lightest_kg", 2.5, energy_Wh / 250.0,
-      "600 Wh at 250 Wh/kg, the best packs; 2.5 kg would be 240 Wh/kg, of 360 Wh 144 Wh/kg");
+      "600 Wh at 250 Wh/kg, the best packs; 2.5 kg correspond to 240 Wh/kg for 600 Wh, and to 144 "
+      "Wh/kg for 360 Wh");
   row("battery_heaviest_kg", 6.0, energy_Wh / 100.0,
-      "600 Wh at 100 Wh/kg, rugged packs; 6 kg of 360 Wh would be 60 Wh/kg. The masses fit 600 Wh");
+      "600 Wh at 100 Wh/kg, rugged packs; for 360 Wh, 6 kg correspond to 60 Wh/kg. The masses "
+      "agree with 600 Wh");
   const SupplyOption* low = way(trade, "microwave_2_45_GHz");
   const SupplyOption* high = way(trade, "microwave_5_8_GHz");
   row("rectifier_2_45_GHz", 0.90, 0.90, "an input: the best rectenna published");
   row("rectifier_5_8_GHz", 0.82, 0.82, "an input, likewise");
   row("transmission_2_45_GHz", 1.0, figure(low, "transmission"),
-      "almost unitary is right near the aperture only: at a wavelength of 12 cm a beam from 0.4 m "
-      "spreads over more than the array within 1 m");
+      "almost unitary only near the aperture; at a wavelength of 12 cm, the beam of an aperture of "
+      "0.4 m is wider than the array at 1 m");
   row("transmission_5_8_GHz", 1.0, figure(high, "transmission"),
-      "at a wavelength of 5 cm the beam hardly spreads");
+      "at a wavelength of 5 cm, the beam hardly widens");
   row("mains_to_load_2_45_GHz", none, efficiency(low, trade.task),
-      "with generator, beam and rectifier; the paper names the rectifier alone");
+      "includes generator, beam and rectifier; the paper gives the rectifier only");
   row("mains_to_load_5_8_GHz", none, efficiency(high, trade.task), "likewise");
   const SupplyOption* coils = way(trade, "induction");
   row("induction_link_parallel", none, figure(coils, "link_efficiency"),
       "the paper: most efficient when parallel");
   row("induction_link_tilted", none, figure(coils, "best_link_efficiency_tilted"),
-      "at the largest tilt: coils about the centre of rotation stay coupled, the loss is small");
+      "at the largest tilt; coils near the centre of rotation remain coupled, and the loss is "
+      "small");
   row("silicon_in_sunlight_usual", 0.15, in_sunlight("silicon_back_surface_field", 37e-3),
-      "the simplest named cell, without a module; modules on the market give a sixth less");
+      "the simplest cell of array.cell, without a module; commercial modules give a sixth less");
   row("silicon_in_sunlight_best", 0.25, in_sunlight("silicon_heterojunction", 41e-3),
-      "the best of them, at 41 mA/cm2 and 0.750 V");
+      "the best cell of array.cell, at 41 mA/cm2 and 0.750 V");
   constexpr double gallium_arsenide_J = 1.424 * elementary_charge_C;
   row("laser_858_nm", 0.689, radiative_limit(858e-9, 11.4e4, gallium_arsenide_J, 298.15),
-      "ours is the limit of one junction without any loss but radiation at 858 nm, 11.4 W/cm2, 25 "
-      "degC; the cell of [42] reaches most of it");
+      "photorque gives the limit of one junction with radiative losses only, at 858 nm, 11.4 "
+      "W/cm2, 25 degC; the cell of [42] reaches most of it");
   const SupplyOption* light = first_beam(trade);
   row("light_on_cells", 0.90, figure(light, "light_on_cells_fraction"),
-      "90.2 % on the array; gaps of 1 mm between cells take the rest");
+      "90.2 % on the array; the rest falls into gaps of 1 mm between the cells");
   row("conversion_730_nm", 0.38, figure(light, "conversion_fraction"),
-      "0.95 electrons a photon, 0.72 V a cell, uneven light in series; inside the paper's 30 to 40 "
-      "%");
+      "quantum efficiency 0.95, 0.72 V per cell, uneven light on cells in series; within the 30 to "
+      "40 % of the paper");
   row("array_0_deg_W", 30.0, figure(light, "array_W"), "follows from the two above");
   row("array_30_deg_W", 23.0, figure(light, "sum_of_cells_tilted_W"),
       "the theoretical maximum, sum of the cells' maximum powers, at the largest tilt of the "
       "trade");
   row("array_30_deg_one_tracker_W", none, figure(light, "array_tilted_W"),
-      "one operating point for all cells: less, as the paper says");
+      "one operating point for all cells gives less, as stated in the paper");
   return table;
 }
 

@@ -26,7 +26,7 @@ struct BuiltFigure {
 // The result of a sweep or a search.
 struct SweepResult {
   std::vector<Design> designs;
-  std::optional<Design> nominal = {};  // the experiment as it stands, where there is an objective
+  std::optional<Design> nominal = {};  // the nominal experiment, where there is an objective
   std::optional<size_t> best = {};
   // Their copies as built, where those of the best are asked for.
   std::vector<BuiltFigure> built_best = {}, built_nominal = {};

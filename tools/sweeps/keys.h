@@ -21,21 +21,23 @@ inline constexpr NumbersKey weights("weights", Range::not_negative(), "of the va
 inline constexpr NumberKey from(
     "from", {}, "the first, in the unit of the axis' key; a random plan draws uniformly",
     {.optional = true});
-inline constexpr NumberKey to("to", {}, "the last", {.optional = true});
+inline constexpr NumberKey to("to", {}, "last value", {.optional = true});
 inline constexpr IntegerKey count(
     "count", 2, most_designs,
     "of values in equal steps, both ends included; none in a random plan or for `optimise`",
     {.optional = true});
-inline constexpr IntegerKey nodes("count", 1, static_cast<int64_t>(max_gauss_nodes),
-                                  "of its points, exact for polynomials of degree 2 `count` − 1",
-                                  {.optional = true});
+inline constexpr IntegerKey nodes(
+    "count", 1, static_cast<int64_t>(max_gauss_nodes),
+    "number of Gauss–Legendre points; exact for polynomials of degree 2 `count` − 1",
+    {.optional = true});
 inline constexpr ChoiceKey spacing("spacing",
                                    {{"linear", "equal steps"},
                                     {"logarithmic", "equal factors, ends above 0"}},
                                    0, "of the values");
 inline constexpr NumberKey mean("mean", {}, "of a random plan: normal, with `sigma`",
                                 {.optional = true});
-inline constexpr NumberKey sigma("sigma", Range::positive(), "of it", {.optional = true});
+inline constexpr NumberKey sigma("sigma", Range::positive(), "standard deviation",
+                                 {.optional = true});
 inline constexpr NumberKey half_width("half_width", Range::positive(),
                                       "uniform within ± this; *or*", {.optional = true});
 inline constexpr FlagKey seed("seed", false,
@@ -91,11 +93,12 @@ inline constexpr ChoiceKey built_of(
     {{"best", "copies of the best and the nominal design"},
      {"every",
       "of every design, which are then judged by what the fraction reaches (column `p95_FIGURE`)"}},
-    0, "what is built");
+    0, "designs of which copies are computed");
 inline constexpr IntegerKey built_seed("built_seed", 1, 0, INT64_MAX, "of the draws");
 inline constexpr IntegerKey global("global", 100, 0, 100000,
                                    "`optimise`: evaluations over the whole box");
-inline constexpr IntegerKey local("local", 100, 0, 100000, "and from the best of them");
+inline constexpr IntegerKey local(
+    "local", 100, 0, 100000, "number of evaluations of the local search from the best of these");
 inline constexpr NumberKey precision(
     "precision", {1e-8, 0.1},
     "`optimise`: step at which the search ends, relative to the range of each axis",

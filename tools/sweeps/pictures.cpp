@@ -198,7 +198,7 @@ Plot pareto_plot(const SweepPlan& plan, const SweepResult& result, size_t second
   add_points(plot, "outside the constraints", outside.x, outside.y, Plot::Colour::grey, true);
   add_points(plot, "designs", inside.x, inside.y, Plot::Colour::blue, true);
   add_points(plot, "Pareto front", front.x, front.y, Plot::Colour::vermilion, false);
-  add_points(plot, "the experiment as it stands", nominal.x, nominal.y, Plot::Colour::green, false);
+  add_points(plot, "the nominal experiment", nominal.x, nominal.y, Plot::Colour::green, false);
   return plot;
 }
 
@@ -230,7 +230,7 @@ void add_built(Product& product, const SweepPlan& plan, const SweepResult& resul
     Plot plot{"built_" + result.built_best[k].column, "Fraction of built copies that reach a value",
               x.text(), "copies that reach the value [%]"};
     if (k < result.built_nominal.size()) {
-      plot.curves.push_back(reached_curve("the experiment as it stands", result.built_nominal[k],
+      plot.curves.push_back(reached_curve("the nominal experiment", result.built_nominal[k],
                                           objective.maximise, Plot::Colour::green));
     }
     plot.curves.push_back(reached_curve("the best design", result.built_best[k], objective.maximise,

@@ -115,7 +115,7 @@ void read_within(const Settings& sweep, SweepPlan& plan) {
     plan.worst_over.push_back({outside_sweep(table), grid_values(table)});
   }
   if (!plan.worst_over.empty() && plan.objectives.empty() && plan.constraints.empty()) {
-    throw sweep.error(sweep_key::worst_over, "nothing that says which is worse",
+    throw sweep.error(sweep_key::worst_over, "no objective and no constraint",
                       "maximise, minimise or a [[sweep.constraint]]");
   }
 }
@@ -273,8 +273,7 @@ SweepPlan read_sweep_plan(const Settings& sweep) {
   read_within(sweep, plan);
   plan.built = read_built(sweep);
   if (!plan.built.tolerances.empty() && plan.objectives.empty()) {
-    throw sweep.error("tolerance", "nothing that built copies are to be good at",
-                      "maximise or minimise");
+    throw sweep.error("tolerance", "no objective for the built copies", "maximise or minimise");
   }
   plan.search = read_search(sweep);
   require_distinct_keys(sweep, plan);

@@ -289,7 +289,7 @@ void print_best(const Console& console, const SweepPlan& plan, const SweepResult
     if (!best) return;
     std::string text = "  " + what + "  " + shown(*best);
     if (nominal) {
-      text += ", of the experiment as it stands " + shown(*nominal);
+      text += ", of the nominal experiment " + shown(*nominal);
       const double percent = 100.0 * (best->value / nominal->value - 1.0);
       if (std::isfinite(percent)) {
         text += " (" + std::string(percent < 0.0 ? "" : "+") + show(percent) + " %)";
@@ -318,7 +318,7 @@ void print_best(const Console& console, const SweepPlan& plan, const SweepResult
   row(cell_temperature, figure_of(result.designs[*result.best], cell_temperature),
       result.nominal ? figure_of(*result.nominal, cell_temperature) : std::nullopt);
   if (result.nominal && !result.nominal->error.empty()) {
-    console.line("  the experiment as it stands fails: " + result.nominal->error);
+    console.line("  the nominal experiment fails: " + result.nominal->error);
   }
 }
 
@@ -333,7 +333,7 @@ std::vector<std::string> sweep_warnings(const SweepPlan& plan, const SweepResult
                     std::to_string(first - result.designs.begin() + 1) + ": " + first->error);
   }
   if (!plan.objectives.empty() && !result.best) {
-    lines.emplace_back("no design keeps to the constraints");
+    lines.emplace_back("no design satisfies the constraints");
   }
   const auto hot_K = result.best ? figure_of(result.designs[*result.best], above_rated)
                                  : std::optional<Estimate>{};

@@ -98,7 +98,7 @@ class Checker {
     if (is_module) check_module();
     if (file_->settings.has("sweep") && of_ == Of::file) check_sweep();
     if (!file_->scene_file && !file_->settings.has("platform") && !fits && !is_module) {
-      add_mistake(file_->settings.error("", "nothing that a command starts from",
+      add_mistake(file_->settings.error("", "no table that a command requires",
                                         "[scene], [platform], [module] or [fit]"));
     }
   }

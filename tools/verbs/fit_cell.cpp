@@ -153,7 +153,7 @@ FitTask read_fit_task(const Settings& root, const fs::path& folder) {
   if (law > 0) task.shunt_law = static_cast<ShuntLaw>(law - 1);
   if (s.has(fit_key::datasheet)) {
     if (s.has(fit_key::temperature)) {
-      throw s.error(fit_key::temperature, "a temperature beside a datasheet",
+      throw s.error(fit_key::temperature, "a temperature in addition to a datasheet",
                     "temperature_K in [[fit.datasheet]]");
     }
     for (const Settings& point : s.get(fit_key::datasheet))
@@ -176,7 +176,7 @@ FitTask read_fit_task(const Settings& root, const fs::path& folder) {
     }
     if (task.substrings > 0 && s.has(fit_key::correlation_points)) {
       throw s.error(fit_key::correlation_points, "a correlation for a partly shaded string",
-                    "none: there every point has a separate error");
+                    "no substrings: with several errors per point they are not supported");
     }
     if (!task.conditions.empty() && (task.substrings > 0 || s.has(fit_key::correlation_points) ||
                                      s.get(fit_key::even_voltage_steps))) {
@@ -236,7 +236,7 @@ void print_misfit(const Console& console, double scatter) {
   if (scatter < usual) return;
   console.line("  warning: the scatter is " + show(scatter) +
                " times what the noise makes: one diode does not describe these data. The errors "
-               "are widened to the scatter; `photorque diagnose` with [module] says what is wrong");
+               "are widened to the scatter; `photorque diagnose` with [module] finds the cause");
 }
 
 void print_left_out(const Console& console, const FitTask& task,

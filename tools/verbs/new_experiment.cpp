@@ -155,7 +155,7 @@ SceneWords scene_words(const Options& options) {
   const Settings settings(std::make_shared<const SettingsNode>(std::move(root)));
   if (!settings.has("scene") || !settings.table("scene").has("unit")) {
     throw InputError({options.scene->string()}, "scene.unit", "nothing",
-                     "the unit of its lengths, which the file does not say: --set scene.unit=mm");
+                     "a unit of length, because the file contains none: --set scene.unit=mm");
   }
   const Settings scene = settings.table("scene");
   const std::vector<std::string> units = cad_units(), axes = {"z", "y"};
@@ -220,7 +220,8 @@ std::string materials_text(const SceneWords& words, const std::set<std::string>&
     return listed("Materials whose optics may be given here instead of derived", materials) +
            "# [[material]]\n# name = \"...\"\n# absorptance = 0.9\n# diffuse = 0.1\n\n";
   }
-  std::string text = "# The file says nothing of optics: measure or look them up.\n";
+  std::string text =
+      "# The file contains no optical properties: measure them or use published values.\n";
   for (const std::string& name : materials) {
     text += "[[material]]\nname = " + quoted(name) + "\nabsorptance = 0.5\ndiffuse = 0.5\n\n";
   }
@@ -268,14 +269,15 @@ void run(const Options& options, const Program&) {
   const Console console = terminal(options);
   std::error_code unreadable;
   if (fs::exists(options.experiment, unreadable)) {
-    throw InputError({options.experiment.string()}, "", "a file that is there already",
-                     "a name for a new one");
+    throw InputError({options.experiment.string()}, "", "an existing file",
+                     "the name of a new file");
   }
   std::string text =
-      "# Made by photorque new: a first guess at everything. Keys carry their unit; "
+      "# Made by photorque new: a first experiment with assumed values. The name of a key ends "
+      "with its unit; "
       "docs/experiment.md (scene, light) and docs/disturbances.md (platform) have them all.\n# "
       "photorque check " +
-      options.experiment.filename().string() + " says what can be done with it.\n\n";
+      options.experiment.filename().string() + " prints the commands that can run with it.\n\n";
   std::string size;
   if (options.scene) {
     const SceneWords words = scene_words(options);

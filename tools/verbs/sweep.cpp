@@ -31,7 +31,7 @@ Shard read_shard(const std::string& text) {
   int end = 0;
   if (std::sscanf(text.c_str(), "%u/%u%n", &k, &n, &end) != 2 ||
       end != static_cast<int>(text.size()) || k < 1 || k > n) {
-    throw InputError({"--shard"}, "shard", '"' + text + '"', "K/N with 1 <= K <= N");
+    throw InputError({"--shard"}, "", '"' + text + '"', "K/N with 1 <= K <= N");
   }
   return {k, n};
 }

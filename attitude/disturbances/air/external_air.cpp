@@ -20,7 +20,7 @@ constexpr NumberKey outer("outer_m", Range::positive(),
                           {.varies = true});
 constexpr IntegerKey faces("faces", 2, 1, 2, "number of faces in the air");
 constexpr NumberKey drag("drag_coefficient", {0.0, 1e3, false, false},
-                         "referred to the area that meets the flow");
+                         "referred to the area across the flow");
 constexpr NumberKey moment("moment_coefficient", sphere_moment_howarth, {0.0, 1e3, true, false},
                            "3.27 is also quoted");
 constexpr ChoiceKey shape("shape",
@@ -200,7 +200,7 @@ Key air_parts_key() {
             {radius.meaning("of the sphere"), moment},
             {radius.meaning("of the cylinder"), part_key::length.meaning("of it"), inner, drag},
             {radius.meaning("of the cylinder"), part_key::length.meaning("of it"), distance, drag},
-            {area.meaning("that meets the flow"), distance, drag}}),
+            {area.meaning("area across the flow"), distance, drag}}),
        name, count});
 }
 

@@ -7,7 +7,7 @@
 namespace photorque::kinds::room_draft {
 namespace {
 
-constexpr VectorKey torque_lab("torque_lab_N_m", "lab axes");
+constexpr VectorKey torque_lab("torque_lab_N_m", "torque, lab axes");
 
 struct RoomDraft final : TorqueLaw<RoomDraft> {
   template <class T>

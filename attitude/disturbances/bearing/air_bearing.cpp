@@ -140,7 +140,7 @@ double gap_under_load_m(const SphericalSocket& socket, const OrificeFeed& feed, 
   };
   const double widest_m = 1e-2 * socket.radius_m;
   if (load_N >= film_load_N(socket, feed.supply_Pa, air.pressure_Pa)) {
-    throw NumericalError("air film: the load exceeds what the supply pressure can carry");
+    throw NumericalError("air film: the load exceeds the capacity of the supply pressure");
   }
   if (spare_N(widest_m) > 0.0) {
     throw NumericalError("air film: the load is too small for any film thinner than 1 % of R");

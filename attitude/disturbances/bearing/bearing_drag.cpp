@@ -21,10 +21,11 @@ constexpr auto coefficient =
     ScalarKey("coefficient_N_m_s", Range::not_negative(), "c in T = −c ω, about every axis; *or*")
         .optional();
 constexpr auto about_axis =
-    ScalarKey("axial_N_m_s", Range::not_negative(), "about the vertical; with the next").optional();
-constexpr auto across_axis =
-    ScalarKey("transverse_N_m_s", Range::not_negative(), "across it; *or*", about_axis.end())
+    ScalarKey("axial_N_m_s", Range::not_negative(), "about the vertical; with `transverse_N_m_s`")
         .optional();
+constexpr auto across_axis = ScalarKey("transverse_N_m_s", Range::not_negative(),
+                                       "about horizontal axes; *or*", about_axis.end())
+                                 .optional();
 
 namespace key {
 constexpr NumberKey radius("radius_m", Range::positive(), "of the ball");
@@ -133,8 +134,8 @@ DisturbanceKind kind() {
       .name = "bearing_drag",
       .summary = "viscous drag of the bearing's air film, linear in the rate",
       .read = read,
-      .screening = {.parametrisations = {{"the bearing's viscous drag differs from what is stated, "
-                                          "beyond the uncertainty stated",
+      .screening = {.parametrisations = {{"the viscous drag of the bearing differs from the stated "
+                                          "one by more than its uncertainty",
                                           {EffectKey::number(coefficient.name, 2e-5)}}},
                     .needs = Requirement::bearing,
                     .least_sum = LeastSum{min_sum_N_m_s, "the bearing's drag would feed energy"}},

@@ -28,7 +28,8 @@ constexpr TextKey field_file("field_file",
                              {.optional = true});
 constexpr NumberKey altitude("altitude_m", Range::not_negative(), "above 6371.2 km");
 constexpr NumberKey inclination("inclination_deg", {}, "of the orbit");
-constexpr NumberKey date_year("date_year", {1900.0, 2035.0, false, false}, "of IGRF");
+constexpr NumberKey date_year("date_year", {1900.0, 2035.0, false, false},
+                              "date of the field (IGRF)");
 constexpr NumberKey duration("duration_s", Range::positive(), "duration of the field");
 constexpr NumberKey ascending_node("ascending_node_deg", 0.0, {}, "of the orbit");
 constexpr NumberKey phase("phase_deg", 0.0, {}, "argument of latitude at t = 0");

@@ -20,7 +20,7 @@ namespace photorque::kinds::planet_light {
 namespace {
 
 constexpr double mean_radius_of_planet_m = 6371.2e3;
-constexpr ScalarKey planet_factor("scale", 1.0, {}, "factor");
+constexpr ScalarKey planet_factor("scale", 1.0, {}, "factor on the torque");
 
 namespace key {
 constexpr PlanetSurface earth;
@@ -28,7 +28,7 @@ constexpr PlanetSurface earth;
 constexpr TextKey table("table",
                         "CSV of `torque-map` over the sphere (`elevation_deg`, `azimuth_deg`; "
                         "`torque_x_N_m`, …), traced in sunlight");
-constexpr TextKey infrared_table("infrared_table", "the same in the planet's infrared",
+constexpr TextKey infrared_table("infrared_table", "table for the infrared light of the planet",
                                  {.usually = "`table`: surfaces treat infrared as sunlight"});
 constexpr NumberKey table_irradiance("table_irradiance_W_m2", solar_irradiance_W_m2,
                                      Range::positive(),

@@ -23,11 +23,13 @@ constexpr ScalarKey load(
     "full or empty; without effect where a recording has the current");
 
 namespace key {
-constexpr NumberKey array_power("array_power_W", 0.0, Range::not_negative(),
-                                "at zero tilt, falls with its cosine; *or*");
-constexpr NumbersKey tilt("tilt_deg", {0.0, pi, false, false},
-                          "a table, rising, held beyond its end; with the next",
-                          {.optional = true});
+constexpr NumberKey array_power(
+    "array_power_W", 0.0, Range::not_negative(),
+    "power of the array at zero tilt; proportional to the cosine of the tilt; *or*");
+constexpr NumbersKey tilt(
+    "tilt_deg", {0.0, pi, false, false},
+    "tilts of a table, rising; the last value holds beyond its end; with `power_W`",
+    {.optional = true});
 constexpr NumbersKey power("power_W", Range::not_negative(), "of the array at each tilt",
                            {.optional = true});
 }  // namespace key
@@ -144,7 +146,7 @@ DisturbanceKind kind() {
           .read = read,
           .screening =
               {.reason_against =
-                   "acts on the battery alone; the motion shows it only through battery_discharge"},
+                   "acts on the battery; it affects the motion only through battery_discharge"},
           .sets = "the battery's current",
           .keys = {load, key::array_power, key::tilt, key::power, array_scale}};
 }

@@ -22,7 +22,7 @@
 namespace photorque::kinds::radiation_pressure {
 namespace {
 
-constexpr ScalarKey factor("scale", 1.0, {}, "factor");
+constexpr ScalarKey factor("scale", 1.0, {}, "factor on the torque");
 
 class RadiationPressure final : public TorqueLaw<RadiationPressure> {
  public:
@@ -103,8 +103,8 @@ Disturbance read_of_sun(const Settings& settings, const DisturbanceContext& cont
 std::vector<Parametrisation> of_experiment(const DisturbanceContext& context) {
   if (!context.environment.sun) return {};
   return {
-      {"the pressure of sunlight acts beside the centre of mass, and its torque changes with "
-       "the Sun's direction",
+      {"sunlight exerts a torque about the centre of mass that changes with the direction of the "
+       "Sun",
        {EffectKey::vector(area_moment.name, 1.0)}}};
 }
 

@@ -4,7 +4,8 @@
 namespace photorque::kinds::camera_misalignment {
 namespace {
 
-constexpr VectorKey turn("misalignment_rad", "rotation vector from the true to the seen body axes");
+constexpr VectorKey turn("misalignment_rad",
+                         "rotation vector from the true to the measured body axes");
 
 // The attitude seen is q ⊗ exp(m/2) for the rotation vector m, in body axes, from the true to the
 // seen body axes.

@@ -270,7 +270,7 @@ std::vector<Parametrisation> of_markers(const DisturbanceContext& context) {
     const Vec3 at_mm = 1e3 * markers[i].position_body_m;
     char text[160];
     std::snprintf(text, sizeof text,
-                  "marker %zu, stated at (%.4g, %.4g, %.4g) mm, is not there: the pose turns by it",
+                  "marker %zu, stated at (%.4g, %.4g, %.4g) mm, is displaced: the pose is rotated",
                   i + 1, at_mm.x(), at_mm.y(), at_mm.z());
     all.push_back({text,
                    {EffectKey::fixed_at(marker_key, static_cast<double>(i + 1)),

@@ -12,11 +12,10 @@
 namespace photorque::kinds::battery_discharge {
 namespace {
 
-constexpr auto shift =
-    VectorKey(
-        "shift_m_per_Ah",
-        "of the centre of mass per charge drawn, body axes; *or* the cells, from which it follows")
-        .optional();
+constexpr auto shift = VectorKey("shift_m_per_Ah",
+                                 "displacement of the centre of mass per charge drawn, body axes; "
+                                 "*or* `[[disturbance.cell]]`")
+                           .optional();
 
 namespace key {
 constexpr Vec3Key electrodes(

@@ -21,16 +21,17 @@ constexpr OtherKey compliance(
     "only these take ±) or a symmetric 3 × 3 matrix; *or*",
     {.optional = true});
 constexpr Vec3Key axis("axis", {1.0, 0.0, 0.0}, "of the arms, body axes");
-constexpr NumberKey length("length_m", Range::positive(), "of one arm");
-constexpr NumberKey end_mass("end_mass_kg", Range::not_negative(), "at its end");
-constexpr NumberKey beam_mass("beam_mass_kg", Range::not_negative(), "of one arm");
-constexpr NumberKey bending_stiffness("bending_stiffness_N_m2", Range::positive(), "EI");
+constexpr NumberKey length("length_m", Range::positive(), "length of one arm");
+constexpr NumberKey end_mass("end_mass_kg", Range::not_negative(), "mass at the end of an arm");
+constexpr NumberKey beam_mass("beam_mass_kg", Range::not_negative(), "mass of the beam of one arm");
+constexpr NumberKey bending_stiffness("bending_stiffness_N_m2", Range::positive(),
+                                      "bending stiffness EI of an arm");
 constexpr TableKey dumbbell("dumbbell", "two arms, from which C follows; *or*");
-constexpr NumberKey tabletop_length("length_m", Range::positive(), "of a beam");
-constexpr NumberKey total_mass("total_mass_kg", Range::not_negative(), "of all");
+constexpr NumberKey tabletop_length("length_m", Range::positive(), "length of a beam");
+constexpr NumberKey total_mass("total_mass_kg", Range::not_negative(), "mass of all beams");
 constexpr NumberKey tabletop_bending_stiffness("bending_stiffness_N_m2", Range::positive(),
-                                               "EI of one");
-constexpr IntegerKey count("count", 1, 1000, "of beams");
+                                               "bending stiffness EI of one beam");
+constexpr IntegerKey count("count", 1, 1000, "number of beams");
 constexpr TableKey tabletop("tabletop", "beams along z, from which C follows");
 }  // namespace key
 

@@ -7,7 +7,7 @@
 namespace photorque::kinds::mass_shift {
 namespace {
 
-constexpr ScalarKey start("time_s", {}, "when");
+constexpr ScalarKey start("time_s", {}, "time of the jump");
 constexpr VectorKey offset("offset_m", "displacement of the centre of mass, body axes",
                            start.end());
 

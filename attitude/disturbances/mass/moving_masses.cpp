@@ -64,7 +64,7 @@ namespace {
 
 namespace moving_key {
 constexpr NumberKey moving_mass("moving_mass_kg", Range::positive(), "of each mass");
-constexpr NumberKey lead("lead_m", Range::positive(), "travel per turn of its screw");
+constexpr NumberKey lead("lead_m", Range::positive(), "travel per turn of the screw");
 constexpr NumberKey step_angle("step_angle_deg", 1.8 * degree_rad, {1e-6 * degree_rad, 2.0 * pi},
                                "of the motor");
 constexpr IntegerKey microsteps("microsteps", 1, 1, 1024, "positions per step");

@@ -26,7 +26,7 @@ DisturbanceKind kind() {
           .read = read_law<StaticUnbalance, Stage::mass, offset>,
           .screening =
               {.parametrisations =
-                   {{"the centre of mass lies elsewhere than stated, beyond the uncertainty stated",
+                   {{"the centre of mass differs from the stated one by more than its uncertainty",
                      {EffectKey::vector(offset.name, 5e-6)}}},
                .needs = Requirement::gravity},
           .keys = {offset}};

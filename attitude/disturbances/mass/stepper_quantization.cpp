@@ -67,11 +67,9 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
 
 DisturbanceKind kind() {
   return {.name = "stepper_quantization",
-          .summary = "balancing masses can only stand at whole steps",
+          .summary = "balancing masses stop at whole steps of their motors",
           .read = read,
-          .screening =
-              {.reason_against =
-                   "an offset of the centre of mass like any other: found as static_unbalance"},
+          .screening = {.reason_against = "found as static_unbalance, which has the same effect"},
           .budget = {.paper_figure = "stepper_torque_N_m"},
           .keys = joined(
               {moving_mass_keys(),

@@ -6,9 +6,10 @@
 namespace photorque::kinds::actuator_gain {
 namespace {
 
-constexpr ScalarKey common_gain("gain_error", {},
-                                "e: actuators give (1 + e) of the command; one number, or one for "
-                                "each body axis (planar: x and y of the forces, z of the torque)");
+constexpr ScalarKey common_gain(
+    "gain_error", {},
+    "e: actuators give (1 + e) times the command; one number, or one for "
+    "each body axis (planar: x and y of the forces, z of the torque)");
 constexpr VectorKey axis_gain{common_gain.name};
 
 struct CommonGain final : LawOf<CommonGain> {
@@ -38,17 +39,17 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "actuator_gain",
-          .summary = "actuators give more or less torque or force than commanded",
-          .read = read,
-          .screening =
-              {.parametrisations =
-                   {{"the actuators give more or less torque than commanded",
-                     {EffectKey::number(common_gain.name, 0.2)}},
-                    {"the actuators give more or less torque than commanded, each axis its own",
-                     {EffectKey::vector(common_gain.name, 0.2)}}},
-               .needs = Requirement::command},
-          .keys = {Key(common_gain).one_or_several(3)}};
+  return {
+      .name = "actuator_gain",
+      .summary = "actuators give more or less torque or force than commanded",
+      .read = read,
+      .screening = {.parametrisations = {{"the actuators give more or less torque than commanded",
+                                          {EffectKey::number(common_gain.name, 0.2)}},
+                                         {"the actuators give more or less torque than commanded, "
+                                          "with a separate factor for each axis",
+                                          {EffectKey::vector(common_gain.name, 0.2)}}},
+                    .needs = Requirement::command},
+      .keys = {Key(common_gain).one_or_several(3)}};
 }
 
 }  // namespace photorque::kinds::actuator_gain

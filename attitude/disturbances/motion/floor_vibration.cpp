@@ -24,7 +24,8 @@ constexpr auto shaking = VectorKey("acceleration_m_s2",
                              .optional();
 constexpr auto frequency =
     ScalarKey("frequency_Hz", tone_Hz, "of a sine", shaking.end()).optional();
-constexpr ScalarKey phase("phase", 0.0, {}, "of it at t = 0, rad; or `phase_deg`", frequency.end());
+constexpr ScalarKey phase("phase", 0.0, {}, "phase of the sine at t = 0, rad; or `phase_deg`",
+                          frequency.end());
 constexpr ScalarKey factor("scale", 1.0, Range::not_negative(), "factor on the last two");
 
 namespace key {

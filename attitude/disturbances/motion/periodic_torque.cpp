@@ -11,7 +11,7 @@ namespace {
 // Faster, and the phase loses its digits within a day: steps would see something slow.
 constexpr Range tone_Hz{0.0, 1e6};
 constexpr VectorKey amplitude("torque_N_m", "T₀ in T = T₀ sin(2π f t + φ), body axes");
-constexpr ScalarKey frequency("frequency_Hz", tone_Hz, "f", amplitude.end());
+constexpr ScalarKey frequency("frequency_Hz", tone_Hz, "frequency", amplitude.end());
 constexpr ScalarKey phase("phase", 0.0, {}, "φ, rad; or `phase_deg`", frequency.end());
 
 namespace key {

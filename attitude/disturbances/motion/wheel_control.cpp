@@ -33,7 +33,8 @@ namespace key {
 constexpr Vec3Key target_axis("target_axis", {0.0, 0.0, 1.0},
                               "rotation axis of the target attitude, any length");
 constexpr NumberKey target_angle("target_angle_deg", 0.0, {}, "rotation angle about `target_axis`");
-constexpr Vec3Key target_rate("target_rate_rad_s", {0.0, 0.0, 0.0}, "body axes");
+constexpr Vec3Key target_rate("target_rate_rad_s", {0.0, 0.0, 0.0},
+                              "rate of the target, body axes");
 constexpr NumberKey wheel_inertia(
     "wheel_inertia_kg_m2", Range::positive(),
     "of each wheel; included in the inertia of the platform and below its smallest moment",

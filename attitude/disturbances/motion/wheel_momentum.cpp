@@ -46,7 +46,7 @@ DisturbanceKind kind() {
           .summary = "wheels whose speed was measured exchange momentum with the body",
           .read = read,
           .screening =
-              {.parametrisations = {{"a wheel on board takes up and gives back angular momentum",
+              {.parametrisations = {{"a wheel on board exchanges angular momentum with the body",
                                      {{.key = common_inertia.name,
                                        .start = {0.0},
                                        .scale = 1e-3,

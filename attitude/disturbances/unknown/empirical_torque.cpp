@@ -60,9 +60,9 @@ namespace kinds::empirical_torque {
 
 DisturbanceKind kind() {
   return {.name = kind_name,
-          .summary = "a torque that follows no known law, as a fit or a measurement gives it",
+          .summary = "a fitted or measured torque without a known law",
           .read = read,
-          .screening = {.reason_against = "diagnose fits it where no known law suffices"},
+          .screening = {.reason_against = "diagnose fits it if no known law is sufficient"},
           .keys = empirical_shape_keys()};
 }
 

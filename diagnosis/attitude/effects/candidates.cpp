@@ -580,16 +580,16 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
   if (context.platform.turns_about_one_axis() && only_slows_down(runs, context.platform.axis) &&
       std::erase_if(all.list, [](const Candidate& c) { return c.effect.how.steady; }) > 0) {
     all.remark =
-        "it turns one way only: friction cannot be distinguished from any other steady torque";
+        "it rotates in one sense only: friction cannot be distinguished from another constant "
+        "torque";
   }
   if (context.platform.slides() && only_slides_out(runs) &&
       std::erase_if(all.list, [](const Candidate& c) {
         return c.effect.how.steady && c.effect.how.needs == Requirement::plane;
       }) > 0) {
     all.remark =
-        "it slides straight on and only becomes slower: friction is not distinguished from a slope "
-        "or a "
-        "pull against the motion";
+        "it slides along a straight line and only becomes slower: friction is not distinguished "
+        "from a slope or a constant force";
   }
   // Without an attitude state, effects that depend on it cannot be evaluated.
   if (nominal.model.holds_attitude) {

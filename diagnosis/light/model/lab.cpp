@@ -42,8 +42,7 @@ std::shared_ptr<LampSet> lamp_set(const Experiment& experiment, double scale) {
   for (const Beam& beam : set->beams) {
     if (!beam.aperture) {
       throw InputError(place_of(experiment), "source", "\"" + beam.name + "\"",
-                       "lamps with a round aperture and the same beam all round: no others can be "
-                       "diagnosed");
+                       "lamps with a round aperture and a rotationally symmetric beam");
     }
     auto& light = known[beam.emitter.get()];
     if (!light) light = std::make_shared<const DiscLight>(*beam.emitter, *beam.aperture);

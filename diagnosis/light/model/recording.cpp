@@ -444,7 +444,7 @@ LightRecording read_light_recording(const std::filesystem::path& path,
   }
   if (columns.lamps && !(std::ranges::max(recording.lamp_light) > 0.0)) {
     throw InputError({path.string()}, "led_current_A", "no current in any row",
-                     "the current of the lamps that shone, or no such column");
+                     "a lamp current above 0, or no such column");
   }
   make_relative(recording.lamp_light);
   return recording;

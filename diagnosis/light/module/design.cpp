@@ -16,23 +16,24 @@ constexpr IntegerKey bypass_every("bypass_every", 0, 0, most_cells,
                                   "cells per bypass diode, at most all; 0: no diodes",
                                   {.varies = true});
 constexpr NumberKey bypass_drop("bypass_drop_V", 0.5, Range::positive(), "of a bypass diode");
-constexpr OtherKey reference_curve("reference_curve", Key::a_text | Key::an_array,
-                                   "curves of the module as it was, one file or several; *or* "
-                                   "`[[module.datasheet]]`",
-                                   {.optional = true});
+constexpr OtherKey reference_curve(
+    "reference_curve", Key::a_text | Key::an_array,
+    "curves of the module before the fault, one file or several; *or* "
+    "`[[module.datasheet]]`",
+    {.optional = true});
 constexpr TablesKey datasheet("datasheet", "the module as its maker rates it");
 constexpr Range temperatures_K{1.0, 1000.0};
 constexpr OtherKey reference_temperature("reference_temperature_K", Key::a_number | Key::an_array,
                                          "of the references, one for all or one for each",
                                          {.usually = "298.15, or the first of the datasheet"});
 constexpr OtherKey reference_irradiance("reference_irradiance_W_m2", Key::a_number | Key::an_array,
-                                        "that a sensor saw at the references, likewise",
+                                        "measured by a sensor at the references, likewise",
                                         {.optional = true});
 constexpr UncertainNumberKey temperature("temperature_K", temperatures_K,
                                          "of the curves that are diagnosed",
                                          {.usually = "as the references"});
 constexpr NumberKey temperature_sigma("temperature_sigma_K", 2.0, Range::positive(),
-                                      "how well temperatures are known");
+                                      "standard error of the temperatures");
 constexpr NumberKey current_noise("current_noise_A", Range::positive(), "of a reading",
                                   {.usually = "found from second differences"});
 constexpr NumberKey voltage_noise("voltage_noise_V", 0.0, Range::not_negative(), "of a reading");
@@ -56,13 +57,13 @@ enum Kind : size_t {
 constexpr ChoiceKey kind("kind",
                          {{"cell_shaded", "cells in the shade"},
                           {"cell_cracked",
-                           "cells of which a part is reached through a resistance alone"},
+                           "cells with a part that is connected only through a resistance"},
                           {"cell_shunted", "cells with a short cut"},
                           {"shunt", "short cuts in every cell"},
                           {"series_resistance", "a resistance in series"},
                           {"temperature", "warmer or colder than stated"},
                           {"bypass_shorted", "a bypass diode that conducts always"},
-                          {"bypass_open", "cells in the shade whose bypass diode is open"},
+                          {"bypass_open", "shaded cells whose bypass diode is open"},
                           {"substring_shaded", "cells of whole bypass diodes in the shade"},
                           {"unsteady_light", "light that changes while the voltage rises"}},
                          "the effect");
@@ -72,16 +73,19 @@ constexpr NumberKey factor("factor", Range::fraction(), "of the light");
 constexpr OtherKey factors("factor", Key::a_number | Key::an_array, "of the light, of each");
 constexpr NumberKey fraction("fraction", {0.0, 1.0, true, true}, "of the area");
 constexpr NumberKey resistance("resistance_ohm", Range::positive(), "of the module");
-constexpr NumberKey change_of_temperature("change_K", {-150.0, 150.0}, "of all cells");
+constexpr NumberKey change_of_temperature("change_K", {-150.0, 150.0},
+                                          "temperature difference of all cells");
 constexpr NumberKey change("change", {-1.0, 1.0}, "from the first point to the last");
 constexpr NumberKey bend("bend", 0.0, {-1.0, 1.0}, "at the ends over the middle, two thirds of");
 constexpr TextKey curve("curve", "the only curve on which the effect acts",
                         {.usually = "all curves"});
 // Reverse conduction of shaded and cracked cells.
 constexpr NumberKey breakdown_fraction("breakdown_fraction", 0.0, {0.0, 7.0},
-                                       "a of the reverse conduction");
-constexpr NumberKey breakdown("breakdown_V", -15.0, {-1e308, 0.0, false, true}, "V_br of it");
-constexpr NumberKey breakdown_exponent("breakdown_exponent", 3.0, {1.0, 1e3}, "m of it");
+                                       "parameter a of the reverse breakdown");
+constexpr NumberKey breakdown("breakdown_V", -15.0, {-1e308, 0.0, false, true},
+                              "parameter V_br of the reverse breakdown");
+constexpr NumberKey breakdown_exponent("breakdown_exponent", 3.0, {1.0, 1e3},
+                                       "parameter m of the reverse breakdown");
 }  // namespace effect_key
 
 // One number for all references, or one for each file; `files` is the file index of each. Values in
@@ -258,7 +262,7 @@ std::vector<Key::Choice> module_effects() {
       kind.bringing(
               {joined({{count, factor}, reverse}),
                joined({{count, fraction, resistance.meaning("in front of that part")}, reverse}),
-               {count, resistance.meaning("beside each of the cells")},
+               {count, resistance.meaning("in parallel with each of the cells")},
                {resistance.meaning("beside every cell")},
                {resistance},
                {change_of_temperature},

@@ -35,7 +35,7 @@ std::vector<double> chi2_of_segments(const ModuleFitter& fitter, const ModuleHyp
                                      const ModuleTrial& trial, const std::vector<ModuleRun>& runs,
                                      const Thresholds& limits) {
   constexpr size_t folds = 5, parts = 3;
-  const size_t count = limits.discrepancy.stretches;
+  const size_t count = limits.discrepancy.segments;
   std::vector<double> chi2(count, 0.0);
   const auto block_of = [&](const ModuleRun& run) {
     return std::max<size_t>(1, run.sweep.voltage_V.size() / (count * parts));

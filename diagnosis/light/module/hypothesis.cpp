@@ -264,7 +264,7 @@ std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
     for (int k = 1; k <= others; ++k) all.push_back(substrings_shaded(design, k, others));
     ModuleHypothesis h;
     h.kind = h.label = "bypass_shorted";
-    h.explanation = "a bypass diode that lets everything pass: its cells give no voltage";
+    h.explanation = "a shorted bypass diode: its cells give no voltage";
     h.act = [n = design.bypass_every](X, ModuleState& state, ModuleCell&) { state.bypassed += n; };
     all.push_back(std::move(h));
   }

@@ -33,13 +33,13 @@ void require_plausible(const ModuleSweep& sweep, const ModuleDesign& design,
   char found[160];
   constexpr double most_suns = 20.0, most_V = 1.25;
   if (light > most_suns) {
-    std::snprintf(found, sizeof found, "%.3g times the current of the module as it was", light);
+    std::snprintf(found, sizeof found, "%.3g times the current of the reference module", light);
     throw InputError({sweep.name}, "current_A", found,
                      "amperes (a column in milliamperes is named current_mA)");
   }
   if (seen_V > most_V * open_V) {
     std::snprintf(found, sizeof found,
-                  "%.3g V at a current, where the module as it was gives %.3g V at none", seen_V,
+                  "%.3g V at a current, where the reference module gives %.3g V at none", seen_V,
                   open_V);
     const double exchanged = light * cell.photocurrent_A / open_V;
     constexpr double alike = 0.15;
@@ -64,8 +64,7 @@ void require_current_forward(const LightRecording& recording) {
   if (short_A > -0.5 * largest_A) return;
   throw InputError(
       {recording.name}, "current_A", "a negative current at the smallest voltage",
-      "currents that a lit module gives as positive numbers: the sign of the column is "
-      "reversed");
+      "positive currents of an illuminated module: the sign of the column is reversed");
 }
 
 void require_curve(const LightRecording& recording) {

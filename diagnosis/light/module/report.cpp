@@ -169,10 +169,11 @@ void add_rms(const Holdout& more, Holdout& all) {
 
 std::string module_sentence(const Diagnosis& d) {
   if (d.verdict == Verdict::consistent) {
-    return "Nothing is missing: what differs is noise or lies within what one diode can describe.";
+    return "Nothing is missing: the differences are noise or deviations from the single-diode "
+           "model.";
   }
   if (d.verdict == Verdict::unexplained) {
-    return "Something acts that no effect of the catalogue explains (" + d.because + ").";
+    return "Not explained: no effect of the catalogue explains the recording (" + d.because + ").";
   }
   std::string name = d.effects.front().kind;
   std::ranges::replace(name, '_', ' ');
@@ -225,7 +226,9 @@ Diagnosis described(const ModuleDesign& design, const ModuleNominal& nominal,
   }
   if (!answer.decision.held_out_tests_names) d.warnings.push_back(untested_names(held));
   if (answer.decision.undecided) {
-    d.warnings.push_back("something is missing, but not which effect it is: see the alternatives");
+    d.warnings.push_back(
+        "an effect is missing, but the recordings do not determine which one: see the "
+        "alternatives");
   }
   return d;
 }
@@ -274,10 +277,10 @@ Diagnosis of_all_curves(std::vector<Diagnosis> each) {
   const std::string count = std::to_string(each.size());
   all.sentence = differing == 0
                      ? "Nothing is missing in any of " + count +
-                           " curves: what differs is noise, or lies within what one diode and its "
-                           "translation to other light and temperature can describe."
+                           " curves: the differences are noise or deviations from the single-diode "
+                           "model and its translation to other light and temperature."
                      : std::to_string(differing) + " of " + count +
-                           " curves differ from the module as it was. " + all.sentence;
+                           " curves differ from the module before the fault. " + all.sentence;
   return all;
 }
 

@@ -305,7 +305,7 @@ std::string bytes_of_view(const Document& document, const std::string& where, co
   if (buffer >= document.buffers.size() || !document.buffers[buffer].bytes ||
       offset > document.buffers[buffer].bytes->size() ||
       length > document.buffers[buffer].bytes->size() - offset) {
-    throw document.wrong(where, "a view beyond its buffer", "a view of bytes that are there");
+    throw document.wrong(where, "a view beyond its buffer", "a view inside the buffer");
   }
   return document.buffers[buffer].bytes->substr(offset, length);
 }

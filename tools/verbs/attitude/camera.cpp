@@ -30,7 +30,7 @@ CameraRun run_camera(const RunOptions& options, const Console& console) {
   NominalModel nominal = read_attitude_model(experiment.settings());
   if (!nominal.sensors.camera || !nominal.sensors.camera->geometry) {
     throw InputError({options.experiment.string()}, "sensors.camera.markers_m", "nothing",
-                     "the places of the markers, and the camera's lens and sensor");
+                     "the positions of the markers, and lens and sensor of the camera");
   }
   const auto inputs = look_through_scene(experiment.file(), nominal.sensors);
   CameraRun run;

@@ -15,9 +15,9 @@
 #include "diagnosis/guess/guess.h"
 #include "diagnosis/improved.h"
 #include "diagnosis/json.h"
-#include "diagnosis/light/beliefs.h"
 #include "diagnosis/light/diagnose.h"
 #include "diagnosis/light/module/diagnose.h"
+#include "diagnosis/light/nominal_light.h"
 #include "diagnosis/light/together.h"
 #include "images/writers/product.h"
 #include "images/writers/staged_files.h"
@@ -116,7 +116,7 @@ Progress progress_on(const Console& console, const std::string& of) {
 struct LightInput {
   Experiment experiment;
   LightLab lab{experiment};
-  LightBelief nominal{lab.nominal(), {}};
+  NominalLight nominal{lab.nominal(), {}};
   std::vector<LightRecording> recordings = {}, holdouts = {};
   Provenance provenance = {};
 };
@@ -134,7 +134,7 @@ std::unique_ptr<LightInput> read_light_input(const RunOptions& options,
   std::unique_ptr<LightInput> input(new LightInput{reread("")});
   input->provenance = build_provenance();
   input->provenance.inputs = input->experiment.inputs;
-  input->nominal = light_belief(
+  input->nominal = nominal_light(
       input->lab, uncertain_keys(options.experiment, text, options.all_overrides()), reread);
   const UsualCircumstances usual{
       input->experiment.lab_from_body.rotation,
@@ -277,7 +277,7 @@ void require_each_once(const std::vector<fs::path>& recordings,
           known, [&](const fs::path& other) { return fs::equivalent(path, other); });
       if (is_known) {
         throw InputError({path.string()}, all == &holdouts ? "--holdout" : "--recording",
-                         "a file that was given already", "another recording");
+                         "a file that is given twice", "another recording");
       }
       known.push_back(path);
     }
@@ -366,7 +366,7 @@ void add_options(Command& command, Options& options) {
     if (!options.guess.empty()) options.name = name_of_guess(options.guess);
     if (options.experiment.empty() != options.guess.empty()) return "";
     return options.guess.empty() ? "experiment is required, or --guess RECORDING"
-                                 : "an experiment beside --guess: one of the two";
+                                 : "both an experiment and --guess";
   };
 }
 

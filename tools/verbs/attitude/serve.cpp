@@ -36,7 +36,8 @@ void print_serving(const Console& console, const ServeSettings& serve, const std
                (lockstep ? ", in lockstep" : ""));
   if (!serve.address.starts_with("127.")) {
     console.line(
-        "  anyone who reaches this address can command the platform: packets carry no secret");
+        "  every computer that reaches this address can command the platform: packets are not "
+        "authenticated");
   }
 }
 

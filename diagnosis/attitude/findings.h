@@ -41,8 +41,8 @@ std::vector<Alternative> alternatives(const inference::Decision& decision,
                                       const std::vector<Trial>& trials, const Candidates& all);
 
 // One sentence for each nominal value that the recording contradicts.
-std::vector<std::string> contradicted_beliefs(const Trial& chosen,
-                                              const Thresholds::Decision& limits);
+std::vector<std::string> contradicted_priors(const Trial& chosen,
+                                             const Thresholds::Decision& limits);
 // Parameters with a prior, with their values in the chosen trial.
 std::vector<FittedParameter> refined_priors(const Trial& chosen);
 // An uncertain disturbance with its parameters in the chosen trial, for an experiment that has no

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/account.h"
+#include "diagnosis/attitude/findings.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -347,8 +347,8 @@ FoundEffect as_fitted(const Trial& chosen, size_t disturbance) {
   return effect;
 }
 
-std::vector<std::string> contradicted_beliefs(const Trial& chosen,
-                                              const Thresholds::Decision& limits) {
+std::vector<std::string> contradicted_priors(const Trial& chosen,
+                                             const Thresholds::Decision& limits) {
   std::vector<std::string> sentences;
   size_t shared = 0;
   for (const Free& f : chosen.fit.best.free) {
@@ -358,9 +358,9 @@ std::vector<std::string> contradicted_beliefs(const Trial& chosen,
     const auto& found = chosen.disturbances;
     const bool is_found = std::find(found.begin(), found.end(), f.disturbance) != found.end();
     const double off = (p.value - p.mean) / p.sigma;
-    if (is_found || !p.has_prior() || !(std::abs(off) > limits.doubtful_belief_sigma)) continue;
+    if (is_found || !p.has_prior() || !(std::abs(off) > limits.doubtful_prior_sigma)) continue;
     char text[200];
-    const bool is_contradicted = std::abs(off) > limits.contradicted_belief_sigma;
+    const bool is_contradicted = std::abs(off) > limits.contradicted_prior_sigma;
     std::snprintf(
         text, sizeof text, "%s: stated %.4g ± %.2g, fitted %.4g: %s by %.1f σ", p.name.c_str(),
         p.mean, p.sigma, p.value,
@@ -392,7 +392,7 @@ std::string mostly_explained(const Diagnosis& d) {
     std::snprintf(
         numbers, sizeof numbers,
         ". Held out, it leaves %.3g of the nominal model's residual (rms), %.3g times the "
-        "noise: something more acts that has no name",
+        "noise: the rest has no known cause",
         std::sqrt(after / before), std::sqrt(after));
     text += numbers;
   }
@@ -405,16 +405,16 @@ std::string sentence_of(const Diagnosis& d) {
   // Limits for the held-out χ²: ratio before/after worth stating; excess per sample of a residual.
   constexpr double worth_saying = 1.5, leaves_something = 0.2;
   if (d.verdict == Verdict::consistent) {
-    return "Nothing is missing: what differs is noise or lies within the stated uncertainty.";
+    return "Nothing is missing: the differences are noise or lie within the stated uncertainty.";
   }
   if (d.verdict == Verdict::missing_physics) {
     return (d.effects.size() == 1 ? "Missing: " : "Missing together: ") + names_of(d) + ".";
   }
   if (!d.effects.empty() && d.empirical.empty()) return mostly_explained(d);
-  std::string text = d.effects.empty() ? "Something acts that no effect of the catalogue explains"
-                                       : "Acts: " + names_of(d) +
-                                             ", and beside it something that no effect of the "
-                                             "catalogue explains";
+  std::string text =
+      d.effects.empty()
+          ? "Not explained: no effect of the catalogue explains the recording"
+          : "Acts: " + names_of(d) + ", and a part that no effect of the catalogue explains";
   if (!d.where.depends_on.empty()) {
     text += "; it depends on " + d.where.depends_on.front().variable;
   }
@@ -431,7 +431,7 @@ std::string sentence_of(const Diagnosis& d) {
     if (chosen->label.empty()) names += (names.empty() ? "" : " and ") + in_words(kind);
   }
   return text + ". Held out, " + names + " lowers χ² by a factor of " + times +
-         (after > 1.0 + leaves_something ? ", and leaves more than noise." : ".");
+         (after > 1.0 + leaves_something ? ", and leaves residuals above the noise." : ".");
 }
 
 }  // namespace photorque

@@ -36,23 +36,23 @@ struct LightPrior {
 Eigen::MatrixXd slopes_by_priors(const LightRun& run, const std::vector<LightPrior>& priors);
 
 // The nominal model: `state` acts in addition to the experiment; `uncertain` are its priors.
-struct LightBelief {
+struct NominalLight {
   LightState state;
   std::vector<LightPrior> uncertain = {};
 };
 
 // `reread` reads the experiment of the lab again with one more key assigned. The lab must outlive
 // the result. Throws InputError for an error of a value that can have no other value.
-LightBelief light_belief(const LightLab& lab, const std::vector<UncertainKey>& uncertain,
-                         const std::function<Experiment(const std::string&)>& reread);
+NominalLight nominal_light(const LightLab& lab, const std::vector<UncertainKey>& uncertain,
+                           const std::function<Experiment(const std::string&)>& reread);
 
 // Key of the prior on the tilt of the body in the light, among the refined ones; no experiment has
 // it.
-constexpr const char* tilt_belief = "attitude_bias.bias_deg";
+constexpr const char* tilt_prior = "attitude_bias.bias_deg";
 
 // Adds a prior on the rotation of the body relative to its recorded attitude, as a rotation vector
 // about lab x and y with errors. The lab must outlive it.
-void believe_tilt(const LightLab& lab, const Vec2& bias_rad, const Vec2& sigma_rad,
-                  LightBelief& belief);
+void add_tilt_prior(const LightLab& lab, const Vec2& bias_rad, const Vec2& sigma_rad,
+                    NominalLight& nominal);
 
 }  // namespace photorque

@@ -1,6 +1,6 @@
 // Priors of an experiment on light and power. The recordings are made by validation/light, which
 // shares nothing with the program.
-#include "diagnosis/light/beliefs.h"
+#include "diagnosis/light/nominal_light.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Scans under lamps that shine by a factor more than is stated.
-class LightBeliefs : public testing::Test {
+class LightPriors : public testing::Test {
  protected:
   static constexpr double brighter = 0.97, stated_W = 6.29;
 
@@ -40,9 +40,9 @@ class LightBeliefs : public testing::Test {
     if (!assignment.empty()) overrides.push_back(assignment);
     return resolve_experiment(read_experiment_text(folder_ / "experiment.toml", text_, overrides));
   }
-  LightBelief belief(const LightLab& lab) const {
-    return light_belief(lab, uncertain_keys(folder_ / "experiment.toml", text_, {}),
-                        [this](const std::string& more) { return read(more); });
+  NominalLight nominal(const LightLab& lab) const {
+    return nominal_light(lab, uncertain_keys(folder_ / "experiment.toml", text_, {}),
+                         [this](const std::string& more) { return read(more); });
   }
   LightRecording recording(const char* name) const {
     return read_light_recording(folder_ / name, {Quat::Identity(), 298.15});
@@ -50,7 +50,7 @@ class LightBeliefs : public testing::Test {
   Diagnosis diagnosed() const {
     const Experiment experiment = read("");
     const LightLab lab(experiment);
-    return diagnose_light(lab, belief(lab), {recording("scan1.csv.gz")},
+    return diagnose_light(lab, nominal(lab), {recording("scan1.csv.gz")},
                           {recording("scan2.csv.gz")});
   }
 
@@ -60,11 +60,11 @@ class LightBeliefs : public testing::Test {
 
 // Light is proportional to power: an error of 5 % in all powers moves every reading by 5 % of
 // itself.
-TEST_F(LightBeliefs, LightMovesAsThePowerDoes) {
+TEST_F(LightPriors, LightMovesAsThePowerDoes) {
   doubt_powers();
   const Experiment experiment = read("");
   const LightLab lab(experiment);
-  const LightBelief known = belief(lab);
+  const NominalLight known = nominal(lab);
   ASSERT_FALSE(known.uncertain.empty());
   const LightRun run(lab, recording("scan1.csv.gz"));
   const Eigen::VectorXd moved = slopes_by_priors(run, known.uncertain).rowwise().sum();
@@ -76,7 +76,7 @@ TEST_F(LightBeliefs, LightMovesAsThePowerDoes) {
   }
 }
 
-TEST_F(LightBeliefs, PowerWithinItsErrorIsNoEffect) {
+TEST_F(LightPriors, PowerWithinItsErrorIsNoEffect) {
   const Diagnosis certain = diagnosed();
   ASSERT_EQ(certain.verdict, Verdict::missing_physics);
   ASSERT_EQ(certain.effects.size(), 1u);
@@ -93,12 +93,12 @@ TEST_F(LightBeliefs, PowerWithinItsErrorIsNoEffect) {
 }
 
 // A quantum efficiency of 1 is at the end of its range; a number of cells is known or is not.
-TEST_F(LightBeliefs, NumbersAtTheEndOfTheirRange) {
+TEST_F(LightPriors, NumbersAtTheEndOfTheirRange) {
   rewrite("efficiency = [^\n]+", "efficiency = { value = [1, 1], sigma = [0, 0.02] }");
   {
     const Experiment experiment = read("");
     const LightLab lab(experiment);
-    const LightBelief known = belief(lab);
+    const NominalLight known = nominal(lab);
     ASSERT_EQ(known.uncertain.size(), 1u);
     EXPECT_EQ(known.uncertain[0].component, 1u);
     EXPECT_EQ(known.uncertain[0].value, (std::vector<double>{1.0, 1.0}));
@@ -110,7 +110,7 @@ TEST_F(LightBeliefs, NumbersAtTheEndOfTheirRange) {
   const LightLab lab(experiment);
   // In the words of the file: half a diode more is nothing that anybody wrote.
   try {
-    belief(lab);
+    nominal(lab);
     ADD_FAILURE() << "taken";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("array.bypass_every: found "));

@@ -1,4 +1,4 @@
-#include "diagnosis/light/account.h"
+#include "diagnosis/light/findings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -238,14 +238,14 @@ std::vector<Where::Dependence> light_dependences(const LightTrial& about,
   return result;
 }
 
-std::vector<FittedParameter> refined_light_beliefs(const LightAnswer& answer) {
+std::vector<FittedParameter> refined_light_priors(const LightAnswer& answer) {
   std::vector<FittedParameter> refined;
-  const std::vector<LightPrior>& beliefs = answer.all.nominal.uncertain;
-  if (beliefs.empty()) return refined;
+  const std::vector<LightPrior>& priors = answer.all.nominal.uncertain;
+  if (priors.empty()) return refined;
   const LightTrial& chosen = answer.chosen();
   const Eigen::MatrixXd covariance = chosen.fit.shared_posterior();
-  for (size_t i = 0; i < beliefs.size(); ++i) {
-    const LightPrior& b = beliefs[i];
+  for (size_t i = 0; i < priors.size(); ++i) {
+    const LightPrior& b = priors[i];
     if (refined.empty() || refined.back().key != b.key) {
       refined.push_back({b.key, b.value, std::vector<double>(b.value.size(), 0.0)});
     }
@@ -262,7 +262,7 @@ std::vector<FittedParameter> refined_light_beliefs(const LightAnswer& answer) {
 
 std::string light_sentence(const Diagnosis& d) {
   if (d.verdict == Verdict::consistent) {
-    return "Nothing is missing: what differs is noise or lies within the stated uncertainty.";
+    return "Nothing is missing: the differences are noise or lie within the stated uncertainty.";
   }
   if (d.verdict == Verdict::missing_physics) {
     std::string text = d.effects.size() == 1 ? "Missing: " : "Missing together: ";
@@ -280,7 +280,7 @@ std::string light_sentence(const Diagnosis& d) {
     }
     return text + ".";
   }
-  std::string text = "Something acts that no effect of the catalogue explains";
+  std::string text = "Not explained: no effect of the catalogue explains the recording";
   if (!d.where.depends_on.empty()) text += "; it depends on " + d.where.depends_on.front().variable;
   if (!d.because.empty()) text += " (" + d.because + ")";
   return text + ".";

@@ -18,7 +18,7 @@ Candidates candidates_among(Among among, const NominalModel& nominal,
 
 // Candidates of the search in which the residual counts as noise. If angle and rate about one axis
 // are both measured, each reveals errors of the other instrument independently of the torque.
-Among among_beside_the_rest(const NominalModel& nominal, const RecordedData& data);
+Among among_with_discrepancy(const NominalModel& nominal, const RecordedData& data);
 
 // One search and its decision with the noise of `data`. It starts from `near`, a trial with no more
 // candidates, unless that is null.
@@ -32,8 +32,8 @@ Answer searched(const NominalModel& nominal, const Fit& nominal_fit, const Recor
 // and must differ from zero by its error under correlated noise. `data` keeps the noise of the last
 // search. `laws`, if not null, is a fit of torques to the same runs: its residual is the first
 // noise, and each search starts from it. Returns nothing if no effect is named.
-std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, RecordedData& data,
-                                            const DiagnoseOptions& options, const Trial* laws);
+std::optional<Answer> identify_with_discrepancy(const NominalModel& nominal, RecordedData& data,
+                                                const DiagnoseOptions& options, const Trial* laws);
 
 // Whether a fit agrees with recordings whose noise is that of the readings alone.
 bool leaves_only_noise(const Fit& fit, const RecordedData& data);

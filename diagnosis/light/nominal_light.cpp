@@ -1,4 +1,4 @@
-#include "diagnosis/light/beliefs.h"
+#include "diagnosis/light/nominal_light.h"
 
 #include "core/constants.h"
 #include "core/errors.h"
@@ -58,36 +58,36 @@ LightPrior prior_of(const UncertainKey& key, size_t component, const LightPrior:
 
 }  // namespace
 
-LightBelief light_belief(const LightLab& lab, const std::vector<UncertainKey>& uncertain,
-                         const std::function<Experiment(const std::string&)>& reread) {
-  LightBelief belief{stated_effects(lab.experiment(), lab.parts()), {}};
+NominalLight nominal_light(const LightLab& lab, const std::vector<UncertainKey>& uncertain,
+                           const std::function<Experiment(const std::string&)>& reread) {
+  NominalLight nominal{stated_effects(lab.experiment(), lab.parts()), {}};
   const LightPrior::Side itself{std::shared_ptr<const LightLab>(std::shared_ptr<void>(), &lab),
-                                belief.state, 0.0};
+                                nominal.state, 0.0};
   for (const UncertainKey& key : uncertain) {
     for (size_t i = 0; i < key.value.size(); ++i) {
-      if (key.sigma[i] > 0.0) belief.uncertain.push_back(prior_of(key, i, itself, reread));
+      if (key.sigma[i] > 0.0) nominal.uncertain.push_back(prior_of(key, i, itself, reread));
     }
   }
-  return belief;
+  return nominal;
 }
 
-void believe_tilt(const LightLab& lab, const Vec2& bias_rad, const Vec2& sigma_rad,
-                  LightBelief& belief) {
-  belief.state.attitude_bias_rad += bias_rad;
+void add_tilt_prior(const LightLab& lab, const Vec2& bias_rad, const Vec2& sigma_rad,
+                    NominalLight& nominal) {
+  nominal.state.attitude_bias_rad += bias_rad;
   const std::shared_ptr<const LightLab> same(std::shared_ptr<void>(), &lab);
   const Vec2 bias_deg = bias_rad / degree_rad;
   for (int k = 0; k < 2; ++k) {
     const auto side = [&](double errors) {
-      LightPrior::Side s{same, belief.state, errors};
+      LightPrior::Side s{same, nominal.state, errors};
       s.state.attitude_bias_rad[k] += errors * sigma_rad[k];
       return s;
     };
-    belief.uncertain.push_back({tilt_belief,
-                                {bias_deg.x(), bias_deg.y()},
-                                static_cast<size_t>(k),
-                                sigma_rad[k] / degree_rad,
-                                side(-LightPrior::part),
-                                side(LightPrior::part)});
+    nominal.uncertain.push_back({tilt_prior,
+                                 {bias_deg.x(), bias_deg.y()},
+                                 static_cast<size_t>(k),
+                                 sigma_rad[k] / degree_rad,
+                                 side(-LightPrior::part),
+                                 side(LightPrior::part)});
   }
 }
 

@@ -32,7 +32,7 @@ std::vector<Where::Dependence> light_dependences(const LightTrial& about,
 std::optional<DrawnArray> drawn_array(const LightLab& lab, const std::vector<FoundEffect>& effects);
 
 // Parameters with a prior, after the fit.
-std::vector<FittedParameter> refined_light_beliefs(const LightAnswer& answer);
+std::vector<FittedParameter> refined_light_priors(const LightAnswer& answer);
 
 // Kinds other than that of the chosen trial's candidate `which` that explain all `runs` equally
 // well in its place.

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/stretches.h"
+#include "diagnosis/attitude/cross_validation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,8 +26,8 @@ void leave_out(size_t first, size_t last, Observation& seen) {
 
 }  // namespace
 
-Stretches::Stretches(const AttitudeDomain& domain, std::vector<Observation> train,
-                     std::vector<Observation> held, size_t wanted, int threads)
+CrossValidation::CrossValidation(const AttitudeDomain& domain, std::vector<Observation> train,
+                                 std::vector<Observation> held, size_t wanted, int threads)
     : domain_(domain), threads_(threads), runs_(std::move(train)), train_(runs_.size()) {
   std::move(held.begin(), held.end(), std::back_inserter(runs_));
   size_t all = 0;
@@ -37,14 +37,14 @@ Stretches::Stretches(const AttitudeDomain& domain, std::vector<Observation> trai
     const size_t pieces =
         runs_.size() >= wanted ? 1 : std::max<size_t>(1, (wanted * blocks + all / 2) / all);
     for (size_t piece = 0; piece < pieces; ++piece) {
-      const Stretch stretch{run, piece * blocks / pieces, (piece + 1) * blocks / pieces};
-      if (runs_[run].readings(stretch.first, stretch.last) > 0) stretches_.push_back(stretch);
+      const Segment segment{run, piece * blocks / pieces, (piece + 1) * blocks / pieces};
+      if (runs_[run].readings(segment.first, segment.last) > 0) segments_.push_back(segment);
     }
   }
 }
 
-std::vector<double> Stretches::chi2(const Trial& trial) const {
-  std::vector<double> result(stretches_.size(), inference::infinity);
+std::vector<double> CrossValidation::chi2(const Trial& trial) const {
+  std::vector<double> result(segments_.size(), inference::infinity);
   const std::vector<Observation> held{runs_.begin() + static_cast<std::ptrdiff_t>(train_),
                                       runs_.end()};
   const Trial on_held = domain_.predict(trial, held);
@@ -58,11 +58,12 @@ std::vector<double> Stretches::chi2(const Trial& trial) const {
   return result;
 }
 
-std::vector<double> Stretches::predicted(const Trial& trial, const std::vector<RunStart>& begins,
-                                         size_t fold) const {
+std::vector<double> CrossValidation::predicted(const Trial& trial,
+                                               const std::vector<RunStart>& begins,
+                                               size_t fold) const {
   std::vector<Observation> rest, whole;
   std::vector<RunStart> begins_of_rest;
-  const bool are_runs = stretches_.size() == runs_.size();
+  const bool are_runs = segments_.size() == runs_.size();
   for (size_t run = 0; run < runs_.size(); ++run) {
     if (are_runs && run % folds == fold) {
       whole.push_back(runs_[run]);
@@ -71,8 +72,8 @@ std::vector<double> Stretches::predicted(const Trial& trial, const std::vector<R
     rest.push_back(runs_[run]);
     begins_of_rest.push_back(begins[run]);
   }
-  for (size_t i = fold; i < stretches_.size() && !are_runs; i += folds) {
-    leave_out(stretches_[i].first, stretches_[i].last, rest[stretches_[i].run]);
+  for (size_t i = fold; i < segments_.size() && !are_runs; i += folds) {
+    leave_out(segments_[i].first, segments_[i].last, rest[segments_[i].run]);
   }
   const inference::Effort effort{.max_iterations = domain_.limits().fitting.brief_iterations};
   const Trial others = domain_.refit(trial, rest, begins_of_rest, effort);
@@ -81,10 +82,10 @@ std::vector<double> Stretches::predicted(const Trial& trial, const std::vector<R
   std::vector<double> result;
   try {
     const std::vector<Prediction> residuals = residuals_of(others.fit, runs_);
-    for (size_t i = fold; i < stretches_.size(); i += folds) {
+    for (size_t i = fold; i < segments_.size(); i += folds) {
       double sum = 0.0;
-      for (size_t block = stretches_[i].first; block < stretches_[i].last; ++block) {
-        for (const double r : residuals[stretches_[i].run].residual[block]) {
+      for (size_t block = segments_[i].first; block < segments_[i].last; ++block) {
+        for (const double r : residuals[segments_[i].run].residual[block]) {
           if (std::isfinite(r)) sum += r * r;
         }
       }

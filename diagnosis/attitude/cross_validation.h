@@ -12,21 +12,21 @@
 
 namespace photorque {
 
-class Stretches {
+class CrossValidation {
  public:
   // Cuts the runs into about `wanted` segments with about equal numbers of blocks. If there are as
   // many runs, each is one segment, and only its initial conditions are fitted to it.
-  Stretches(const AttitudeDomain& domain, std::vector<Observation> train,
-            std::vector<Observation> held, size_t wanted, int threads);
+  CrossValidation(const AttitudeDomain& domain, std::vector<Observation> train,
+                  std::vector<Observation> held, size_t wanted, int threads);
 
-  size_t count() const { return stretches_.size(); }
+  size_t count() const { return segments_.size(); }
 
   // χ² of every segment, as predicted by the trial (fitted to the train runs) after a refit to
   // other segments; each refit leaves out a fifth of them. Infinite where it cannot be evaluated.
   std::vector<double> chi2(const Trial& trial) const;
 
  private:
-  struct Stretch {
+  struct Segment {
     size_t run, first, last;  // blocks [first, last)
   };
   std::vector<double> predicted(const Trial& trial, const std::vector<RunStart>& begins,
@@ -36,7 +36,7 @@ class Stretches {
   int threads_;
   std::vector<Observation> runs_;
   size_t train_;  // number of train runs, which come first
-  std::vector<Stretch> stretches_;
+  std::vector<Segment> segments_;
 };
 
 using inference::gain_sigma;

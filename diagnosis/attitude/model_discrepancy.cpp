@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/beside_the_rest.h"
+#include "diagnosis/attitude/model_discrepancy.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include "attitude/estimation/fit.h"
 #include "attitude/observation/noise_levels.h"
 #include "attitude/propagation/run.h"
+#include "diagnosis/attitude/cross_validation.h"
 #include "diagnosis/attitude/domain.h"
 #include "diagnosis/attitude/holdout.h"
-#include "diagnosis/attitude/stretches.h"
 
 namespace photorque {
 namespace {
@@ -20,12 +20,12 @@ void use_noise(const NoiseLevels& noise, RecordedData& data) {
   }
 }
 
-// Number of segments, limited to one to three times `limits.stretches`: the number of independent
+// Number of segments, limited to one to three times `limits.segments`: the number of independent
 // residuals of the best explanation, n (1 − ρ)/(1 + ρ) for n readings with neighbour correlation ρ.
 // With few segments, a difference that varies between them is not significant.
-size_t stretches_of(const Answer& answer, const RecordedData& data, const NoiseLevels& own) {
+size_t segment_count(const Answer& answer, const RecordedData& data, const NoiseLevels& own) {
   constexpr double most = 3.0;
-  const auto fewest = static_cast<double>(answer.all.limits.discrepancy.stretches);
+  const auto fewest = static_cast<double>(answer.all.limits.discrepancy.segments);
   const Trial* best = &answer.trials.front();
   for (const Trial& t : answer.trials) {
     if (t.objection.empty() && t.fit.chi2 < best->fit.chi2) best = &t;
@@ -57,15 +57,15 @@ struct Contender {
 // Compares explanations of one search by their predictions of segments.
 class Contest {
  public:
-  Contest(const Answer& answer, const RecordedData& data, size_t stretches, int threads)
+  Contest(const Answer& answer, const RecordedData& data, size_t segments, int threads)
       : answer_(answer),
         limits_(answer.all.limits.discrepancy),
         domain_(answer.all),
         train_(data.train),
         held_(data.held),
-        stretches_(domain_, data.train, data.held, stretches, threads) {}
+        segments_(domain_, data.train, data.held, segments, threads) {}
 
-  size_t stretches() const { return stretches_.count(); }
+  size_t segments() const { return segments_.count(); }
 
   // The best predictor, or a simpler or more likely explanation that is indistinguishable from it,
   // without names that no segment requires.
@@ -130,7 +130,7 @@ class Contest {
   Contender contender(const Trial& trial) const {
     const Trial held = domain_.predict(trial, held_);
     const double chi2 = std::isnan(held.fit.chi2) ? inference::infinity : held.fit.chi2;
-    return {trial, stretches_.chi2(trial), chi2, static_cast<double>(held.fit.samples)};
+    return {trial, segments_.chi2(trial), chi2, static_cast<double>(held.fit.samples)};
   }
 
   // Motion about three axes is flexible enough to fit anything. There a further name must halve the
@@ -217,7 +217,7 @@ class Contest {
   const Thresholds::Discrepancy& limits_;
   AttitudeDomain domain_;
   const std::vector<Observation>&train_, &held_;
-  Stretches stretches_;
+  CrossValidation segments_;
   std::vector<Contender> contenders_;
   std::vector<double> sigma_;
 };
@@ -225,7 +225,7 @@ class Contest {
 // Refits the trial with its correlated residual as noise. A smaller residual gives the readings
 // more weight relative to the priors, so the refit is repeated while the held-out prediction
 // improves.
-Trial fitted_beside_the_rest(const Trial& named, const Candidates& all, const NoiseLevels& own,
+Trial refit_with_discrepancy(const Trial& named, const Candidates& all, const NoiseLevels& own,
                              RecordedData data) {
   constexpr int most_rounds = 6;
   Trial result = named;
@@ -267,7 +267,7 @@ void choose(const Contender& won, const Contest& contest, Answer& a) {
   chosen.log_evidence = weighed.log_evidence;
   chosen.predictive = weighed.predictive;
   a.decision.best_named = a.decision.chosen;
-  a.beside.emplace().stretches = contest.stretches();
+  a.beside.emplace().segments = contest.segments();
   a.beside->sigma = contest.sigma();
   for (size_t i = 0; i < chosen.candidates.size(); ++i) {
     a.beside->rivals.push_back(contest.rivals(won, i));
@@ -275,7 +275,7 @@ void choose(const Contender& won, const Contest& contest, Answer& a) {
 }
 
 // Sets the finding and its probability, corrected for as many tests as there are candidates.
-void decide_beside_the_rest(Answer& a) {
+void decide_with_discrepancy(Answer& a) {
   a.rest_is_noise = true;
   a.decision.finding = inference::Finding::unknown;
   a.decision.beside_law.clear();
@@ -287,7 +287,7 @@ void decide_beside_the_rest(Answer& a) {
 
 }  // namespace
 
-Among among_beside_the_rest(const NominalModel& nominal, const RecordedData& data) {
+Among among_with_discrepancy(const NominalModel& nominal, const RecordedData& data) {
   const Vec3& axis = nominal.model.platform.axis;
   const bool sees_both = std::ranges::all_of(data.train, [&](const Observation& seen) {
     const bool has_rate = std::ranges::any_of(
@@ -304,11 +304,11 @@ bool leaves_only_noise(const Fit& fit, const RecordedData& data) {
   return at_readings.chi2_per_sample() < as_noise;
 }
 
-std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, RecordedData& data,
-                                            const DiagnoseOptions& options, const Trial* laws) {
+std::optional<Answer> identify_with_discrepancy(const NominalModel& nominal, RecordedData& data,
+                                                const DiagnoseOptions& options, const Trial* laws) {
   const NoiseLevels own = data.train.front().noise;
   std::optional<Answer> best;
-  use_noise(patient_noise(data.train, own), data);
+  use_noise(noise_from_spread(data.train, own), data);
   Fit left_by = laws != nullptr ? laws->fit : fit_nominal(nominal, data.train, options.limits);
   for (int round = 0; round < options.limits.discrepancy.max_rounds; ++round) {
     if (!std::isfinite(left_by.chi2)) break;
@@ -318,10 +318,10 @@ std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, Recorde
     use_noise(noise, data);
     tell(options, "naming effects, with the residual counted as noise");
     Answer next = searched(nominal, fit_nominal(nominal, data.train, options.limits), data, options,
-                           among_beside_the_rest(nominal, data), laws);
-    Contest contest(next, data, stretches_of(next, data, own), options.threads);
+                           among_with_discrepancy(nominal, data), laws);
+    Contest contest(next, data, segment_count(next, data, own), options.threads);
     Contender won = contest.winner();
-    Trial fitted = fitted_beside_the_rest(won.trial, next.all, own, data);
+    Trial fitted = refit_with_discrepancy(won.trial, next.all, own, data);
     for (;;) {
       const auto least = std::ranges::min_element(fitted.significance);
       if (least == fitted.significance.end() ||
@@ -329,13 +329,13 @@ std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, Recorde
         break;
       }
       won = contest.without(won, static_cast<size_t>(least - fitted.significance.begin()));
-      fitted = fitted_beside_the_rest(won.trial, next.all, own, data);
+      fitted = refit_with_discrepancy(won.trial, next.all, own, data);
     }
     left_by = won.trial.fit;
     if (won.trial.candidates.empty() || !fitted.objection.empty()) break;
     won.trial = std::move(fitted);
     choose(won, contest, next);
-    decide_beside_the_rest(next);
+    decide_with_discrepancy(next);
     best = std::move(next);
   }
   return best;
