@@ -256,8 +256,8 @@ TEST(ViewOfAMarker, IsGoneWhereTheSpotIsTooFaintOrTooLong) {
   camera.radiant_intensity_W_sr *= 0.5;
   EXPECT_FALSE(view_of(camera, 1, {}));
   camera = cross_camera();
-  camera.markers[1].normal_body = Vec3(1.0, 0.0, 1e-18).normalized();  // edge-on
-  EXPECT_FALSE(view_of(camera, 1, {}));
+  camera.markers[0].normal_body = Vec3(1.0, 0.0, 1e-18).normalized();  // edge-on
+  EXPECT_FALSE(view_of(camera, 0, {}));
   // A marker 80.75 mm from the axis, 0.9745 m before a lens of 8 mm over 4.8 µm, moves by 0.0062 px
   // in 45 µs at 1 rad/s: by 62 px at 1e4 rad/s and by 186 px at 3e4 rad/s.
   camera = cross_camera();
