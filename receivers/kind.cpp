@@ -43,25 +43,16 @@ std::string known_nodes(const Scene& scene, const std::string& wanted) {
   return "a node of the scene that holds a mesh: " + listed_names(node_names(scene), wanted);
 }
 
-// A name that every file system takes.
-std::string file_stem(std::string name) {
-  for (char& c : name) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       c == '_' || c == '-' || c == '.';
-    if (!plain) c = '_';
-  }
-  return name;
-}
+// Files are called by it, with a few words before and after.
+constexpr size_t longest_name = 150;
 
 std::string read_name(const Settings& settings, const std::string& otherwise) {
   const std::string name = settings.get_or(target_key::name, otherwise);
   if (name.empty()) throw settings.error(target_key::name, "an empty text", "a name");
-  // Files are called by it, with a few words before and after.
-  constexpr size_t longest = 150;
-  if (name.size() > longest) {
+  if (settings.has(target_key::name) && name.size() > longest_name) {
     throw settings.error(target_key::name, std::to_string(name.size()) + " letters", "at most 150");
   }
-  return file_stem(name);
+  return receiver_name(name);
 }
 
 int read_bins(const Settings& settings, double bins) {
@@ -75,6 +66,16 @@ int read_bins(const Settings& settings, double bins) {
 }
 
 }  // namespace
+
+std::string receiver_name(std::string name) {
+  if (name.size() > longest_name) name.resize(longest_name);
+  for (char& c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '_' || c == '-' || c == '.';
+    if (!plain) c = '_';
+  }
+  return name;
+}
 
 ReceiverTarget read_target(const Settings& settings, const Scene& scene) {
   const std::string node = settings.get(target_key::node);

@@ -49,6 +49,10 @@ struct ReceiverTarget {
   std::vector<uint32_t> instances;  // of the scene
 };
 
+// The name of the results of a receiver called `name`: one that every file system takes, of at most
+// 150 letters. Tables that name a receiver may write either.
+std::string receiver_name(std::string name);
+
 // Reads `node` and `name`. InputError with the nearest node names when the scene has no such node
 // or the node holds no mesh.
 ReceiverTarget read_target(const Settings& settings, const Scene& scene);

@@ -74,6 +74,10 @@ constexpr ChoiceKey pose_weights("pose_weights",
                                  0, "weights of the markers in the pose");
 }  // namespace tracking_key
 
+// A spot is measured if it has this many electrons, and if the motion during the exposure draws it
+// out by no more than this.
+constexpr double least_electrons = 1.0, longest_smear_px = 128.0;
+
 // Cosine-power law with the given half angle: cosᵐ ε.
 double emission(double cosine, double half_angle_rad) {
   return std::pow(cosine, std::log(0.5) / std::log(std::cos(half_angle_rad)));
@@ -145,7 +149,8 @@ void check_view(const Settings& s, const TrackingCamera& camera) {
   }
   if (seen < least) {
     throw s.error(tracking_key::markers,
-                  std::to_string(seen) + " in the image at zero tilt, of " +
+                  std::to_string(seen) +
+                      " with an electron or more in the image at zero tilt, of " +
                       std::to_string(camera.markers.size()),
                   "at least " + std::to_string(least));
   }
@@ -273,8 +278,8 @@ std::optional<MarkerView> view_of(const TrackingCamera& camera, size_t index, co
   }
   // The whole spot must fall onto the sensor.
   const double margin_px = 4.5 * spot_sigma_px(camera) + 1.0;
-  if (std::abs(view.pixel.x()) > 0.5 * camera.width - margin_px ||
-      std::abs(view.pixel.y()) > 0.5 * camera.height - margin_px) {
+  if (!(std::abs(view.pixel.x()) <= 0.5 * camera.width - margin_px &&
+        std::abs(view.pixel.y()) <= 0.5 * camera.height - margin_px)) {
     return {};
   }
   const double distance_m = seen_m.norm();
@@ -289,12 +294,14 @@ std::optional<MarkerView> view_of(const TrackingCamera& camera, size_t index, co
   view.electrons = camera.radiant_intensity_W_sr * emission(cosine, camera.half_angle_rad) *
                    opening_m2 / (distance_m * distance_m) * camera.transmittance *
                    camera.exposure_s * camera.quantum_efficiency / photon_J;
+  if (!(view.electrons >= least_electrons)) return {};
   Eigen::Matrix<double, 2, 3> by_place;
   by_place << 1.0, 0.0, -seen_m.x() / seen_m.z(), 0.0, 1.0, -seen_m.y() / seen_m.z();
   by_place = scale / seen_m.z() * lens.slope(seen_m.head<2>() / seen_m.z()) * by_place;
   const Eigen::Matrix<double, 2, 3> by_shift = by_place * camera_from_lab.toRotationMatrix();
   view.derivative << -by_shift * skew(arm_m), by_shift;
   view.smear_px = by_shift * pose.rate_lab_rad_s.cross(arm_m) * camera.exposure_s;
+  if (!(view.smear_px.norm() <= longest_smear_px)) return {};
   return view;
 }
 

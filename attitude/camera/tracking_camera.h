@@ -101,7 +101,8 @@ struct Pose {
 };
 
 // Of a marker, where the pose takes it to be or, `in_truth`, where it is and as the lens shows it;
-// nothing where it is dark, hidden, turned away or outside the image.
+// nothing where it is hidden, turned away, outside the image, fainter than an electron, or drawn
+// out over more than 128 pixels.
 std::optional<MarkerView> view_of(const TrackingCamera& camera, size_t marker, const Pose& pose,
                                   bool in_truth = false);
 

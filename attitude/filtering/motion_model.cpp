@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "attitude/disturbances/kind.h"
+#include "core/errors.h"
+#include "core/text/parse.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -15,6 +17,8 @@ namespace {
 constexpr double usual_bias_rad_s = 5e-3;
 // Steps as short as this always suffice, also for swings of several per second.
 constexpr double short_step_s = 0.05;
+// Between two readings: more would take a minute and tell nothing.
+constexpr double most_steps = 200000.0;
 
 bool is_of_gyro(const Disturbance& disturbance) {
   const DisturbanceKind* kind = find_kind(disturbance.kind);
@@ -253,9 +257,14 @@ Transition MotionModel::advance(FilterState& state, double time_s, const Vec3& g
   if (settings_.motion == Motion::gyro_drives && gyro_rad_s.allFinite()) {
     drive(state, length_s, gyro_rad_s, whole);
   } else {
-    const int steps = static_cast<int>(std::ceil(length_s / step_length_s(state, length_s) - 1e-9));
-    const double h = length_s / std::max(1, steps);
-    for (int i = 0; i < std::max(1, steps); ++i) {
+    const double least = std::ceil(length_s / step_length_s(state, length_s) - 1e-9);
+    if (!(least <= most_steps)) {
+      throw NumericalError("the motion is too fast for the " + shortest(length_s) +
+                           " s between two readings: leave out the readings before or after them");
+    }
+    const int steps = std::max(1, static_cast<int>(least));
+    const double h = length_s / steps;
+    for (int i = 0; i < steps; ++i) {
       // The derivatives at the middle of the step: of second order, as the covariance needs.
       FilterState middle = state;
       step(middle, 0.5 * h);

@@ -77,7 +77,8 @@ class MotionModel {
   void begin_anew(FilterState& state) const;
 
   // Propagates the state to a later time. `gyro_rad_s` is the reading there; it replaces the rate
-  // if the motion model uses the gyro and all three axes were read.
+  // if the motion model uses the gyro and all three axes were read. NumericalError if that takes
+  // more than 200,000 steps.
   Transition advance(FilterState& state, double time_s, const Vec3& gyro_rad_s) const;
 
   Measurement of_attitude(const FilterState& state, const Quat& lab_from_body,

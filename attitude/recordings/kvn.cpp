@@ -168,7 +168,6 @@ std::string first_words(const std::filesystem::path& path) {
     TextLines lines(path);
     std::string_view line;
     for (int i = 0; i < first_lines && lines.next(line); ++i) {
-      if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
       const std::string_view words = trimmed(line);
       if (!words.empty() && !words.starts_with(comment)) return std::string(words);
     }

@@ -189,7 +189,6 @@ class RecordingReader {
     std::string_view line;
     std::string first_line;
     for (int i = 0; i < max_preamble_lines && lines_.next(line); ++i) {
-      if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
       if (first_line.empty() && !line.starts_with("#")) first_line = trimmed(line);
       for (const char separator : {',', ';', '\t', ' '}) {
         if (take_header(line, separator)) return;

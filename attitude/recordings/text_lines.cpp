@@ -11,6 +11,8 @@ namespace {
 
 constexpr size_t chunk = 1 << 16;
 constexpr size_t max_line_length = 1 << 20;
+constexpr std::string_view byte_order_mark =
+    "\xef\xbb\xbf";  // with which some programs begin UTF-8
 
 }  // namespace
 
@@ -67,7 +69,7 @@ bool TextLines::next(std::string_view& line) {
   line = std::string_view(buffer_).substr(begin_, end - begin_);
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   begin_ = last ? end : end + 1;
-  ++number_;
+  if (++number_ == 1 && line.starts_with(byte_order_mark)) line.remove_prefix(3);
   return true;
 }
 

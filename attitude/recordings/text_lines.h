@@ -17,8 +17,9 @@ class TextLines {
   TextLines(const TextLines&) = delete;
   TextLines& operator=(const TextLines&) = delete;
 
-  // The next line without its end ("\n", "\r\n"); false at the end of the file. The view is valid
-  // until the next call. InputError when the file is damaged or a line is longer than a megabyte.
+  // The next line without its end ("\n", "\r\n") and without a byte-order mark; false at the end of
+  // the file. The view is valid until the next call. InputError when the file is damaged or a
+  // line is longer than a megabyte.
   bool next(std::string_view& line);
   // 1-based number of the line that next() gave last.
   int64_t number() const { return number_; }

@@ -63,7 +63,6 @@ std::vector<NumberedLine> first_lines(const std::filesystem::path& path) {
   std::string_view line;
   while (first.size() < most && lines.next(line)) {
     if (first.empty()) require_text(line.substr(0, 16), {path.string(), 1});
-    if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
     if (trimmed(line).empty() || line.front() == '#') continue;
     first.push_back({lines.number(), std::string(line)});
   }

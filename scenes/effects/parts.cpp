@@ -5,6 +5,7 @@
 #include "core/errors.h"
 #include "photovoltaics/array/keys.h"
 #include "receivers/flux_map.h"
+#include "receivers/kind.h"
 
 namespace photorque {
 namespace {
@@ -13,7 +14,7 @@ void find_receiver(const Experiment& experiment, LightParts& parts) {
   const auto arrays = experiment.file.others("array");
   const std::string wanted = arrays.size() == 1 ? arrays[0].text_or("receiver", "") : "";
   for (const NamedReceiver& named : experiment.receivers) {
-    if (!named.flux_map || (!wanted.empty() && named.name != wanted)) continue;
+    if (!named.flux_map || (!wanted.empty() && named.name != receiver_name(wanted))) continue;
     parts.grid = &named.flux_map->grid();
     parts.receiver = named.name;
     break;

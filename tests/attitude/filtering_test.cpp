@@ -4,8 +4,10 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <limits>
 
 #include "attitude/filtering/study.h"
+#include "core/errors.h"
 #include "core/transform.h"
 #include "tests/attitude/disturbance_bench.h"
 
@@ -89,6 +91,22 @@ TEST(WalkingRateFilter, ReachesTheSteadyStateOfTheRiccatiEquation) {
     EXPECT_NEAR(std::sqrt(e.filtered[1999].covariance(axis, axis)), 3.93502979e-05, 1e-10);
     EXPECT_NEAR(std::sqrt(e.filtered[1999].covariance(3 + axis, 3 + axis)), 1.67129160e-04, 1e-9);
   }
+}
+
+// Steps of a tenth of a radian: 100 s at 1 rad/s are a thousand, a year is 3e8.
+TEST(WalkingRateFilter, GivesUpWhereTheMotionIsTooFastForTheGap) {
+  FilterSettings settings;
+  settings.motion = Motion::rate_walks;
+  settings.uses_gyro = false;
+  const MotionModel model(free_body(), instruments(6e-5, 1e-3, 0.0), settings, {});
+  FilterState state = model.start(0.0, Quat::Identity(), Mat3::Identity());
+  state.mean.rate_body_rad_s = {1, 0, 0};
+  const Vec3 no_gyro = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  model.advance(state, 100.0, no_gyro);
+  EXPECT_EQ(state.mean.time_s, 100.0);
+  EXPECT_THROW(model.advance(state, 3.2e7, no_gyro), NumericalError);
+  state.mean.rate_body_rad_s = {1e300, 0, 0};
+  EXPECT_THROW(model.advance(state, 200.0, no_gyro), NumericalError);
 }
 
 // The smoother against all readings at once: angle and rate of one axis at N instants as one

@@ -131,6 +131,15 @@ TEST(OrbitMessage, KvnAndXmlHoldTheSame) {
   }
 }
 
+// Editors of Windows begin files with a byte-order mark and end lines with two characters.
+TEST(OrbitMessage, MarksOfEditorsAreNoWords) {
+  const std::string text = oem_text(ellipse, 2400.0, 60.0);
+  std::string edited = "\xef\xbb\xbf";
+  for (const char c : text) edited += c == '\n' ? "\r\n" : std::string(1, c);
+  const MessageFile plain(text), marked(edited);
+  EXPECT_EQ(OrbitEphemeris(marked.path()).at(17.0)[0], OrbitEphemeris(plain.path()).at(17.0)[0]);
+}
+
 // Segments as after a manoeuvre, which no polynomial crosses; covariances in between.
 TEST(OrbitMessage, SegmentsFollowEachOther) {
   const auto turned_back = [](double t_s) {

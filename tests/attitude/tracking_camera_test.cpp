@@ -246,6 +246,30 @@ TEST(ViewOfAMarker, IsGoneWhereNoLightComes) {
   EXPECT_FALSE(view_of(camera, 3, {}));
 }
 
+// A spot of less than an electron, or drawn out over the image, is no reading: the errors of such
+// spots have no bound, and the estimate of a run would follow them without end.
+TEST(ViewOfAMarker, IsGoneWhereTheSpotIsTooFaintOrTooLong) {
+  TrackingCamera camera = cross_camera();
+  const double electrons = view_of(camera, 1, {})->electrons, dimmed = 0.9 / electrons;
+  camera.radiant_intensity_W_sr *= 2.0 * dimmed;
+  EXPECT_TRUE(view_of(camera, 1, {}));
+  camera.radiant_intensity_W_sr *= 0.5;
+  EXPECT_FALSE(view_of(camera, 1, {}));
+  camera = cross_camera();
+  camera.markers[0].normal_body = Vec3(1.0, 0.0, 1e-18).normalized();  // edge-on
+  EXPECT_FALSE(view_of(camera, 0, {}));
+  // A marker 80.75 mm from the axis, 0.9745 m before a lens of 8 mm over 4.8 µm, moves by 0.0062 px
+  // in 45 µs at 1 rad/s: by 62 px at 1e4 rad/s and by 186 px at 3e4 rad/s.
+  camera = cross_camera();
+  Pose spinning;
+  spinning.rate_lab_rad_s = {0, 0, 1e4};
+  ASSERT_TRUE(view_of(camera, 1, spinning));
+  EXPECT_NEAR(view_of(camera, 1, spinning)->smear_px.norm(),
+              1e4 * 45e-6 * 0.08075 / 0.9745 * 8e-3 / 4.8e-6, 1e-6);
+  spinning.rate_lab_rad_s *= 3.0;
+  EXPECT_FALSE(view_of(camera, 1, spinning));
+}
+
 // Without noise the pose is exact from a start that is degrees off, about the centre and free.
 TEST(PoseOfMarkers, IsExactWithoutNoise) {
   for (const bool knows_centre : {true, false}) {

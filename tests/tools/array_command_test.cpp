@@ -77,20 +77,21 @@ TEST_F(ArrayCommand, LightOnTheBackCountsByItsBifaciality) {
            "absorptance = 1\n[[source]]\nkind = \"sun\"\ndirection = [0, 0, -1]\n"
            "angular_radius_deg = 0\nirradiance_W_m2 = " +
            std::to_string(front_W_m2) +
-           "\n[[receiver]]\nkind = \"flux_map\"\nnode = \"plate\"\nname = \"front\"\n"
+           "\n[[receiver]]\nkind = \"flux_map\"\nnode = \"plate\"\nname = \"the front, 1\"\n"
            "bins = [8, 2]\n[trace]\nrays = 16384\n" +
            rest;
   };
   const std::string array =
-      "[array]\ncells = [8, 1]\ntemperature_K = 298.15\nreceiver = \"front\"\n";
+      "[array]\ncells = [8, 1]\ntemperature_K = 298.15\nreceiver = \"the front, 1\"\n";
   const std::string from_below =
       "[[source]]\nkind = \"sun\"\nname = \"below\"\ndirection = [0, 0, 1]\n"
       "angular_radius_deg = 0\nirradiance_W_m2 = 500\n";
   const auto rear = [](const char* bins) {
-    return std::string("[[receiver]]\nkind = \"flux_map\"\nnode = \"plate\"\nname = \"rear\"\n") +
+    return std::string(
+               "[[receiver]]\nkind = \"flux_map\"\nnode = \"plate\"\nname = \"the rear\"\n") +
            "side = \"back\"\nbins = " + bins + "\n";
   };
-  const std::string back = "back = {receiver = \"rear\", bifaciality = 0.8}\n";
+  const std::string back = "back = {receiver = \"the rear\", bifaciality = 0.8}\n";
   std::vector<double> power_W;
   for (const std::string& text :
        {plate(from_below + rear("[8, 2]") + array + back, 1000), plate(array, 1400),
@@ -107,6 +108,10 @@ TEST_F(ArrayCommand, LightOnTheBackCountsByItsBifaciality) {
   const Outcome other = run("power " + at("plate.toml") + " --out " + at("out"));
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.err, HasSubstr("array.back.receiver"));
+  write("plate.toml", plate(from_below + array + back, 1000));
+  const Outcome none = run("power " + at("plate.toml") + " --out " + at("out"));
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.err, HasSubstr("array.back.receiver: found \"the rear\""));
 }
 
 TEST_F(ArrayCommand, AShuntThatFollowsTheLightIsNamed) {

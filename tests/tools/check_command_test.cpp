@@ -207,6 +207,28 @@ TEST_F(CheckCommand, NewStatesTheSizeOfTheModel) {
   EXPECT_THAT(file_text(at("plate.toml")), HasSubstr("rays = 4096"));
 }
 
+// A white plate returns all of its light, which met it nevertheless; its name is that of no file.
+TEST_F(CheckCommand, NewTakesWhitePartsOfAnyName) {
+  write("white.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"name":"a \"plate\"\n[evil]","mesh":0}],"materials":[{"name":"white paint"}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
+"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAAAAAAIC/"}],
+"bufferViews":[{"buffer":0,"byteLength":36}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,-1],"max":[1,0,0]}]})");
+  const Outcome made = run("new " + at("white.toml") + " --scene " + at("white.gltf"));
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_THAT(file_text(at("white.toml")), HasSubstr("\\n[evil]"));
+  EXPECT_THAT(file_text(at("white.toml")), Not(HasSubstr("\n[evil]")));
+  EXPECT_EQ(run("check " + at("white.toml")).status, 0);
+  std::string model = file_text(at("white.gltf"));
+  write("long.gltf", model.replace(model.find("[evil]"), 6, std::string(5000, 'n')));
+  const Outcome lengthy = run("new " + at("long.toml") + " --scene " + at("long.gltf"));
+  EXPECT_EQ(lengthy.status, 0) << lengthy.err;
+  const Outcome missed = run("check " + at("white.toml") + " --set 'source[0].position_m=[9,9,9]'");
+  EXPECT_EQ(missed.status, 2);
+  EXPECT_THAT(missed.err, HasSubstr("light that misses the scene"));
+}
+
 // A narrow lamp over the origin would miss a part that stands aside.
 TEST_F(CheckCommand, NewLightsThePartThatItMeasures) {
   write("aside.obj",

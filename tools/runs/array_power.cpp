@@ -102,7 +102,7 @@ ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known) {
       read_array_design(tables[0], read_cell_places(tables[0], experiment.scene, map.grid()));
   if (tables[0].has(array_key::back)) {
     const Settings back = tables[0].get(array_key::back);
-    array.back_map = run.flux_map_index(back.get(array_key::back_receiver));
+    array.back_map = run.flux_map_index(back.get(array_key::back_receiver), "array.back.receiver");
     array.bifaciality = back.get(array_key::bifaciality);
   }
   const CellHeat heat = read_cell_heat(tables[0], surroundings_of(experiment.file));

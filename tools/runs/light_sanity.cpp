@@ -98,7 +98,8 @@ std::vector<InputError> light_mistakes(const OpticalRun& run) {
     } else if (!part.empty() && has_place(beams)) {
       mistakes.push_back(
           source.error("position_m", "a place inside of \"" + part + "\"", "one outside of it"));
-    } else if (result.power_balance.escaped_W.value >= (1.0 - rounding) * emitted_W) {
+    } else if (result.segments == result.rays &&  // a white scene lets all of its light escape, too
+               result.power_balance.escaped_W.value >= (1.0 - rounding) * emitted_W) {
       mistakes.push_back(source.error("direction", "light that misses the scene", "light on it"));
     }
     for (size_t i = 0; i < experiment.receivers.size(); ++i) {

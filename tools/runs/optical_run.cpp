@@ -12,6 +12,7 @@
 #include "core/text/names.h"
 #include "images/writers/image_file.h"
 #include "receivers/gather/bodies/wrench.h"
+#include "receivers/kind.h"
 #include "scenes/effects/stated.h"
 #include "sources/profiles/beam_shape.h"
 #include "tools/runs/memory.h"
@@ -246,15 +247,15 @@ std::optional<size_t> OpticalRun::first_flux_map() const {
   return static_cast<size_t>(found - receivers.begin());
 }
 
-size_t OpticalRun::flux_map_index(const std::string& name) const {
+size_t OpticalRun::flux_map_index(const std::string& name, const std::string& key) const {
   std::set<std::string> known;
   for (size_t i = 0; i < experiment_.receivers.size(); ++i) {
     const NamedReceiver& receiver = experiment_.receivers[i];
     if (!receiver.flux_map) continue;
-    if (name.empty() || receiver.name == name) return i;
+    if (name.empty() || receiver.name == receiver_name(name)) return i;
     known.insert(receiver.name);
   }
-  throw InputError({experiment_.file.path.string()}, "array.receiver",
+  throw InputError({experiment_.file.path.string()}, key,
                    name.empty() ? "no receiver of kind \"flux_map\"" : "\"" + name + "\"",
                    known.empty() ? "a [[receiver]] of kind \"flux_map\""
                                  : "one of " + listed_names(known, name));

@@ -62,8 +62,9 @@ class OpticalRun {
   size_t wrench_index() const { return wrench_; }
   // The place of the first receiver that is a flux map.
   std::optional<size_t> first_flux_map() const;
-  // The flux map called `name`, or the first one if `name` is empty. InputError if there is none.
-  size_t flux_map_index(const std::string& name) const;
+  // The flux map called `name`, or the first one if `name` is empty. InputError that names `key` if
+  // there is none.
+  size_t flux_map_index(const std::string& name, const std::string& key = "array.receiver") const;
 
   const WrenchReceiver& wrench() const;
   const FluxMapReceiver& flux_map(size_t index) const;

@@ -33,9 +33,7 @@ struct LightColumn {
 class LightHeader {
  public:
   LightHeader(std::string_view line, const LightColumns& columns) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // written by spreadsheets
     for (std::string_view cell : cells_of(line)) {
-      if (cell.starts_with(byte_order_mark)) cell.remove_prefix(byte_order_mark.size());
       if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') {
         cell = cell.substr(1, cell.size() - 2);
       }
