@@ -1,0 +1,191 @@
+#include "diagnosis/guess/file_head.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "attitude/recordings/kvn.h"
+#include "attitude/recordings/named_columns.h"
+#include "attitude/recordings/text_lines.h"
+#include "core/errors.h"
+#include "core/settings/settings.h"
+#include "core/text/parse.h"
+
+namespace photorque {
+
+// A clock with large integer steps does not count seconds.
+std::string clock_unit(const FileHead& head, size_t column) {
+  std::vector<double> steps;
+  for (size_t i = 1; i < head.rows.size(); ++i) {
+    const double step = head.rows[i][column] - head.rows[i - 1][column];
+    if (std::isfinite(step)) steps.push_back(step);
+  }
+  if (steps.empty()) return "s";
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  const bool whole =
+      std::all_of(steps.begin(), steps.end(), [](double s) { return s == std::round(s); });
+  return whole && *middle >= 200.0 ? "us" : whole && *middle >= 2.0 ? "ms" : "s";
+}
+
+namespace {
+
+// Accepts a decimal comma if it cannot be the separator.
+std::optional<double> number_of_cell(std::string_view cell, char separator) {
+  const std::optional<double> number = number_in(cell);
+  const size_t comma = cell.find(',');
+  if (number || separator == ',' || comma == std::string_view::npos) return number;
+  std::string with_point(cell);
+  with_point[comma] = '.';
+  return number_in(with_point);
+}
+
+std::optional<std::vector<double>> numbers_of(const std::vector<std::string_view>& cells,
+                                              char separator) {
+  std::vector<double> numbers;
+  bool any = false;
+  for (const std::string_view cell : cells) {
+    const std::optional<double> number = number_of_cell(cell, separator);
+    if (!number && !cell.empty() && cell != "nan" && cell != "NaN" && cell != "NA") {
+      return std::nullopt;
+    }
+    any = any || number;
+    numbers.push_back(number.value_or(NAN));
+  }
+  if (!any || numbers.size() < 2) return std::nullopt;
+  return numbers;
+}
+
+struct NumberedLine {
+  int64_t number;
+  std::string text;
+};
+
+// The first lines of a file without comments.
+std::vector<NumberedLine> first_lines(const std::filesystem::path& path) {
+  constexpr size_t most = 400;
+  TextLines lines(path);
+  std::vector<NumberedLine> first;
+  std::string_view line;
+  while (first.size() < most && lines.next(line)) {
+    if (first.empty()) require_text(line.substr(0, 16), {path.string(), 1});
+    if (trimmed(line).empty() || line.front() == '#') continue;
+    first.push_back({lines.number(), std::string(line)});
+  }
+  return first;
+}
+
+// The first table between these separators; without names if the line above it has not as many
+// cells.
+std::optional<FileHead> table_in(const std::vector<NumberedLine>& lines, char separator) {
+  std::vector<std::string_view> cells, before;
+  for (size_t i = 0; i < lines.size(); ++i) {
+    split_cells(lines[i].text, separator, cells);
+    if (!numbers_of(cells, separator)) {
+      before = cells;
+      continue;
+    }
+    FileHead head;
+    head.first_row_line = static_cast<int>(lines[i].number);
+    head.line = i > 0 ? static_cast<int>(lines[i - 1].number) : 0;
+    head.names_above = i > 0 ? before.size() : 0;
+    const size_t width = cells.size();
+    if (i > 0 && before.size() == width) head.header.assign(before.begin(), before.end());
+    for (; i < lines.size(); ++i) {
+      split_cells(lines[i].text, separator, cells);
+      const auto row = numbers_of(cells, separator);
+      if (row && row->size() == width) head.rows.push_back(*row);
+    }
+    return head;
+  }
+  return std::nullopt;
+}
+
+// Names for a table without a header: the column that rises is the time, one beside it an angle,
+// two are coordinates; of more nothing is known.
+std::string proposed_names(const FileHead& table, char separator) {
+  const size_t width = table.rows.front().size();
+  size_t time = 0;
+  for (size_t k = width; k-- > 0;) {
+    bool rises = true;
+    for (size_t i = 1; i < table.rows.size(); ++i) {
+      rises = rises && table.rows[i][k] > table.rows[i - 1][k];
+    }
+    if (rises) time = k;
+  }
+  const std::string clock = clock_unit(table, time) == "us" ? "t_us" : "t_s";
+  std::vector<const char*> others;
+  if (width == 2) others = {"angle_rad"};
+  if (width == 3) others = {"x_m", "y_m"};
+  std::string names;
+  size_t next = 0;
+  for (size_t k = 0; k < width; ++k) {
+    if (k > 0) names += separator == '\t' ? "\\t" : std::string(1, separator);
+    if (k == time) {
+      names += clock;
+    } else {
+      names += next < others.size() ? others[next++] : "column_" + std::to_string(k + 1);
+    }
+  }
+  return names;
+}
+
+// A name that a shell reads as one word.
+std::string shell_word(const std::string& name) {
+  const bool is_plain = std::ranges::all_of(name, [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_' || c == '-' ||
+           c == '/' || c == '+';
+  });
+  if (is_plain) return name;
+  std::string word = "'";
+  for (const char c : name) word += c == '\'' ? "'\\''" : std::string(1, c);
+  return word + "'";
+}
+
+InputError without_header(const std::filesystem::path& path, const FileHead& table,
+                          char separator) {
+  const std::string names = proposed_names(table, separator);
+  const int line = table.first_row_line;
+  const bool replaces = table.names_above > 1;
+  const std::string command = "sed -i '" + std::to_string(replaces ? table.line : line) +
+                              (replaces ? "c " : "i ") + names + "' " +
+                              shell_word(path.filename().string());
+  const size_t width = table.rows.front().size();
+  if (replaces) {
+    return {{path.string(), table.line},
+            "header",
+            std::to_string(table.names_above) + " cells above rows of " + std::to_string(width) +
+                " numbers",
+            "a line above them that names the columns (" + command +
+                " replaces it; write what they are)"};
+  }
+  return {{path.string(), line},
+          "header",
+          line == 1 ? "numbers in the first line"
+                    : "rows of " + std::to_string(width) + " numbers without names",
+          "a line above them that names the columns (" + command +
+              " puts one there; write what they are)"};
+}
+
+}  // namespace
+
+FileHead head_of(const std::filesystem::path& path) {
+  const std::vector<NumberedLine> lines = first_lines(path);
+  std::optional<FileHead> unnamed;
+  char unnamed_separator = ',';
+  for (const char separator : {',', ';', '\t', ' '}) {
+    auto table = table_in(lines, separator);
+    if (!table) continue;
+    if (!table->header.empty()) return *std::move(table);
+    if (!unnamed || table->rows.size() > unnamed->rows.size()) {
+      unnamed = std::move(table);
+      unnamed_separator = separator;
+    }
+  }
+  if (unnamed) throw without_header(path, *unnamed, unnamed_separator);
+  throw InputError({path.string()}, "header",
+                   "no rows of numbers between commas, semicolons, tabs or blanks",
+                   "a table with a header that names its columns");
+}
+
+}  // namespace photorque

@@ -1,0 +1,25 @@
+// The beginning of a file of numbers: the line that names its columns, and rows below it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace photorque {
+
+// The cells of the header and of some rows of numbers below it.
+struct FileHead {
+  std::vector<std::string> header;
+  std::vector<std::vector<double>> rows;
+  int line = 0, first_row_line = 0;  // of the file
+  size_t names_above = 0;            // cells of the line above the first row
+};
+
+// Of a CSV file, or one with other separators between cells. Throws InputError with the remedy for
+// a file without a header that has as many cells as the rows, with decimal commas, or in UTF-16.
+FileHead head_of(const std::filesystem::path& path);
+
+// The unit of a clock by its steps: "s", "ms" or "us".
+std::string clock_unit(const FileHead& head, size_t column);
+
+}  // namespace photorque
