@@ -40,8 +40,8 @@ constexpr NumbersKey heading("heading_deg", {-2.0 * pi, 2.0 * pi}, "one per inst
 namespace report_key {
 constexpr TextKey receiver("receiver", "irradiance map with the light on the cells",
                            {.usually = "the first `flux_map`"});
-constexpr TableKey chain("chain",
-                         "efficiencies before and after the array, for the list of losses");
+constexpr TableKey chain_table("chain",
+                               "efficiencies before and after the array, for the list of losses");
 constexpr TableKey target(
     "target",
     "requirements of a power and an efficiency: EQE · V_oc · FF and light on the cells. Also the "
@@ -119,8 +119,8 @@ ArrayReport read_array_report(const Settings& array, std::vector<PublishedFigure
   using namespace report_key;
   ArrayReport report;
   report.published = std::move(published);
-  if (array.has(chain)) {
-    const Settings stages = array.get(chain);
+  if (array.has(chain_table)) {
+    const Settings stages = array.get(chain_table);
     report.chain = {stage_of(stages, chain_key::wall_plug), stage_of(stages, chain_key::collimator),
                     stage_of(stages, chain_key::converter)};
   }
@@ -137,7 +137,7 @@ Key array_table() {
   return report_key::array.of(
       joined({{receiver},
               array_design_keys(),
-              {chain.of({chain_key::wall_plug, chain_key::collimator, chain_key::converter}),
+              {chain_table.of({chain_key::wall_plug, chain_key::collimator, chain_key::converter}),
                target.of({target_key::power, target_key::cell_efficiency}),
                tracker.of(joined({motion, tracker_keys()})), day.of(day_keys()),
                layout.of({most_tried})}}));
