@@ -34,8 +34,8 @@ std::vector<Key> one_cell_keys() {
   constexpr std::string_view usual = "that of the others";
   return joined({{index, cell_key::photocurrent_factor,
                   reference_area.usually(usual).meaning(
-                      "the area that the currents and resistances of this table belong to; "
-                      "required beside them where the others' is not stated")},
+                      "area to which the currents and resistances of this table refer; required "
+                      "with them if the area of the other cells is not stated")},
                  cell_keys(usual)});
 }
 

@@ -42,8 +42,8 @@ inline constexpr NumberKey shunt_photocurrent(
     "photocurrent at which the shunt is R_sh; at others it is inversely proportional to the "
     "photocurrent (De Soto, CEC). 0: R_sh in any light");
 inline constexpr NumberKey shunt_dark("shunt_dark_ohm", Range::positive(),
-                                      "with `shunt_photocurrent_A`: R_sh in the dark, to which it "
-                                      "goes exponentially (PVsyst)");
+                                      "with `shunt_photocurrent_A`: R_sh in the dark, approached "
+                                      "exponentially (PVsyst)");
 inline constexpr NumberKey shunt_exponent("shunt_exponent", Range{0.01, 100.0},
                                           "with `shunt_dark_ohm`: c in e^(−c·light); PVsyst has "
                                           "5.5");

@@ -21,8 +21,8 @@ inline constexpr NumberKey curve_temperature("temperature_K", {1.0, 1000.0},
                                              {.usually = "that in the file, else that of `[fit]`"});
 inline constexpr ChoiceKey shunt(
     "shunt", {"best", "constant", "inverse", "exponential"}, 0,
-    "R_sh in any light, inversely proportional to the irradiance (De Soto, CEC), or of curves "
-    "exponential in it (PVsyst); `best`: of several lights, what describes them better");
+    "R_sh constant, inversely proportional to the irradiance (De Soto, CEC), or for curves "
+    "exponential in it (PVsyst); `best`: with several irradiances, chosen by cross-validation");
 inline constexpr TablesKey datasheet("datasheet", "one to several points at one temperature");
 inline constexpr TextKey module_file(
     "module_file", "*or* instead: a library of modules of SAM (CSV), or a PAN file of PVsyst",

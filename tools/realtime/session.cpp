@@ -33,8 +33,8 @@ constexpr NumberKey client_timeout(
 constexpr NumberKey max_torque("max_torque_N_m", usual.max_torque_N_m, Range::positive(),
                                "commands beyond are refused");
 constexpr NumberKey silence("silence_s", usual.silence_s, {0.01, 1e6},
-                            "paced: a client of which nothing came for longer has no torque any "
-                            "more, and another may take over");
+                            "paced: after a longer silence of the client the torque is zero, and "
+                            "another client is accepted");
 constexpr NumberKey hold("hold_s", Range::positive(),
                          "a command that is not renewed for so long becomes zero",
                          {.usually = "never"});

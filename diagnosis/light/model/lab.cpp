@@ -27,7 +27,7 @@ constexpr NumberKey current("current_noise_A", 0.0, Range::not_negative(), "of a
 constexpr NumberKey tracker_step(
     "tracker_step_V", Range::not_negative(),
     "voltage step of the tracker; its recorded voltage is then an input of the model",
-    {.usually = "the tracker is assumed to hold the highest maximum"});
+    {.usually = "the tracker is assumed to be at the highest maximum"});
 constexpr TableKey of_array("array", "instruments of the array");
 }  // namespace noise_key
 
