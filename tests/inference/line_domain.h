@@ -96,7 +96,7 @@ class LineDomain {
     const Eigen::VectorXd& v = t.fit.value;
     return {v.begin(), v.end() - (1 + amplitudes(t))};
   }
-  std::vector<Begin> seen_begins(const Trial&, const Runs& runs) const {
+  std::vector<Begin> initial_conditions_from_data(const Trial&, const Runs& runs) const {
     std::vector<Begin> begins;
     for (const Series& run : runs) begins.push_back(run.y[0]);
     return begins;
