@@ -17,7 +17,7 @@ namespace {
 constexpr double usual_bias_rad_s = 5e-3;
 // Steps as short as this always suffice, also for swings of several per second.
 constexpr double short_step_s = 0.05;
-// Between two readings: more would take a minute and tell nothing.
+// Between two readings: more would take a minute, and predict nothing useful.
 constexpr double most_steps = 200000.0;
 
 bool is_of_gyro(const Disturbance& disturbance) {

@@ -1,4 +1,4 @@
-// What belongs together: points at one position, members that are joined pair by pair.
+// Connected sets: points at one position, members that are joined pair by pair.
 #pragma once
 
 #include <algorithm>

@@ -73,7 +73,7 @@ struct DualLanes {
   friend bool operator==(const DualLanes& a, const DualLanes& b) { return a.value == b.value; }
 };
 
-// The same for values without derivatives, which need no slopes: for formulas of either type.
+// Of plain values, which have no derivatives: so that one formula serves both types.
 inline Lanes chain(const Lanes& /*x*/, const Lanes& f, const Lanes& /*slope*/) {
   return f;
 }

@@ -134,7 +134,7 @@ std::vector<Verb> all_verbs();
 // seconds.
 Console terminal(const CommandOptions& options);
 
-// What --format and --style ask for. InputError for a format that does not exist.
+// The formats and the style of --format and --style. InputError for a format that does not exist.
 RunFormats formats_of(const CommandOptions& options);
 
 // Writes the results and summary.json into the command's folder (write_run) and says where; with
