@@ -105,8 +105,6 @@ TEST(WalkingRateFilter, GivesUpWhereTheMotionIsTooFastForTheGap) {
   model.advance(state, 100.0, no_gyro);
   EXPECT_EQ(state.mean.time_s, 100.0);
   EXPECT_THROW(model.advance(state, 3.2e7, no_gyro), NumericalError);
-  state.mean.rate_body_rad_s = {1e300, 0, 0};
-  EXPECT_THROW(model.advance(state, 200.0, no_gyro), NumericalError);
 }
 
 // The smoother against all readings at once: angle and rate of one axis at N instants as one

@@ -89,7 +89,7 @@ TEST(Experiment, WrongInputIsOneClearLine) {
                 at(r, "platform", "inertia_kg_m2") = rows({{0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.3}});
               }),
               HasSubstr("platform.inertia_kg_m2: found principal moments 0.1, 0.1, 0.3, expected "
-                        "moments that obey the triangle inequality"));
+                        "moments none of which exceeds the sum of the other two"));
   EXPECT_THAT(
       complaint([](SettingsNode& r) {
         at(r, "platform", "inertia_kg_m2") = rows({{0.1, 0.05, 0}, {0, 0.1, 0}, {0, 0, 0.1}});

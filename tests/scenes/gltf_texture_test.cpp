@@ -142,7 +142,7 @@ TEST(GltfTexture, OtherCoordinatesThanTheFirstLeaveTheColourAsItIs) {
 }
 
 TEST(GltfTexture, AMeshWithoutCoordinatesIsTold) {
-  const std::string reported = "'paint': its picture is left out";
+  const std::string reported = "'paint': its picture is ignored";
   TestModel model = pictured_model();
   EXPECT_THAT(model.read(with_pictures()).notices, testing::Not(Contains(HasSubstr(reported))));
   TestModel other = pictured_model();
