@@ -190,7 +190,7 @@ struct WrongCall {
 TEST_F(CommandLine, WrongInputIsOneLineStatusTwoAndNoFiles) {
   const std::string base = "trace " + nominal + few_rays + " ";
   const std::vector<WrongCall> calls = {
-      {"", "subcommand"},
+      {"", "found no command"},
       {"trace", "experiment"},
       {"fly " + nominal, "fly"},
       {"trace /nowhere/lab.toml", "/nowhere/lab.toml"},
