@@ -68,7 +68,7 @@ TEST_F(GuessCommand, NeedsOneOfTheTwo) {
   EXPECT_THAT(run("diagnose").err, HasSubstr("experiment is required, or --guess RECORDING"));
   const Outcome both = run("diagnose a.toml --guess b.csv");
   EXPECT_EQ(both.status, 2);
-  EXPECT_THAT(both.err, HasSubstr("one of the two"));
+  EXPECT_THAT(both.err, HasSubstr("both an experiment and --guess"));
   EXPECT_EQ(run("diagnose --guess " + at("none.csv") + " --out " + at("guess")).status, 2);
   EXPECT_FALSE(fs::exists(at("guess")));
 }
