@@ -264,7 +264,8 @@ TEST_F(SweepDesigns, PlansThatMakeNoSenseAreOneLine) {
   };
   refuses(begin + axis + "[[sweep.axis]]\nkey = \"attitude.tilt_rad\"\nvalues = [0.1]\n",
           "every quantity once");
-  refuses(begin + axis + "[[sweep.worst_over]]\nkey = \"trace.seed\"\nvalues = [1, 2]\n", "worse");
+  refuses(begin + axis + "[[sweep.worst_over]]\nkey = \"trace.seed\"\nvalues = [1, 2]\n",
+          "no objective and no constraint");
   refuses(begin + axis + "[[sweep.mean_over]]\nkey = \"attitude.tilt_deg\"\nvalues = [1, 2]\n",
           "twice");
   refuses(begin + axis +
