@@ -8,7 +8,6 @@
 #include "diagnosis/attitude/effects/trial.h"
 
 namespace photorque {
-
 namespace {
 
 // Sampled motion of one run: some states from the readings, and the scale of the acceleration.
