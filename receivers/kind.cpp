@@ -11,7 +11,7 @@ namespace {
 
 namespace target_key {
 constexpr TextKey node("node", "a node of the scene, with the nodes below it");
-constexpr TextKey name("name", "of the results", {.usually = "the node"});
+constexpr TextKey name("name", "name of the results", {.usually = "the node"});
 }  // namespace target_key
 
 namespace grid_key {

@@ -18,7 +18,7 @@ constexpr NumberKey max_tilt("max_tilt_deg", {0.0, 0.5 * pi, true, true},
                              "largest tilt in the tables",
                              {.usually = "the platform's stop, else 30"});
 constexpr Vec3Key rate("rate_rad_s", {0.0, 0.0, 0.0},
-                       "of the platform while images are taken, body axes");
+                       "rate of the platform during the exposures, body axes");
 constexpr NumberKey calibration("calibration_px", Range::positive(),
                                 "calibration error assumed in the tables", {.optional = true});
 constexpr NumbersKey distortion_error(

@@ -17,7 +17,7 @@ constexpr Vec3sKey markers(
     "follows from board, lens and sensor instead of `noise_arcsec`",
     {.optional = true});
 constexpr Vec3Key marker_normal("marker_normal", {0.0, 0.0, 1.0},
-                                "direction of their emission, body axes, any length");
+                                "direction in which the markers emit, body axes, any length");
 constexpr Vec3sKey marker_error("marker_error_m",
                                 "one per marker: true position minus `markers_m`; affects "
                                 "recorded attitudes, but not the filter",
@@ -28,12 +28,13 @@ constexpr NumberKey half_angle(
     "half_angle_deg", {0.0, 0.5 * pi, true, true},
     "angle of half the intensity, which is a power of the cosine; 60 is Lambert's law",
     {.optional = true});
-constexpr NumberKey wavelength("wavelength_nm", {1e-7, 2e-6}, "of the markers", {.optional = true});
-constexpr NumberKey focal_length("focal_length_mm", Range::positive(), "of the lens",
+constexpr NumberKey wavelength("wavelength_nm", {1e-7, 2e-6},
+                               "wavelength of the light of the markers", {.optional = true});
+constexpr NumberKey focal_length("focal_length_mm", Range::positive(), "focal length of the lens",
                                  {.optional = true});
-constexpr NumberKey f_number("f_number", {0.5, 128.0}, "of the lens", {.optional = true});
-constexpr NumberKey transmittance("transmittance", {0.0, 1.0, true, false}, "of lens and filter",
-                                  {.optional = true});
+constexpr NumberKey f_number("f_number", {0.5, 128.0}, "f-number of the lens", {.optional = true});
+constexpr NumberKey transmittance("transmittance", {0.0, 1.0, true, false},
+                                  "transmittance of lens and filter", {.optional = true});
 constexpr NumberKey spot("spot_px", {0.3, 50.0},
                          "standard deviation of a spot without diffraction and motion",
                          {.optional = true});
@@ -45,25 +46,28 @@ constexpr NumbersKey distortion_error(
     "distortion_error", {-10.0, 10.0},
     "true distortion minus `distortion`; affects recorded attitudes, but not the filter",
     {.usually = "none", .size = 4});
-constexpr NumberKey pixel("pixel_um", {1e-7, 1e-3}, "of the sensor", {.optional = true});
-constexpr NumbersKey resolution("resolution", {8.0, 65536.0}, "of the sensor: [columns, rows]",
+constexpr NumberKey pixel("pixel_um", {1e-7, 1e-3}, "pixel pitch of the sensor",
+                          {.optional = true});
+constexpr NumbersKey resolution("resolution", {8.0, 65536.0},
+                                "number of pixels of the sensor: [columns, rows]",
                                 {.optional = true, .size = 2});
 constexpr NumberKey exposure("exposure_s", Range::positive(),
-                             "no pixel may be beyond the full well at zero tilt",
+                             "exposure time; no pixel may exceed the full well at zero tilt",
                              {.optional = true});
 constexpr NumberKey line_time("line_time_s", Range::not_negative(),
                               "rolling shutter: delay of each row after the one above",
                               {.optional = true});
 constexpr NumberKey quantum_efficiency("quantum_efficiency", {0.0, 1.0, true, false},
-                                       "of the sensor", {.optional = true});
-constexpr NumberKey read_noise_electrons("read_noise_electrons", Range::positive(), "of a pixel",
-                                         {.optional = true});
+                                       "quantum efficiency of the sensor", {.optional = true});
+constexpr NumberKey read_noise_electrons("read_noise_electrons", Range::positive(),
+                                         "read noise of a pixel", {.optional = true});
 constexpr NumberKey background_electrons("background_electrons", Range::not_negative(),
-                                         "of a pixel in an exposure", {.optional = true});
-constexpr NumberKey full_well_electrons("full_well_electrons", Range::positive(), "of a pixel",
-                                        {.optional = true});
-constexpr Vec3Key position("position_m", "of the camera, lab axes", {.optional = true});
-constexpr Vec3Key aim("aim_m", {0.0, 0.0, 0.0}, "a point on the optical axis, lab axes");
+                                         "background electrons of a pixel in one exposure",
+                                         {.optional = true});
+constexpr NumberKey full_well_electrons("full_well_electrons", Range::positive(),
+                                        "full-well capacity of a pixel", {.optional = true});
+constexpr Vec3Key position("position_m", "position of the camera, lab axes", {.optional = true});
+constexpr Vec3Key aim("aim_m", {0.0, 0.0, 0.0}, "point on the optical axis, lab axes");
 constexpr ChoiceKey pose("pose",
                          {{"about_centre", "the centre of rotation is known"},
                           {"free", "the position is estimated too"}},

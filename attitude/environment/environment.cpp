@@ -12,28 +12,36 @@ namespace {
 namespace environment_key {
 constexpr Range latitudes{-0.5 * pi, 0.5 * pi, false, false}, years{1900.0, 2035.0, false, false};
 constexpr NumberKey gravity("gravity_m_s2", standard_gravity_m_s2, Range::not_negative(),
-                            "along lab −z; if it is not stated, a free platform, or one with "
-                            "`[environment.sun]`, is weightless");
-constexpr NumberKey latitude("latitude_deg", latitudes, "for `earth_rotation`",
+                            "acceleration of gravity along lab −z; if it is not stated, a free "
+                            "platform, or one with `[environment.sun]`, is weightless");
+constexpr NumberKey latitude("latitude_deg", latitudes,
+                             "latitude of the laboratory, used by `earth_rotation`",
                              {.usually = "that of `igrf`, else 0"});
 constexpr Vec3Key magnetic_field("magnetic_field_T", {0.0, 0.0, 0.0},
-                                 "lab axes: east, north, up; *or*");
+                                 "magnetic field, lab axes (east, north, up); *or*");
 constexpr OtherKey date("date", Key::a_number | Key::a_text | Key::a_date,
-                        "2025-06-30, the same in quotes, or 2025.5; 1900 … 2035",
+                        "date from 1900 to 2035: 2025-06-30 (also in quotes) or 2025.5",
                         {.optional = true});
-constexpr NumberKey date_year("date_year", years, "instead of `date`", {.optional = true});
+constexpr NumberKey date_year("date_year", years, "date as a decimal year, instead of `date`",
+                              {.optional = true});
 constexpr NumberKey igrf_latitude("latitude_deg", latitudes, "geodetic latitude");
 constexpr NumberKey longitude("longitude_deg", {}, "longitude, positive to the east");
-constexpr NumberKey height("height_m", 0.0, {-12e3, 1e10, false, false}, "above the ellipsoid");
-constexpr TableKey igrf("igrf", "the field by IGRF-14");
+constexpr NumberKey height("height_m", 0.0, {-12e3, 1e10, false, false},
+                           "height above the ellipsoid");
+constexpr TableKey igrf("igrf", "magnetic field by the model IGRF-14 at a place and date");
 constexpr NumberKey air_temperature("air_temperature_K", room_temperature_K,
-                                    {100.0, 1000.0, false, false}, "of the air around");
+                                    {100.0, 1000.0, false, false},
+                                    "temperature of the surrounding air");
 constexpr NumberKey air_pressure("air_pressure_Pa", room_pressure_Pa, Range::not_negative(),
-                                 "of the air around");
-constexpr NumberKey air_density("air_density_kg_m3", Range::not_negative(), "from the two above",
-                                {.usually = "ideal gas, dry"});
-constexpr NumberKey air_viscosity("air_viscosity_Pa_s", Range::positive(), "from the temperature",
-                                  {.usually = "Sutherland's law"});
+                                 "pressure of the surrounding air");
+constexpr NumberKey air_density(
+    "air_density_kg_m3", Range::not_negative(),
+    "density of the surrounding air; by default from temperature and pressure",
+    {.usually = "ideal gas, dry"});
+constexpr NumberKey air_viscosity(
+    "air_viscosity_Pa_s", Range::positive(),
+    "dynamic viscosity of the surrounding air; by default from the temperature",
+    {.usually = "Sutherland's law"});
 constexpr TableKey environment("environment", "fields, air and light around the platform");
 }  // namespace environment_key
 

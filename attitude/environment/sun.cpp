@@ -14,32 +14,35 @@ namespace {
 
 namespace sun_key {
 constexpr Range declinations{-0.5 * pi, 0.5 * pi, false, false};
-constexpr Vec3Key direction("direction", "towards the Sun, lab axes, any length; *or*",
+constexpr Vec3Key direction("direction", "direction towards the Sun, lab axes, any length; *or*",
                             {.optional = true});
 constexpr TextKey table(
     "table", "CSV: `t_s`, `sun_x`, `sun_y`, `sun_z`, towards the Sun, lab axes, any length; *or*",
     {.optional = true});
 constexpr NumberKey distance("distance_au", astronomical_unit_m, Range::positive(),
-                             "of the Sun, with `direction` or `table`");
+                             "distance of the Sun, with `direction` or `table`");
 constexpr TextKey date("date",
                        "calendar time of t = 0, \"2015-04-27T03:00\": the Sun follows the orbit",
                        {.optional = true});
-constexpr NumberKey semi_major_axis("semi_major_axis_au", Range::positive(), "of the ellipse");
-constexpr NumberKey eccentricity("eccentricity", 0.0, {0.0, 1.0, false, true}, "of the ellipse");
-constexpr NumberKey inclination("inclination_deg", 0.0, {}, "to the ecliptic of J2000");
+constexpr NumberKey semi_major_axis("semi_major_axis_au", Range::positive(),
+                                    "semi-major axis of the orbit");
+constexpr NumberKey eccentricity("eccentricity", 0.0, {0.0, 1.0, false, true},
+                                 "eccentricity of the orbit");
+constexpr NumberKey inclination("inclination_deg", 0.0, {}, "inclination to the ecliptic of J2000");
 constexpr NumberKey ascending_node("ascending_node_deg", 0.0, {},
                                    "longitude of the ascending node");
-constexpr NumberKey perihelion("perihelion_deg", 0.0, {}, "argument, from the node");
-constexpr NumberKey mean_anomaly("mean_anomaly_deg", {}, "at the epoch");
-constexpr TextKey epoch("epoch", "of the mean anomaly", {.usually = "`date`"});
-constexpr TableKey orbit("orbit", "of the spacecraft about the Sun, with `date`",
+constexpr NumberKey perihelion("perihelion_deg", 0.0, {}, "argument of perihelion");
+constexpr NumberKey mean_anomaly("mean_anomaly_deg", {}, "mean anomaly at `epoch`");
+constexpr TextKey epoch("epoch", "calendar time of the mean anomaly", {.usually = "`date`"});
+constexpr TableKey orbit("orbit", "orbit of the spacecraft about the Sun, with `date`",
                          {.usually = "the Earth's"});
-constexpr ChoiceKey axis("axis", {"x", "y", "z"}, 2, "the lab axis");
+constexpr ChoiceKey axis("axis", {"x", "y", "z"}, 2, "lab axis whose direction is given");
 constexpr NumberKey right_ascension("right_ascension_deg", {},
                                     "right ascension of the axis, J2000");
 constexpr NumberKey declination("declination_deg", declinations, "declination of the axis, J2000");
-constexpr NumberKey roll("roll_deg", 0.0, {},
-                         "of the next axis (y after x) about it, from celestial north");
+constexpr NumberKey roll(
+    "roll_deg", 0.0, {},
+    "angle of the next lab axis (y after x) about this axis, from celestial north");
 constexpr TableKey pointing("pointing", "direction of a lab axis in the sky, with `date`",
                             {.usually = "lab axes are equatorial, J2000"});
 constexpr TableKey sun("sun", "direction of the Sun, for `radiation_pressure`");

@@ -26,9 +26,10 @@ constexpr ChoiceKey model("model",
 constexpr NumberKey rate_walk("rate_walk", Range::positive(),
                               "random walk of the rate without torques, rad/s per √s",
                               {.usually = "of maximum likelihood"});
-constexpr NumberKey disturbed_rate_walk("disturbed_rate_walk", Range::positive(),
-                                        "likewise, in addition to the modelled torques",
-                                        {.usually = "of maximum likelihood"});
+constexpr NumberKey disturbed_rate_walk(
+    "disturbed_rate_walk", Range::positive(),
+    "random walk of the rate in addition to the modelled torques, rad/s per √s",
+    {.usually = "of maximum likelihood"});
 constexpr NumberKey rate_sigma("rate_sigma_rad_s", FilterSettings{}.rate_sigma_rad_s,
                                Range::positive(),
                                "standard deviation of the rate before the first reading");

@@ -32,15 +32,17 @@ constexpr OtherKey inertia("inertia_kg_m2", Key::an_array | Key::a_table,
                            "3 × 3, symmetric, positive, body axes, about the centre of rotation");
 // About the one axis that is free.
 constexpr OtherKey inertia_about(inertia.name, Key::a_number | Key::an_array | Key::a_table,
-                                 "about that axis, or 3 × 3", {.usually = "1"});
+                                 "moment of inertia about the axis of rotation, or a 3 × 3 matrix",
+                                 {.usually = "1"});
 constexpr ChoiceKey topology(
     "topology",
     {{"dumbbell", "two arms on an air bearing"},
      {"tabletop", "a plate on an air bearing"},
      {"hollow", "a ball around its payload"},
-     {"free", "no bearing"},
+     {"free", "a body without bearing, such as a spacecraft"},
      {"one_axis", "the bearings allow rotation about one axis"},
-     {"planar", "slides on a table: x and y in the lab, and a rotation about the vertical"}},
+     {"planar",
+      "a body that slides on a table: x and y in the lab, and a rotation about the vertical"}},
     "kind of platform and its bearing");
 constexpr ChoiceKey axis("axis", {"x", "y", "z"}, 2, "axis of rotation");
 constexpr NumberKey tilt_limit("tilt_limit_deg", {0.0, pi, true, false},
@@ -142,14 +144,16 @@ double yaw_rad(const PlatformState& state) {
 Key platform_table() {
   using namespace platform_key;
   const std::vector<Key> on_bearing = {mass, inertia};
-  return platform.of({topology.bringing({on_bearing,
-                                         on_bearing,
-                                         on_bearing,
-                                         {mass.usually("1"), inertia.meaning("as above")},
-                                         {axis, mass.usually("1"), inertia_about},
-                                         {mass.usually("1"),
-                                          inertia_about.meaning("about the vertical, or 3 × 3")}}),
-                      tilt_limit, battery_capacity, battery_voltage});
+  return platform.of(
+      {topology.bringing(
+           {on_bearing,
+            on_bearing,
+            on_bearing,
+            {mass.usually("1"), inertia.meaning("3 × 3 matrix, as for `dumbbell`")},
+            {axis, mass.usually("1"), inertia_about},
+            {mass.usually("1"),
+             inertia_about.meaning("moment of inertia about the vertical, or a 3 × 3 matrix")}}),
+       tilt_limit, battery_capacity, battery_voltage});
 }
 
 }  // namespace photorque

@@ -19,7 +19,8 @@ namespace {
 constexpr double max_run_s = 1e10;  // three centuries
 
 namespace propagate_key {
-constexpr NumberKey duration("duration_s", 600.0, {0.0, max_run_s, true, false}, "of the run");
+constexpr NumberKey duration("duration_s", 600.0, {0.0, max_run_s, true, false},
+                             "duration of the run");
 constexpr NumberKey output_rate("output_rate_Hz", Range::positive(),
                                 "rows of the recording, at most 2e7 in all",
                                 {.usually = "10, or a row every 0.2, 0.5, 1, 2, 5 … s where that "
@@ -29,33 +30,36 @@ constexpr IntegerKey history_rows("history_rows", 5000, 2, 20'000'000,
 constexpr NumberKey tolerance("tolerance", PropagationOptions{}.tolerance,
                               {1e-13, 1e-3, false, false},
                               "estimated error of a step, relative to 1 rad and 1 rad/s");
-constexpr NumberKey longest_step("longest_step_s", Range::positive(), "of the integrator",
-                                 {.usually = "none"});
+constexpr NumberKey longest_step("longest_step_s", Range::positive(),
+                                 "longest step of the integrator", {.usually = "none"});
 constexpr NumberKey tick_rate(
     "tick_rate_Hz", 0.0, {0.0, 1e6, false, false},
     "integration steps also end at ticks of this rate, as in `serve`; 0: no ticks");
-constexpr IntegerKey seed("seed", 1, 0, INT64_MAX, "of the sensors' noise; also `--seed`");
+constexpr IntegerKey seed("seed", 1, 0, INT64_MAX,
+                          "seed of the noise of the sensors; also `--seed`");
 constexpr NumberKey initial_tilt("initial_tilt_deg", 0.0, {0.0, pi, false, false},
                                  "tilt at the start, towards `initial_heading_deg`; *or*");
 constexpr NumberKey initial_heading("initial_heading_deg", 0.0, {},
                                     "azimuth of the tilt direction at the start");
-constexpr NumberKey initial_yaw("initial_yaw_deg", {}, "azimuth of body x",
+constexpr NumberKey initial_yaw("initial_yaw_deg", {}, "azimuth of body x at the start",
                                 {.usually = "that of a tilt without rotation about body z"});
-constexpr NumbersKey initial_attitude("initial_attitude", {},
-                                      "[w, x, y, z], lab from body, unit to 1e-3",
-                                      {.optional = true, .size = 4});
+constexpr NumbersKey initial_attitude(
+    "initial_attitude", {},
+    "attitude at the start as a unit quaternion [w, x, y, z], lab from body",
+    {.optional = true, .size = 4});
 constexpr Vec3Key initial_rate("initial_rate_rad_s", {0.0, 0.0, 0.0},
                                "angular rate at the start, body axes");
-constexpr NumbersKey initial_position("initial_position_m", {}, "of a planar platform, lab x and y",
+constexpr NumbersKey initial_position("initial_position_m", {},
+                                      "position of a planar platform at the start, lab x and y",
                                       {.usually = "0, 0", .size = 2});
 constexpr NumbersKey initial_velocity("initial_velocity_m_s", {},
-                                      "of a planar platform, lab x and y",
+                                      "velocity of a planar platform at the start, lab x and y",
                                       {.usually = "0, 0", .size = 2});
 constexpr NumberKey initial_charge("initial_charge_Ah", 0.0, {},
                                    "charge drawn from the battery before the start");
 constexpr NumberKey initial_time(
     "initial_time_s", 0.0, {},
-    "of the first row; commands, measured series and functions of time use this time");
+    "time of the first row; commands, measured series and functions of time use this time");
 constexpr TextKey commands(
     "commands",
     "CSV: `t_s` and any of `command_x_N_m`, `…_y_…`, `…_z_…`, `command_x_N`, `command_y_N` (of "
@@ -63,15 +67,17 @@ constexpr TextKey commands(
     "`led_current_A`, each row held until the next (zero-order hold); *or*",
     {.usually = "none"});
 constexpr NumberKey time("time_s", {}, "time of the command, rising");
-constexpr Vec3Key torque("torque_N_m", {0.0, 0.0, 0.0}, "commanded, body axes");
+constexpr Vec3Key torque("torque_N_m", {0.0, 0.0, 0.0}, "commanded torque, body axes");
 constexpr NumbersKey force("force_N", {}, "commanded force of a planar platform, lab x and y",
                            {.usually = "0, 0", .size = 2});
-constexpr NumbersKey force_body("force_body_N", {}, "likewise along body x and y",
+constexpr NumbersKey force_body("force_body_N", {},
+                                "commanded force of a planar platform, body x and y",
                                 {.usually = "0, 0", .size = 2});
 constexpr NumberKey battery_current("battery_current_A", 0.0, {}, "current drawn from the battery");
 constexpr NumberKey led_current("led_current_A", Range::not_negative(),
-                                "of lamps; not given: constant light", {.optional = true});
-constexpr TablesKey command("command", "each held until the next");
+                                "current of the lamps; not given: constant light",
+                                {.optional = true});
+constexpr TablesKey command("command", "commands, each of which acts until the next");
 constexpr TextKey initial_apm("initial_apm",
                               "CCSDS APM (KVN or XML): attitude and rate at the start, where the "
                               "keys above do not state them",

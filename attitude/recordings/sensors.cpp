@@ -13,43 +13,50 @@ namespace {
 
 namespace sensor_key {
 constexpr Vec3Key noise("noise_arcsec", usual_camera_noise_rad,
-                        "standard deviation about lab x, y, z");
-constexpr NumberKey rate("rate_Hz", 0.0, Range::not_negative(), "of readings; 0: every row");
-constexpr TableKey camera("camera", "attitude",
+                        "standard deviation of a reading about lab x, y, z");
+constexpr NumberKey rate("rate_Hz", 0.0, Range::not_negative(),
+                         "rate of the readings; 0: one reading in every row");
+constexpr TableKey camera("camera", "camera that measures the attitude",
                           {.usually = "without any `[sensors]` an ideal one"});
-constexpr NumberKey angle_noise("noise_arcsec", Range::positive(), "standard deviation");
+constexpr NumberKey angle_noise("noise_arcsec", Range::positive(),
+                                "standard deviation of a reading");
 constexpr TableKey angle("angle", "the angle of a one-axis platform, instead of a camera");
-constexpr NumberKey gyro_noise("noise_rad_s", 0.0, Range::not_negative(), "per reading and axis");
+constexpr NumberKey gyro_noise("noise_rad_s", 0.0, Range::not_negative(),
+                               "standard deviation per reading and axis");
 constexpr NumberKey bias_drift("bias_drift", 0.0, Range::not_negative(),
-                               "random walk of the bias, rad/s per √s");
-constexpr TableKey gyro("gyro", "angular rate",
+                               "standard deviation of the random walk of the bias, rad/s per √s");
+constexpr TableKey gyro("gyro", "gyro that measures the angular rate",
                         {.usually = "without any `[sensors]` an ideal one"});
-constexpr NumberKey accelerometer_noise("noise_m_s2", 0.0, Range::not_negative(),
-                                        "per reading and axis; 0: found in the readings");
-constexpr Vec3Key position(
-    "position_m", {0.0, 0.0, 0.0},
-    "from the centre of rotation; of a platform without bearing, from the centre of mass");
-constexpr Vec3Key bias("bias_m_s2", {0.0, 0.0, 0.0}, "offset of the readings");
-constexpr TableKey accelerometer("accelerometer", "specific force; for `diagnose`");
-constexpr NumberKey magnetometer_noise("noise_T", 0.0, Range::not_negative(),
-                                       "per reading and axis; 0: found in the readings");
+constexpr NumberKey accelerometer_noise(
+    "noise_m_s2", 0.0, Range::not_negative(),
+    "standard deviation per reading and axis; 0: estimated from the readings");
+constexpr Vec3Key position("position_m", {0.0, 0.0, 0.0},
+                           "position in the body, relative to the centre of rotation (without "
+                           "bearing: the centre of mass)");
+constexpr Vec3Key bias("bias_m_s2", {0.0, 0.0, 0.0}, "constant offset of the readings");
+constexpr TableKey accelerometer("accelerometer",
+                                 "accelerometer that measures the specific force; for `diagnose`");
+constexpr NumberKey magnetometer_noise(
+    "noise_T", 0.0, Range::not_negative(),
+    "standard deviation per reading and axis; 0: estimated from the readings");
 constexpr Vec3Key magnetometer_bias("bias_T", {0.0, 0.0, 0.0},
-                                    "the field of the platform, body axes");
-constexpr TableKey magnetometer("magnetometer",
-                                "magnetic field of the environment; for `diagnose`");
-constexpr NumberKey place_noise("noise_m", 0.0, Range::not_negative(),
-                                "per reading and axis; 0: found in the readings");
+                                    "constant field of the platform, body axes");
+constexpr TableKey magnetometer(
+    "magnetometer", "magnetometer that measures the field of the environment; for `diagnose`");
+constexpr NumberKey place_noise(
+    "noise_m", 0.0, Range::not_negative(),
+    "standard deviation per reading and axis; 0: estimated from the readings");
 constexpr NumberKey velocity_noise(
     "noise_m_s", 0.0, Range::not_negative(),
-    "of the velocity, per reading and axis; 0: no velocity is recorded");
-constexpr TableKey place("position", "position of a planar platform");
-constexpr NumberKey resolution("resolution_arcsec", Range::positive(), "step of the yaw");
-constexpr TableKey encoder("encoder", "yaw");
+    "standard deviation of the velocity, per reading and axis; 0: no velocity is recorded");
+constexpr TableKey place("position", "instrument for the position of a planar platform");
+constexpr NumberKey resolution("resolution_arcsec", Range::positive(), "resolution of the yaw");
+constexpr TableKey encoder("encoder", "encoder that measures the yaw");
 constexpr NumberKey current_noise("current_noise_A", 0.0, Range::not_negative(),
-                                  "on the battery's current");
+                                  "standard deviation of the battery current");
 constexpr NumberKey power_noise("power_noise_W", 0.0, Range::not_negative(),
-                                "on the array's power");
-constexpr TableKey power("power", "battery and array");
+                                "standard deviation of the power of the array");
+constexpr TableKey power("power", "meters of the battery current and of the power of the array");
 constexpr ChoiceKey noise_is(
     "noise_is",
     {{"found", "`diagnose` looks for level and correlation of the noise in the recordings"},

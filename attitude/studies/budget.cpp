@@ -20,19 +20,23 @@ constexpr BearingDatasheet usual;
 constexpr NumberKey source_to_cell("source_to_cell", Range::fraction(),
                                    "light on the cells divided by the emitted light",
                                    {.usually = "the paper's"});
-constexpr NumberKey conversion("conversion", Range::fraction(), "of light on the cells to power",
+constexpr NumberKey conversion("conversion", Range::fraction(),
+                               "electric power divided by the light on the cells",
                                {.usually = "the paper's"});
-constexpr NumberKey power("power_W", Range::positive(), "of the array at zero tilt",
+constexpr NumberKey power("power_W", Range::positive(), "power of the array at zero tilt",
                           {.usually = "the paper's"});
-constexpr NumberKey power_at_30("power_at_30_deg_W", Range::positive(), "of the array at 30 deg",
+constexpr NumberKey power_at_30("power_at_30_deg_W", Range::positive(),
+                                "power of the array at a tilt of 30 deg",
                                 {.usually = "the paper's"});
-constexpr Vec3Key torque_at_30("torque_at_30_deg_N_m", "of the light at 30 deg, body axes",
+constexpr Vec3Key torque_at_30("torque_at_30_deg_N_m",
+                               "torque of the light at a tilt of 30 deg, body axes",
                                {.usually = "the paper's"});
 constexpr TableKey light("light", "results of `power`, compared with the paper's");
-constexpr TextKey name("name", "of the bearing");
-constexpr NumberKey radius("radius_m", Range::positive(), "of the ball");
-constexpr NumberKey half_angle("half_angle_deg", {0.0, 0.5 * pi, true, false}, "of the socket");
-constexpr NumberKey gap("gap_m", Range::positive(), "of the film");
+constexpr TextKey name("name", "name of the bearing");
+constexpr NumberKey radius("radius_m", Range::positive(), "radius of the ball");
+constexpr NumberKey half_angle("half_angle_deg", {0.0, 0.5 * pi, true, false},
+                               "polar angle of the socket's rim");
+constexpr NumberKey gap("gap_m", Range::positive(), "thickness of the air film at the rated load");
 constexpr NumberKey inlet("inlet_Pa", Range::positive(), "absolute pressure of the air supply");
 constexpr NumberKey load("load_N", Range::positive(), "rated load");
 constexpr NumberKey drag("drag_N_m", 0.0, Range::not_negative(),
@@ -40,16 +44,19 @@ constexpr NumberKey drag("drag_N_m", 0.0, Range::not_negative(),
 constexpr NumberKey drag_rate("drag_rate_rpm", usual.drag_rate_rad_s, Range::positive(),
                               "rate at which the drag was measured");
 constexpr TablesKey bearing("bearing", "a bearing of a catalogue, compared with the paper's model");
-constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi, false, false}, "attitude, as in `[propagate]`");
+constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi, false, false}, "tilt of the platform");
 constexpr NumberKey heading("heading_deg", 0.0, {}, "azimuth of the tilt direction");
-constexpr NumberKey spin("spin_rpm", 0.0, {}, "about the lab's vertical");
-constexpr Vec3Key rate("rate_rad_s", {0.0, 0.0, 0.0}, "body axes, added to `spin_rpm`");
-constexpr NumberKey state_of_charge("state_of_charge", Range::fraction(),
-                                    "below 1 needs `platform.battery_capacity_Ah`; *or*",
-                                    {.usually = "1"});
+constexpr NumberKey spin("spin_rpm", 0.0, {}, "rate about the vertical of the lab");
+constexpr Vec3Key rate("rate_rad_s", {0.0, 0.0, 0.0},
+                       "angular rate, body axes, in addition to `spin_rpm`");
+constexpr NumberKey state_of_charge(
+    "state_of_charge", Range::fraction(),
+    "state of charge of the battery; below 1 needs `platform.battery_capacity_Ah`; *or*",
+    {.usually = "1"});
 constexpr NumberKey charge_drawn("charge_drawn_Ah", 0.0, Range::not_negative(),
-                                 "since the battery was full");
-constexpr NumberKey time("time_s", 0.0, {}, "for torques that depend on time");
+                                 "charge drawn since the battery was full");
+constexpr NumberKey time("time_s", 0.0, {},
+                         "time at which torques that depend on time are evaluated");
 constexpr TableKey budget("budget", "the state at which torques are compared");
 }  // namespace budget_key
 

@@ -11,7 +11,7 @@ constexpr int64_t most = 1'000'000'000;
 Key key_of(const EffectParameter& parameter) {
   // Two kinds may have a name in common but different ranges.
   const std::string range = range_of(parameter);
-  const std::string meaning = "of the effect" + (range.empty() ? "" : ", " + range);
+  const std::string meaning = parameter.meaning + (range.empty() ? "" : ", " + range);
   if (parameter.count > 1) {
     return NumbersKey(parameter.key, {}, meaning, {.size = parameter.count});
   }
@@ -26,15 +26,15 @@ std::vector<Key> place_keys(LightEffectKind::Index index) {
     case LightEffectKind::Index::none:
       return {};
     case LightEffectKind::Index::lamp:
-      return number_of("of the LED, over all sources in the order of the file, from 0");
+      return number_of("number of the LED, from 0, over all sources in the order of the file");
     case LightEffectKind::Index::cell:
-      return number_of("of the cell, row · columns + column, from 0");
+      return number_of("number of the cell: row · columns + column, from 0");
     case LightEffectKind::Index::string:
-      return number_of("of the string, along the serpentine, from 0");
+      return number_of("number of the string along the serpentine, from 0");
     case LightEffectKind::Index::bypass:
-      return number_of("of the bypass diode, along the serpentine, from 0");
+      return number_of("number of the bypass diode along the serpentine, from 0");
     case LightEffectKind::Index::wall:
-      return {TextKey("node", "of the scene, beside the receiver")};
+      return {TextKey("node", "node of the wall in the scene")};
     case LightEffectKind::Index::frame:
       return {
           Key::choice_or("axes", words({"lab", "body"}), 0, "axes to which the object is fixed")};

@@ -15,20 +15,21 @@ constexpr DaySettings usual;
 constexpr Range efficiency{0.0, 1.0, true, false};
 constexpr NumberKey load("load_W", usual.load_W, Range::not_negative(), "constant load");
 constexpr NumberKey duration("duration_s", usual.duration_s, {0.0, year_s, true, false},
-                             "in steps of at most 30 s");
-constexpr FlagKey lamps_on("lamps_on", true, "false: only the battery");
+                             "simulated time, in steps of at most 30 s");
+constexpr FlagKey lamps_on("lamps_on", true, "false: only the battery supplies the load");
 constexpr NumberKey battery("battery_Wh", usual.battery.capacity_J, Range::positive(),
                             "capacity of the battery");
 constexpr NumberKey battery_charge("battery_charge", usual.battery.charge, Range::fraction(),
-                                   "at the start");
+                                   "state of charge at the start");
 constexpr NumberKey charge_efficiency(
     "charge_efficiency", usual.battery.charge_efficiency, efficiency,
     "stored energy divided by the energy delivered to the battery");
-constexpr NumberKey discharge_efficiency("discharge_efficiency", usual.battery.discharge_efficiency,
-                                         efficiency, "delivered over taken out of store");
-constexpr NumberKey converter_efficiency("converter_efficiency", usual.converter_efficiency,
-                                         efficiency,
-                                         "between array and battery; not that of `[array.chain]`");
+constexpr NumberKey discharge_efficiency(
+    "discharge_efficiency", usual.battery.discharge_efficiency, efficiency,
+    "energy delivered by the battery divided by the stored energy used");
+constexpr NumberKey converter_efficiency(
+    "converter_efficiency", usual.converter_efficiency, efficiency,
+    "efficiency of the converter between array and battery; independent of `[array.chain]`");
 constexpr NumberKey droop_depth("droop_depth", usual.droop.depth, {0.0, 1.0, false, true},
                                 "fraction of their light that lamps lose when warm");
 constexpr NumberKey droop_time("droop_time_s", usual.droop.time_constant_s, Range::positive(),

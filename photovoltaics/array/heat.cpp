@@ -20,7 +20,7 @@ constexpr double deep_space_K = 2.725;
 namespace thermal_key {
 constexpr CellHeat usual;
 constexpr Range temperatures{1.0, 1000.0};
-constexpr NumberKey air("air_K", temperatures, "of the air around",
+constexpr NumberKey air("air_K", temperatures, "temperature of the surrounding air",
                         {.usually = "`environment.air_temperature_K`, else 293.15"});
 constexpr NumberKey surroundings(
     "surroundings_K", temperatures, "temperature of the surroundings to which the faces radiate",
@@ -30,7 +30,7 @@ constexpr NumberKey convection(
     "heat transfer coefficient of each face; 0: vacuum; wind adds about 4 W/m²K per m/s (McAdams)",
     {.usually = "natural convection in still air; with a disturbance `\"orbit\"` 0"});
 constexpr NumberKey emissivity("emissivity", usual.emissivity, Range::fraction(),
-                               "of each face in the infrared (cover glass 0.84)");
+                               "infrared emissivity of each face (cover glass 0.84)");
 constexpr NumberKey absorptance(
     "absorptance", usual.absorptance, Range::fraction(),
     "absorbed fraction of the light on the cells; at least their efficiency");

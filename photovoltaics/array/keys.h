@@ -15,12 +15,13 @@ inline constexpr double bypass_drop_V = 0.5;
 namespace diode_key {
 inline constexpr Diode usual;
 inline constexpr NumberKey drop("drop_V", bypass_drop_V, Range::not_negative(),
-                                "of an ideal diode, which as a bypass has one > 0");
+                                "forward voltage of an ideal diode; above 0 for a bypass diode");
 inline constexpr NumberKey saturation("saturation_A", usual.saturation_A, Range::positive(),
-                                      "of a junction");
-inline constexpr NumberKey ideality("ideality", usual.ideality, Range::positive(), "of a junction");
+                                      "saturation current of a junction");
+inline constexpr NumberKey ideality("ideality", usual.ideality, Range::positive(),
+                                    "ideality factor of a junction");
 inline constexpr NumberKey series("series_ohm", usual.series_ohm, series_ohm_range,
-                                  "of a junction");
+                                  "series resistance of a junction");
 }  // namespace diode_key
 
 // Of the cells, in place of what they have; of all, and of one.
@@ -29,14 +30,18 @@ inline constexpr NumberKey reference_area(
     "reference_area_m2", Range::positive(),
     "area to which currents and resistances refer; required with them");
 inline constexpr NumberKey reference_temperature("reference_temperature_K", Range::positive(),
-                                                 "and the temperature");
-inline constexpr NumberKey saturation_1("saturation_1_A", Range::not_negative(),
-                                        "I₁; not both I₁ and I₂ are 0");
-inline constexpr NumberKey saturation_2("saturation_2_A", Range::not_negative(), "I₂");
-inline constexpr NumberKey ideality_1("ideality_1", Range{0.01, 100.0}, "n₁");
-inline constexpr NumberKey ideality_2("ideality_2", Range{0.01, 100.0}, "n₂");
-inline constexpr NumberKey series("series_ohm", series_ohm_range, "R_s");
-inline constexpr NumberKey shunt("shunt_ohm", Range::positive(), "R_sh");
+                                                 "temperature T₀ to which the parameters refer");
+inline constexpr NumberKey saturation_1(
+    "saturation_1_A", Range::not_negative(),
+    "saturation current I₁ of the first diode; I₁ and I₂ must not both be 0");
+inline constexpr NumberKey saturation_2("saturation_2_A", Range::not_negative(),
+                                        "saturation current I₂ of the second diode");
+inline constexpr NumberKey ideality_1("ideality_1", Range{0.01, 100.0},
+                                      "ideality factor n₁ of the first diode");
+inline constexpr NumberKey ideality_2("ideality_2", Range{0.01, 100.0},
+                                      "ideality factor n₂ of the second diode");
+inline constexpr NumberKey series("series_ohm", series_ohm_range, "series resistance R_s");
+inline constexpr NumberKey shunt("shunt_ohm", Range::positive(), "shunt resistance R_sh");
 inline constexpr NumberKey shunt_photocurrent(
     "shunt_photocurrent_A", Range::not_negative(),
     "photocurrent at which the shunt is R_sh; at others it is inversely proportional to the "
@@ -47,15 +52,20 @@ inline constexpr NumberKey shunt_dark("shunt_dark_ohm", Range::positive(),
 inline constexpr NumberKey shunt_exponent("shunt_exponent", Range{0.01, 100.0},
                                           "with `shunt_dark_ohm`: c in e^(−c·light); PVsyst has "
                                           "5.5");
-inline constexpr NumberKey breakdown_fraction("breakdown_fraction", {0.0, 7.0},
-                                              "a; 0: no breakdown");
-inline constexpr NumberKey breakdown("breakdown_V", {-1e308, 0.0, false, true}, "V_br");
-inline constexpr NumberKey breakdown_exponent("breakdown_exponent", {1.0, 1e3}, "m");
-inline constexpr NumberKey gap("gap_eV", Range::positive(), "E₀");
-inline constexpr NumberKey gap_slope("gap_slope_per_K", {}, "s in E = E₀ (1 + s (T − T₀))");
-inline constexpr NumberKey photocurrent_slope("photocurrent_slope_per_K", {},
-                                              "fraction per kelvin; about 4e-4 in sunlight");
-inline constexpr IntegerKey index("index", 0, most_cells - 1, "row · columns + column",
+inline constexpr NumberKey breakdown_fraction(
+    "breakdown_fraction", {0.0, 7.0}, "coefficient a of the reverse breakdown; 0: no breakdown");
+inline constexpr NumberKey breakdown("breakdown_V", {-1e308, 0.0, false, true},
+                                     "breakdown voltage V_br");
+inline constexpr NumberKey breakdown_exponent("breakdown_exponent", {1.0, 1e3},
+                                              "exponent m of the reverse breakdown");
+inline constexpr NumberKey gap("gap_eV", Range::positive(), "band gap E₀ at T₀");
+inline constexpr NumberKey gap_slope("gap_slope_per_K", {},
+                                     "relative slope s of the band gap, E = E₀ (1 + s (T − T₀))");
+inline constexpr NumberKey photocurrent_slope(
+    "photocurrent_slope_per_K", {},
+    "relative slope of the photocurrent over temperature; about 4e-4 in sunlight");
+inline constexpr IntegerKey index("index", 0, most_cells - 1,
+                                  "number of the cell: row · columns + column, from 0",
                                   {.varies = true});
 inline constexpr NumberKey photocurrent_factor(
     "photocurrent_factor", 1.0, {0.0, 1e6, false, false},
@@ -140,7 +150,8 @@ inline constexpr NumberKey quantum_efficiency_peak(
     "largest external quantum efficiency, with the shape that belongs to `cell` (of silicon at "
     "800 nm); or `[array.quantum_efficiency]`",
     {.usually = "silicon 0.95, gallium arsenide 0.95, cadmium telluride 0.949"});
-inline constexpr NumbersKey wavelength("wavelength_nm", Range::positive(), "at least two, rising");
+inline constexpr NumbersKey wavelength("wavelength_nm", Range::positive(),
+                                       "wavelengths of the table, at least two, in rising order");
 inline constexpr NumbersKey efficiency("efficiency", Range::fraction(),
                                        "electrons per photon at each wavelength");
 inline constexpr TableKey quantum_efficiency("quantum_efficiency",

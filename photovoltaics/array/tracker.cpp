@@ -19,7 +19,8 @@ constexpr TextsKey kinds(
     "of `\"perturb_and_observe\"`, `\"incremental_conductance\"`, `\"global_scan\"`, "
     "`\"periodic_sweep\"`; the list of losses uses the first",
     {.usually = "all four"});
-constexpr NumberKey period("period_s", usual.period_s, Range::positive(), "time between decisions");
+constexpr NumberKey period("period_s", usual.period_s, Range::positive(),
+                           "time between two decisions of a tracker");
 constexpr NumberKey step_fraction("step_fraction", usual.step_fraction, {0.0, 0.5, true, false},
                                   "voltage step, as a fraction of the voltage range");
 constexpr NumberKey start_fraction(
@@ -28,9 +29,9 @@ constexpr NumberKey start_fraction(
 constexpr IntegerKey sweep_points("sweep_points", usual.sweep_points, 2, 10000,
                                   "number of points of a sweep; each point takes one period");
 constexpr NumberKey sweep_every("sweep_every_s", usual.sweep_every_s, Range::positive(),
-                                "of `periodic_sweep`: time from one sweep to the next");
+                                "`periodic_sweep`: time from one sweep to the next");
 constexpr NumberKey rescan_fraction("rescan_fraction", usual.rescan_fraction, Range::positive(),
-                                    "of `global_scan`: change of power that starts a sweep");
+                                    "`global_scan`: relative change of power that starts a sweep");
 }  // namespace tracker_key
 
 constexpr const char* names[] = {"perturb_and_observe", "incremental_conductance", "global_scan",

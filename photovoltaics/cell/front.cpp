@@ -11,15 +11,15 @@ namespace {
 
 namespace cover_key {
 constexpr NumberKey refractive_index("refractive_index", CellFront{}.index, {1.0, 10.0},
-                                     "of the glass over the cells");
+                                     "refractive index of the cover glass");
 constexpr NumberKey coating_index("coating_index", {1.0, 10.0},
                                   "refractive index of a film on the glass, for the mean "
                                   "wavelength of each band; with `coating_thickness_m`",
                                   {.usually = "no film"});
-constexpr NumberKey coating_thickness("coating_thickness_m", Range::positive(), "of that film",
-                                      {.optional = true});
+constexpr NumberKey coating_thickness("coating_thickness_m", Range::positive(),
+                                      "thickness of the film", {.optional = true});
 constexpr NumbersKey angle("angle_deg", {0.0, 0.5 * pi},
-                           "instead of these: angles of incidence, from 0, rising",
+                           "instead of glass and film: angles of incidence from 0, in rising order",
                            {.optional = true});
 constexpr NumbersKey transmittance("transmittance", Range::fraction(),
                                    "T at each of these angles; only ratios matter",

@@ -5,7 +5,7 @@ namespace {
 
 namespace rated_key {
 constexpr NumberKey irradiance("irradiance_W_m2", RatedPoint{}.irradiance_W_m2, Range::positive(),
-                               "irradiance of the light");
+                               "irradiance of the rated point");
 constexpr NumberKey temperature("temperature_K", RatedPoint{}.temperature_K, {1.0, 1000.0},
                                 "temperature of the cells");
 constexpr NumberKey short_circuit("short_circuit_A", Range::positive(), "current at 0 V");

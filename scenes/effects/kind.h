@@ -24,7 +24,8 @@ struct EffectParameter {
                  // light at 45°; beyond 2 glass takes less again
     tangent,     // atan x, of an angle
   };
-  std::string key;  // as diagnosis.json and experiments name it, with its unit
+  std::string key;           // as diagnosis.json and experiments name it, with its unit
+  std::string meaning = {};  // a phrase for the tables of keys
   size_t count = 1;
   double neutral = 0.0;
   double scale = 1.0;  // expected size of x, > 0

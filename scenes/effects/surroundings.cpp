@@ -11,23 +11,36 @@ std::vector<LightEffectKind> surroundings_effect_kinds() {
       // Uniform over the receiver and all attitudes.
       {.name = "ambient_light",
        .explanation = "light of the room is added to that of the lamps",
-       .parameters = {{.key = "irradiance_W_m2", .scale = 20.0, .lowest = 0.0, .highest = 1e5}},
+       .parameters = {{.key = "irradiance_W_m2",
+                       .meaning = "irradiance of the light of the room",
+                       .scale = 20.0,
+                       .lowest = 0.0,
+                       .highest = 1e5}},
        .act = [](LightState& state, size_t, Numbers x) { state.ambient_W_m2 += x[0]; }},
       // A thin box, fixed in the lab or on the body; its thickness does not show. opacity 1:
       // opaque.
       {.name = "unmodelled_shadow",
        .explanation = "an opaque object outside the model hides lamps from part of the receiver",
        .index = Index::frame,
-       .parameters =
-           {{.key = "opacity", .scale = 0.5, .lowest = 0.0, .highest = 1.0},
-            {.key = "centre_m", .count = 3, .scale = 0.02, .is_strength = false, .step = 5e-4},
-            {.key = "size_m",
-             .count = 2,
-             .scale = 0.02,
-             .lowest = 1e-4,
-             .highest = 2.0,
-             .is_strength = false,
-             .step = 5e-4}},
+       .parameters = {{.key = "opacity",
+                       .meaning = "opacity of the object",
+                       .scale = 0.5,
+                       .lowest = 0.0,
+                       .highest = 1.0},
+                      {.key = "centre_m",
+                       .meaning = "centre of the object, in the axes of `axes`",
+                       .count = 3,
+                       .scale = 0.02,
+                       .is_strength = false,
+                       .step = 5e-4},
+                      {.key = "size_m",
+                       .meaning = "size of the object along x and y",
+                       .count = 2,
+                       .scale = 0.02,
+                       .lowest = 1e-4,
+                       .highest = 2.0,
+                       .is_strength = false,
+                       .step = 5e-4}},
        .scan = LightEffectKind::Scan::shadow,
        .act =
            [](LightState& state, size_t frame, Numbers x) {
@@ -38,15 +51,23 @@ std::vector<LightEffectKind> surroundings_effect_kinds() {
       // A rotation vector about lab x and y.
       {.name = "attitude_bias",
        .explanation = "the attitude of the platform differs from the recorded one",
-       .parameters =
-           {{.key = "bias_deg", .count = 2, .scale = 0.02, .lowest = -0.3, .highest = 0.3}},
+       .parameters = {{.key = "bias_deg",
+                       .meaning = "rotation about lab x and lab y",
+                       .count = 2,
+                       .scale = 0.02,
+                       .lowest = -0.3,
+                       .highest = 0.3}},
        .is_traced = true,
        .act = [](LightState& state, size_t,
                  Numbers x) { state.attitude_bias_rad += Vec2(x[0], x[1]); }},
       {.name = "interreflection",
        .explanation = "a wall that is assumed black scatters light",
        .index = Index::wall,
-       .parameters = {{.key = "diffuse", .scale = 0.3, .lowest = 0.0, .highest = 1.0}},
+       .parameters = {{.key = "diffuse",
+                       .meaning = "fraction of the light that the wall scatters by Lambert's law",
+                       .scale = 0.3,
+                       .lowest = 0.0,
+                       .highest = 1.0}},
        .act =
            [](LightState& state, size_t index, Numbers x) {
              state.walls.push_back({index, x[0], 0.0});
@@ -54,7 +75,11 @@ std::vector<LightEffectKind> surroundings_effect_kinds() {
       {.name = "interreflection",
        .explanation = "a wall that is assumed black mirrors light",
        .index = Index::wall,
-       .parameters = {{.key = "specular", .scale = 0.3, .lowest = 0.0, .highest = 1.0}},
+       .parameters = {{.key = "specular",
+                       .meaning = "fraction of the light that the wall mirrors",
+                       .scale = 0.3,
+                       .lowest = 0.0,
+                       .highest = 1.0}},
        .act =
            [](LightState& state, size_t index, Numbers x) {
              state.walls.push_back({index, 0.0, x[0]});
@@ -62,8 +87,12 @@ std::vector<LightEffectKind> surroundings_effect_kinds() {
       // The readings of a scan times `factor`.
       {.name = "detector_gain",
        .explanation = "the photodiode reads too much or too little by one factor",
-       .parameters =
-           {{.key = "factor", .neutral = 1.0, .scale = 0.1, .lowest = -0.95, .highest = 4.0}},
+       .parameters = {{.key = "factor",
+                       .meaning = "factor on the readings of a scan",
+                       .neutral = 1.0,
+                       .scale = 0.1,
+                       .lowest = -0.95,
+                       .highest = 4.0}},
        .in_sweeps = false,
        .in_runs = false,
        .act = [](LightState& state, size_t, Numbers x) { state.detector_gain *= 1.0 + x[0]; }},

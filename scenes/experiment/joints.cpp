@@ -15,11 +15,11 @@ constexpr Range joint_angle{-2.0 * pi, 2.0 * pi};
 constexpr int64_t most_positions = 33;
 
 namespace joint_key {
-constexpr TextKey node("node", "of the scene, which rotates with all nodes below it; *or*",
+constexpr TextKey node("node", "node of the scene that rotates, with all nodes below it; *or*",
                        {.optional = true});
 constexpr TextsKey nodes("nodes", "several nodes that rotate together", {.optional = true});
-constexpr Vec3Key axis("axis", "body axes, any length");
-constexpr Vec3Key point("point_m", {0.0, 0.0, 0.0}, "a point on the axis, body axes");
+constexpr Vec3Key axis("axis", "direction of the rotation axis, body axes, any length");
+constexpr Vec3Key point("point_m", {0.0, 0.0, 0.0}, "point on the rotation axis, body axes");
 constexpr NumberKey angle("angle_deg", 0.0, joint_angle,
                           "rotation from the pose in the model file");
 constexpr Vec3Key towards_sun("towards_sun",

@@ -33,7 +33,8 @@ Key scene_table() {
 }
 
 Key material_table() {
-  return Key::tables("material", joined({{TextKey("name", "of a glTF material")}, sheet_keys()}),
+  return Key::tables("material",
+                     joined({{TextKey("name", "name of a material of the model")}, sheet_keys()}),
                      "optical properties instead of those in the model's file");
 }
 

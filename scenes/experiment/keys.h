@@ -40,26 +40,28 @@ inline constexpr TableKey scene("scene", "the model that is lit");
 }  // namespace scene_key
 
 namespace attitude_key {
-inline constexpr NumberKey tilt(
-    "tilt_deg", 0.0, {0.0, pi},
-    "the body's z axis leans by the tilt towards the heading; with heading 0 it turns about +y");
+inline constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi},
+                                "angle of the body's z axis from the vertical, towards the "
+                                "heading; with heading 0 the body rotates about +y");
 inline constexpr NumberKey heading("heading_deg", 0.0, {-2.0 * pi, 2.0 * pi},
-                                   "from lab x towards y");
+                                   "azimuth of the tilt direction, from lab x towards y");
 inline constexpr TableKey attitude("attitude", "attitude of the platform");
 }  // namespace attitude_key
 
 namespace trace_key {
 inline constexpr IntegerKey rays(
     "rays", 1, most_rays,
-    "in total, rounded up per source and replicate to a power of two of at least 256; "
-    "at most 2^31 for each of the replicates. Gathered direct light takes none of them "
-    "(see `direct`): its error is reduced by `target_error` only",
+    "total number of rays, rounded up per source and replicate to a power of two of at least 256; "
+    "at most 2^31 per replicate. Direct light by quadrature (see `direct`) uses no rays: only "
+    "`target_error` reduces its error",
     {.optional = true});
 inline constexpr IntegerKey replicates(
     "replicates", 8, 1024, "independent randomisations, from which the standard errors follow",
     {.optional = true});
-inline constexpr IntegerKey seed("seed", 0, INT64_MAX, "also `--seed`", {.optional = true});
-inline constexpr IntegerKey max_depth("max_depth", 1, 65535, "interactions of a ray",
+inline constexpr IntegerKey seed("seed", 0, INT64_MAX, "seed of the random rays; also `--seed`",
+                                 {.optional = true});
+inline constexpr IntegerKey max_depth("max_depth", 1, 65535,
+                                      "largest number of interactions of a ray",
                                       {.optional = true});
 inline constexpr NumberKey cutoff("cutoff", {0.0, 1.0, false, true},
                                   "rays end below this fraction of their first power (this "
@@ -99,30 +101,32 @@ inline constexpr TableKey trace("trace", "accuracy and effort of the trace");
 
 namespace torque_map_key {
 inline constexpr NumbersKey tilt(
-    "tilt_deg", {0.0, pi}, "rising; every tilt with every heading",
+    "tilt_deg", {0.0, pi}, "tilts in rising order; every tilt is combined with every heading",
     {.usually = "that of `[attitude]`; without the table 0, 10, 20, 30"});
 inline constexpr NumbersKey heading(
-    "heading_deg", {-2.0 * pi, 2.0 * pi}, "rising",
+    "heading_deg", {-2.0 * pi, 2.0 * pi}, "headings in rising order",
     {.usually = "that of `[attitude]`; without the table 0, 45, … 315"});
-inline constexpr NumbersKey azimuth(
-    "azimuth_deg", {-pi, pi}, "instead, for one `sun`: directions towards it in body axes, rising",
-    {.optional = true});
-inline constexpr NumbersKey elevation("elevation_deg", {-0.5 * pi, 0.5 * pi}, "with it, rising",
-                                      {.optional = true});
+inline constexpr NumbersKey azimuth("azimuth_deg", {-pi, pi},
+                                    "instead of tilts and headings, with one source of kind `sun`: "
+                                    "azimuths of the Sun in body axes, in rising order",
+                                    {.optional = true});
+inline constexpr NumbersKey elevation(
+    "elevation_deg", {-0.5 * pi, 0.5 * pi},
+    "with `azimuth_deg`: elevations of the Sun in body axes, in rising order", {.optional = true});
 inline constexpr NumberKey azimuth_step(
     "azimuth_step_deg", {0.0, 2.0 * pi, true, false},
-    "*or* the step over the whole sphere, an integer fraction of 360, at least 0.1; also writes "
-    "`EXPERIMENT.spo` (SPAD, as GMAT reads it)",
+    "*or* the step of the azimuth over the whole sphere, an integer fraction of 360, at least 0.1; "
+    "also writes `EXPERIMENT.spo` (a SPAD file for GMAT)",
     {.optional = true});
-inline constexpr NumberKey elevation_step("elevation_step_deg", {0.0, pi, true, false},
-                                          "likewise: an integer fraction of 180, at least 0.1",
-                                          {.optional = true});
+inline constexpr NumberKey elevation_step(
+    "elevation_step_deg", {0.0, pi, true, false},
+    "step of the elevation, an integer fraction of 180, at least 0.1", {.optional = true});
 inline constexpr IntegerKey rays(
     "rays", 1, most_rays,
-    "per attitude or direction. Plain surfaces in sunlight go by quadrature (unless "
-    "`trace.direct` is \"rays\" or `trace.max_depth` below its default; `trace.cutoff` "
-    "does not count there): 64 times as many, at most 2^24, for each of the two "
-    "estimates of what they scatter",
+    "number of rays per attitude or direction. Plain surfaces in sunlight are computed by "
+    "quadrature, unless `trace.direct` is \"rays\" or `trace.max_depth` is below its default. Each "
+    "of the two estimates of their scattered light then uses 64 times as many rays, at most 2^24; "
+    "`trace.cutoff` has no effect on them",
     {.usually = "`trace.rays`"});
 inline constexpr TableKey torque_map(
     "torque_map",
@@ -132,12 +136,13 @@ inline constexpr TableKey torque_map(
 
 namespace camera_key {
 inline constexpr Vec3Key position(
-    "position_m", "lab axes, away from `target_m`",
+    "position_m", "position of the camera, lab axes, different from `target_m`",
     {.usually = "south-east of the scene, where `render` also sees the lamps"});
 inline constexpr Vec3Key target("target_m", {0.0, 0.0, 0.0}, "point in the middle of the picture");
 inline constexpr NumberKey field_of_view("field_of_view_deg",
                                          {1e-3 * degree_rad, 179.0 * degree_rad},
-                                         "across the width", {.usually = "34.4"});
+                                         "field of view over the width of the picture",
+                                         {.usually = "34.4"});
 inline constexpr IntegerKey width("width", 16, 16384, "width of the picture in pixels",
                                   {.optional = true});
 inline constexpr IntegerKey height("height", 16, 16384, "height of the picture in pixels",

@@ -38,8 +38,8 @@ constexpr NumberKey roughness(
     {.optional = true});
 constexpr NumberKey slope_error(
     "slope_error_mrad", {1e-6, 0.2},
-    "instead: a mirror with random slopes of this size (`slope_error_shape`); reflected rays "
-    "deviate by twice the slope. Or [along `slope_error_axis`, across it]",
+    "instead of `roughness`: a mirror with random slopes of this size (`slope_error_shape`); "
+    "reflected rays deviate by twice the slope. Two sizes: [along `slope_error_axis`, across it]",
     {.optional = true, .several = true});
 constexpr ChoiceKey slope_error_shape(
     "slope_error_shape",
@@ -47,7 +47,7 @@ constexpr ChoiceKey slope_error_shape(
       "normal slopes (tangents) along each of two axes; the size is their standard "
       "deviation"},
      {"pillbox", "slopes uniform over a disc; the size is its radius"}},
-    0, "of `slope_error_mrad`");
+    0, "distribution of the slopes");
 constexpr Vec3Key slope_error_axis(
     "slope_error_axis",
     "with two sizes: the first acts along this direction's projection onto the surface, body axes",
@@ -56,7 +56,7 @@ constexpr NumberKey refractive_index(
     "refractive_index", {1.0, 10.0},
     "glass in front, by Fresnel's law for unpolarised light; the fractions are those behind it",
     {.optional = true});
-constexpr TextKey brdf_file("brdf_file", "instead of the fractions: measured scattering",
+constexpr TextKey brdf_file("brdf_file", "file of measured scattering, instead of the fractions",
                             {.optional = true});
 constexpr NumberKey brdf_scale("brdf_scale", 1.0, Range::positive(),
                                "factor on the BRDF; a number or one per band", {.several = true});
@@ -66,8 +66,10 @@ constexpr NumberKey reemitted(
     "fraction of the absorbed power that both sides emit at once as heat, by Lambert's law, in "
     "proportion to their emissivities. It acts on forces and torques only: the power counts as "
     "absorbed, and heat lights no other part");
-constexpr NumberKey emissivity_front("emissivity_front", 1.0, Range::fraction(), "of that heat");
-constexpr NumberKey emissivity_back("emissivity_back", 1.0, Range::fraction(), "of that heat");
+constexpr NumberKey emissivity_front("emissivity_front", 1.0, Range::fraction(),
+                                     "emissivity of the front side for `reemitted`");
+constexpr NumberKey emissivity_back("emissivity_back", 1.0, Range::fraction(),
+                                    "emissivity of the back side for `reemitted`");
 }  // namespace surface_key
 
 // One of the fractions: its key, and where it goes.

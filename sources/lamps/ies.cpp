@@ -139,14 +139,16 @@ constexpr TextKey file(
     "file", "IES LM-63, IES TM-33 or EULUMDAT; or a table of `polar_deg` and `intensity`",
     {.optional = true});
 constexpr NumbersKey polar("polar_deg", {0.0, pi},
-                           "instead of `file`: angles from the axis, rising", {.optional = true});
-constexpr NumbersKey azimuth(
-    "azimuth_deg", {0.0, 2.0 * pi, false, true},
-    "with `polar_deg`, of a beam that is not round: angles about the axis, rising",
-    {.optional = true});
-constexpr NumbersKey intensity(
-    "intensity", Range::not_negative(),
-    "one for every angle of `polar_deg`; a row for each of `azimuth_deg`", {.optional = true});
+                           "instead of `file`: angles from the axis, in rising order",
+                           {.optional = true});
+constexpr NumbersKey azimuth("azimuth_deg", {0.0, 2.0 * pi, false, true},
+                             "with `polar_deg`, if the beam is not rotationally symmetric: angles "
+                             "about the axis, in rising order",
+                             {.optional = true});
+constexpr NumbersKey intensity("intensity", Range::not_negative(),
+                               "radiant intensity at every angle of `polar_deg`, in any scale; "
+                               "with `azimuth_deg` one row for each azimuth",
+                               {.optional = true});
 }  // namespace key
 
 PhotometricFile read_inline(const Settings& settings) {

@@ -16,7 +16,7 @@ inline constexpr double usual_led_width_m = 20e-9;  // spectral_fwhm_nm of LEDs
 
 namespace source_key {
 inline constexpr TextKey name("name", "name in results and messages");  // the kind by default
-inline constexpr NumberKey power("power_W", Range::positive(), "radiant power");
+inline constexpr NumberKey power("power_W", Range::positive(), "radiant power of each lamp");
 // Each kind states its quantity.
 inline constexpr Vec3Key position("position_m", "of the lamp, lab axes");
 inline constexpr Vec3Key direction("direction",
@@ -24,12 +24,13 @@ inline constexpr Vec3Key direction("direction",
                                    {.optional = true});
 inline constexpr Vec3Key aim("aim_m", "instead of `direction`: a point on the axis of the beam",
                              {.optional = true});
-inline constexpr NumberKey wavelength("wavelength_nm", {1e-8, 1e-3}, "middle of the spectrum");
+inline constexpr NumberKey wavelength("wavelength_nm", {1e-8, 1e-3},
+                                      "centre wavelength of the spectrum");
 inline constexpr NumberKey spectral_fwhm(
     "spectral_fwhm_nm", usual_led_width_m, {0.0, 1e-3},
-    "full width at half maximum of the spectrum, a Gaussian; 0: a line");
+    "full width at half maximum of the Gaussian spectrum; 0: a single line");
 inline constexpr NumberKey aperture_diameter("aperture_diameter_m", opening_diameter,
-                                             "of the emitting opening");
+                                             "diameter of the emitting aperture");
 
 // Where light travels that comes from nowhere near.
 inline constexpr Vec3Key light_direction("direction",

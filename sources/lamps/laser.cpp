@@ -113,7 +113,7 @@ SourceKind kind() {
            {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
            {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}},
           joined({{source_key::name.with_default("laser"), source_key::power,
-                   source_key::position.meaning("of the waist, lab axes")},
+                   source_key::position.meaning("position of the waist, lab axes")},
                   {source_key::direction, source_key::aim},
                   {source_key::wavelength, source_key::spectral_fwhm.with_default(0.0)},
                   {key::waist_radius, key::divergence_half_angle}})};

@@ -31,7 +31,7 @@ SourceKind kind() {
            {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
            {"aim_m", {SettingsNode::Array{{0.0}, {0.0}, {0.0}}}}},
           joined({{source_key::name.with_default("led"), source_key::power,
-                   source_key::position.meaning("of the aperture, lab axes")},
+                   source_key::position.meaning("centre of the aperture, lab axes")},
                   {source_key::direction, source_key::aim},
                   lamp_keys()})};
 }

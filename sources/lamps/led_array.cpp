@@ -22,22 +22,23 @@ enum class Layout : size_t { grid, ring, hexagonal, positions };
 
 namespace key {
 constexpr ChoiceKey layout("layout",
-                           {{"grid", "columns and rows"},
-                            {"ring", "uniformly on a circle, from +x on"},
+                           {{"grid", "rectangular grid of columns and rows"},
+                            {"ring", "equal spacing on a circle, starting at +x"},
                             {"hexagonal", "close packed, the ring around the centre first"},
-                            {"positions", "at given points"}},
+                            {"positions", "LEDs at given points"}},
                            "arrangement of the LEDs");
 constexpr NumbersKey grid_count("count", {1.0, max_leds, false, false},
-                                "of LEDs, [along x, along y]", {.size = 2});
+                                "number of LEDs [along x, along y]", {.size = 2});
 constexpr NumberKey grid_pitch("pitch_m", Range::positive(),
                                "distance from one LED to the next; or [along x, along y]",
                                {.several = true});
 constexpr IntegerKey count("count", 1, max_leds, "number of LEDs");
-constexpr NumberKey ring_radius("ring_radius_m", Range::positive(), "of the circle");
+constexpr NumberKey ring_radius("ring_radius_m", Range::positive(), "radius of the circle");
 constexpr NumberKey pitch("pitch_m", Range::positive(), "distance from one LED to the next");
-constexpr Vec3sKey positions("positions_m", "of the LEDs, lab axes");
+constexpr Vec3sKey positions("positions_m", "positions of the LEDs, lab axes");
 constexpr ChoiceKey aim("aim",
-                        {{"parallel", "all along `direction`"}, {"converging", "all at one point"}},
+                        {{"parallel", "all LEDs emit along `direction`"},
+                         {"converging", "all LEDs aim at one point"}},
                         0, "direction of the LEDs");
 constexpr NumberKey focus(
     "focus_m", Range::positive(),
@@ -50,9 +51,9 @@ constexpr NumberKey power_spread("power_spread", 0.0, {0.0, 0.5},
                                  "relative standard deviation of the LEDs' powers");
 constexpr NumberKey aim_spread(
     "aim_spread_deg", 0.0, {0.0, 0.5},
-    "standard deviation of their axes, about each of two directions across");
+    "standard deviation of the LEDs' directions about each of two perpendicular axes");
 constexpr IntegerKey spread_seed("spread_seed", 1, 0, INT64_MAX,
-                                 "number of the random panel; 0: no deviations");
+                                 "seed of the random deviations; 0: no deviations");
 }  // namespace key
 
 std::vector<Vec3> grid(int columns, int rows, const Vec2& pitch_m) {

@@ -16,33 +16,39 @@ namespace {
 namespace lamp_key {
 constexpr NumberKey fwhm("fwhm_deg", beam_width, "full width at half of the maximum intensity");
 constexpr NumberKey order("order", {2.0, 100.0, false, false},
-                          "2 is a Gaussian, 100 nearly a disc");
-constexpr NumberKey half_angle("half_angle_deg", beam_half_angle, "from axis to edge");
+                          "order of the exponent; 2: a Gaussian, 100: nearly a disc");
+constexpr NumberKey half_angle("half_angle_deg", beam_half_angle,
+                               "angle from the axis to the edge of the beam");
 constexpr ChoiceKey pillbox_measure("pillbox_measure", {"angle", "solid_angle", "projected"},
                                     "measure in which the flux is uniform");
-constexpr NumberKey exponent("exponent", {0.0, 1e9, false, false}, "m; 1 is Lambert's law");
+constexpr NumberKey exponent("exponent", {0.0, 1e9, false, false}, "exponent m; 1: Lambert's law");
 constexpr ChoiceKey profile(
     "profile",
     {{"gaussian", "exp(−4 ln 2 θ²/fwhm²)"},
      {"super_gaussian", "exp(−ln 2 (2θ/fwhm)^order)"},
-     {"pillbox", "constant to the edge"},
+     {"pillbox", "constant up to the edge"},
      {"cosine_power", "cosᵐ θ"}},
     "how the radiant intensity, per solid angle, falls with the angle θ from the axis");
-constexpr NumberKey halo_fraction("halo_fraction", {0.0, 1.0, false, true},
-                                  "part of the flux in a wider Gaussian; with `halo_fwhm_deg`",
-                                  {.usually = "no halo"});
-constexpr NumberKey halo_fwhm("halo_fwhm_deg", beam_width, "of that Gaussian", {.optional = true});
-constexpr NumberKey die_size("die_size_m", Range::positive(),
-                             "edge of a square die; warns of beams that no optics can make",
-                             {.optional = true});
-constexpr NumberKey die_diameter("die_diameter_m", Range::positive(), "of a round die, likewise",
+constexpr NumberKey halo_fraction(
+    "halo_fraction", {0.0, 1.0, false, true},
+    "fraction of the flux in an additional, wider Gaussian (`halo_fwhm_deg`)",
+    {.usually = "no halo"});
+constexpr NumberKey halo_fwhm("halo_fwhm_deg", beam_width, "full width at half maximum of the halo",
+                              {.optional = true});
+constexpr NumberKey die_size(
+    "die_size_m", Range::positive(),
+    "edge of a square LED die; used for a warning if no optics can form the beam",
+    {.optional = true});
+constexpr NumberKey die_diameter("die_diameter_m", Range::positive(),
+                                 "diameter of a round LED die, for the same warning",
                                  {.optional = true});
 constexpr NumberKey lens_index("lens_index", 1.0, {1.0, 5.0, false, false},
-                               "refractive index around the die");
+                               "refractive index of the lens around the die");
 }  // namespace lamp_key
 
 namespace place_key {
-constexpr Vec3sKey positions("positions_m", "one lamp at each, instead of `position_m`",
+constexpr Vec3sKey positions("positions_m",
+                             "positions of several equal lamps, lab axes, instead of `position_m`",
                              {.optional = true});
 constexpr NumberKey turn("turn_deg", 0.0, {},
                          "rotation about the beam, right-handed about its direction");
@@ -55,9 +61,9 @@ constexpr ChoiceKey spectrum("spectrum",
                               {"AM1.5G", "on the ground, ASTM G173-03, 280 to 4000 nm"}},
                              0, "spectrum of the light");
 constexpr NumberKey temperature("temperature_K", solar_temperature_K, {100.0, 1e6, false, false},
-                                "of the black body");
+                                "temperature of the black body");
 constexpr NumberKey irradiance("irradiance_W_m2", solar_irradiance_W_m2, Range::positive(),
-                               "on a plane normal to the light",
+                               "irradiance on a plane normal to the light",
                                {.usually = "1361; with `AM1.5G` 1000"});
 }  // namespace sunlight_key
 
@@ -240,7 +246,7 @@ std::vector<Key> lamp_keys() {
 
 std::vector<Key> lamp_place_keys() {
   using namespace source_key;
-  return {position.optional().meaning("of the lamp, lab axes; or `positions_m`"),
+  return {position.optional().meaning("position of the lamp, lab axes; or `positions_m`"),
           place_key::positions, direction, aim, place_key::turn};
 }
 

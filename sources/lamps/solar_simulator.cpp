@@ -18,9 +18,10 @@ namespace {
 
 namespace key {
 constexpr NumberKey footprint_diameter("footprint_diameter_m", Range::positive(),
-                                       "of the lit field");
+                                       "diameter of the lit field");
 constexpr NumberKey collimation_half_angle("collimation_half_angle_deg", solar_angular_radius_rad,
-                                           {0.0, 0.25 * pi}, "of the light on every point");
+                                           {0.0, 0.25 * pi},
+                                           "half-angle of the cone of light on every point");
 constexpr NumberKey nonuniformity("nonuniformity", 0.0, {0.0, 1.0, false, true},
                                   "(max − min)/(max + min) of the irradiance on the field");
 }  // namespace key

@@ -32,11 +32,11 @@ constexpr ChoiceKey sun_shape("sun_shape",
                                {"buie",
                                 "a disc of 4.65 mrad with an aureole to 43.6 mrad, by Buie, "
                                 "Monger and Dey (2003)"},
-                               {"table", "measured"}},
+                               {"table", "measured radiance over the angle"}},
                               disc, "how radiance falls with the angle θ from the middle");
 constexpr NumberKey angular_radius("angular_radius_deg", solar_angular_radius_rad,
                                    {0.0, 0.25 * pi, false, false},
-                                   "of the disc in the sky; 0 is parallel light");
+                                   "angular radius of the disc in the sky; 0: parallel light");
 constexpr NumbersKey limb_darkening(
     "limb_darkening", {-1.0, 1.0},
     "[u1, u2]: radiance 1 − u1 (1 − μ) − u2 (1 − μ)², μ = √(1 − r²) at r radii from the "

@@ -14,10 +14,11 @@ constexpr ChoiceKey mode("mode",
                           {"off", "without light and array"}},
                          0, "method");
 constexpr NumberKey tolerance("tolerance", 1e-3, {1e-6, 0.1},
-                              "error of the table, of torque, force, photocurrents and light on "
-                              "the cells, each relative to its largest");
-constexpr NumberKey step("step_s", 1.0, {1e-3, 3600.0}, "between exchanges of motion and power");
-constexpr IntegerKey rays("rays", 256, int64_t{1} << 40, "per attitude",
+                              "largest error of the table for torque, force, photocurrents and "
+                              "light on the cells, each relative to its largest value");
+constexpr NumberKey step("step_s", 1.0, {1e-3, 3600.0},
+                         "time between exchanges of motion and power");
+constexpr IntegerKey rays("rays", 256, int64_t{1} << 40, "number of rays per attitude",
                           {.usually = "`trace.rays`, at most 2^18"});
 constexpr IntegerKey max_traces("max_traces", 20000, 100, 10'000'000,
                                 "attitudes of a table, after which it is refined no further");
@@ -27,10 +28,10 @@ constexpr NumberKey max_tilt("max_tilt_deg", {0.0, pi, true, false},
 constexpr TextKey cache("cache",
                         "folder of stored tables, relative to the experiment; `\"\"`: none",
                         {.usually = "the user's cache folder"});
-constexpr NumberKey time("time_s", {}, "time of switching, rising");
-constexpr TextKey source("source", "", "by name; none: all");
+constexpr NumberKey time("time_s", {}, "time of switching, in rising order");
+constexpr TextKey source("source", "", "name of the source; without it all sources");
 constexpr FlagKey on("on", true, "false: the lamps are switched off");
-constexpr TablesKey switch_key("switch", "lamps are switched");
+constexpr TablesKey switch_key("switch", "lamps are switched on or off at one time");
 constexpr TableKey light("light", "light in a run of the motion");
 }  // namespace light_key
 

@@ -12,7 +12,7 @@ inline constexpr TextsKey curves(
     "several are repeats under the same light, or have separate lights; *or*",
     {.optional = true});
 inline constexpr TablesKey curve("curve", "curves whose light or temperature is stated; *or*");
-inline constexpr TextKey curve_file("file", "one of `curves`");
+inline constexpr TextKey curve_file("file", "one of the files in `curves`");
 inline constexpr NumberKey curve_irradiance("irradiance_W_m2", Range::positive(),
                                             "irradiance of the curve",
                                             {.usually = "that in the file, if any"});
@@ -30,23 +30,26 @@ inline constexpr TextKey module_file(
 inline constexpr TextKey module_name(
     "module_name", "Name of a module in the library, or a part of it that no other Name has",
     {.optional = true});
-inline constexpr IntegerKey cells_in_series("cells_in_series", 1, 1, 2000, "of the device");
+inline constexpr IntegerKey cells_in_series("cells_in_series", 1, 1, 2000,
+                                            "number of cells in series in the device");
 inline constexpr NumberKey temperature(
     "temperature_K", 298.15, {1.0, 1000.0},
-    "of the curves; with a datasheet it belongs to each of its points");
+    "cell temperature of the curves; a datasheet gives it for each point");
 inline constexpr NumberKey rounding_current("rounding_A", Range::not_negative(),
                                             "step of a datasheet's currents",
                                             {.usually = "the last decimal that any of them has"});
 inline constexpr NumberKey rounding_voltage("rounding_V", Range::not_negative(),
-                                            "step of its voltages",
+                                            "step of a datasheet's voltages",
                                             {.usually = "the last decimal that any of them has"});
 inline constexpr NumberKey tolerance(
     "tolerance", 0.0, {0.0, 0.5}, "standard error of every figure of the datasheet, as a fraction");
 inline constexpr NumberKey current_noise(
     "current_noise", 1e-3, {1e-12, 1.0},
-    "of curves: fraction of each reading (with `substrings`, of the short-circuit current)");
-inline constexpr NumberKey voltage_noise("voltage_noise", 5e-4, {1e-12, 1.0},
-                                         "fraction of each reading");
+    "standard deviation of the currents of a curve, as a fraction of each reading (with "
+    "`substrings`, of the short-circuit current)");
+inline constexpr NumberKey voltage_noise(
+    "voltage_noise", 5e-4, {1e-12, 1.0},
+    "standard deviation of the voltages of a curve, as a fraction of each reading");
 inline constexpr NumberKey correlation_points(
     "correlation_points", 0.0, Range::not_negative(),
     "readings over which the noise of the current falls off (slow drift of the light)");

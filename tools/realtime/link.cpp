@@ -20,7 +20,8 @@ constexpr ChoiceKey jitter_law("jitter",
                                 {"uniform", "up to this"},
                                 {"gaussian", "the absolute value of one of this scale"}},
                                0, "distribution of the delay");
-constexpr NumberKey loss("loss", 0.0, Range::fraction(), "fraction of packets, independently");
+constexpr NumberKey loss("loss", 0.0, Range::fraction(),
+                         "fraction of packets that are lost independently of each other");
 constexpr NumberKey burst_begin(
     "burst_begin", 0.0, Range::fraction(),
     "Gilbert and Elliott's two states: probability per packet that a burst begins");
@@ -29,9 +30,10 @@ constexpr NumberKey burst_end("burst_end", 1.0, {0.0, 1.0, true, false},
 constexpr NumberKey burst_loss("burst_loss", 1.0, Range::fraction(),
                                "probability that a packet of a burst is lost");
 constexpr FlagKey reorder("reorder", true, "packets may overtake each other");
-constexpr TextKey trace("trace",
-                        "a CSV with `delay_s`, measured delays taken in turn instead (−1: lost)",
-                        {.usually = "none"});
+constexpr TextKey trace(
+    "trace",
+    "CSV file with the column `delay_s`: measured delays that are used in turn instead (−1: lost)",
+    {.usually = "none"});
 }  // namespace link_key
 
 enum LinkDraw : uint64_t { lost_alone, burst_changes, lost_in_burst, jitter_u, jitter_v };

@@ -22,21 +22,22 @@ constexpr ChoiceKey mode("mode",
                           {"lockstep", "every tick waits for the client's answer"}},
                          0, "clock of the ticks");
 constexpr NumberKey rate("rate_Hz", usual.rate_Hz, {0.1, 1e5},
-                         "ticks; also the rows of `recording.csv`");
+                         "rate of the ticks and of the rows of `recording.csv`");
 constexpr TextKey address("address", usual.address, "IPv4 address of the UDP socket");
 constexpr IntegerKey port("port", PHOTORQUE_PORT, 0, 65535,
                           "UDP port; 0: a free port, which the first line of the output states");
-constexpr FlagKey wait_for_client("wait_for_client", true, "before the first tick");
-constexpr NumberKey client_timeout(
-    "client_timeout_s", usual.client_timeout_s, {1e-3, 1e6},
-    "for the first hello and, in lockstep, for every answer; then the run ends with status 3");
+constexpr FlagKey wait_for_client("wait_for_client", true,
+                                  "true: the first tick waits for a client");
+constexpr NumberKey client_timeout("client_timeout_s", usual.client_timeout_s, {1e-3, 1e6},
+                                   "longest wait for the first hello and, in lockstep, for every "
+                                   "answer; afterwards the run ends with status 3");
 constexpr NumberKey max_torque("max_torque_N_m", usual.max_torque_N_m, Range::positive(),
-                               "commands beyond are refused");
+                               "commands with a larger torque are rejected");
 constexpr NumberKey silence("silence_s", usual.silence_s, {0.01, 1e6},
-                            "paced: after a longer silence of the client the torque is zero, and "
-                            "another client is accepted");
+                            "paced: after this time without a packet of the client, the torque is "
+                            "zero and another client is accepted");
 constexpr NumberKey hold("hold_s", Range::positive(),
-                         "a command that is not renewed for so long becomes zero",
+                         "a command that is not renewed within this time becomes zero",
                          {.usually = "never"});
 constexpr NumberKey deadline("deadline_s", Range::positive(),
                              "a tick that is served later than this counts as missed",
@@ -51,9 +52,9 @@ constexpr NumberKey spin("spin_s", usual.spin_s, {0.0, 1.0},
                          "processor time, avoids the delay of waking up");
 constexpr IntegerKey realtime_priority(
     "realtime_priority", 0, 0, 99,
-    "above 0: SCHED_FIFO and locked memory, where the system permits it");
+    "priority under SCHED_FIFO, with locked memory, if the system permits it; 0: none");
 constexpr FlagKey send_truth("send_truth", false,
-                             "the true attitude and rate in every measurement");
+                             "true: every measurement contains the true attitude and rate");
 constexpr TableKey to_client("to_client", "a simulated link for measurements");
 constexpr TableKey from_client("from_client", "a simulated link for commands");
 constexpr TableKey serve("serve", "a run in real time");

@@ -11,10 +11,11 @@ namespace {
 constexpr Range efficiency{1e-6, 1.0};
 
 namespace chain_key {
-constexpr NumberKey wall_plug("wall_plug_efficiency", efficiency, "light over mains",
+constexpr NumberKey wall_plug("wall_plug_efficiency", efficiency,
+                              "radiant power of the lamps divided by the mains power",
                               {.usually = "left out"});
-constexpr NumberKey collimator("collimator_efficiency", efficiency, "of the lamps' optics",
-                               {.usually = "left out"});
+constexpr NumberKey collimator("collimator_efficiency", efficiency,
+                               "efficiency of the optics of the lamps", {.usually = "left out"});
 constexpr NumberKey converter("converter_efficiency", efficiency,
                               "efficiency of the converter after the array",
                               {.usually = "left out"});
@@ -29,12 +30,12 @@ constexpr NumberKey cell_efficiency("efficiency", efficiency,
 }  // namespace target_key
 
 namespace motion_key {
-constexpr NumbersKey time("time_s", {}, "instants, rising, at least two",
+constexpr NumbersKey time("time_s", {}, "times of the attitudes, at least two, in rising order",
                           {.usually = "none: for `propagate`"});
-constexpr NumbersKey tilt("tilt_deg", {-pi, pi}, "with `time_s`: one per instant",
+constexpr NumbersKey tilt("tilt_deg", {-pi, pi}, "tilt at each time of `time_s`",
                           {.optional = true});
-constexpr NumbersKey heading("heading_deg", {-2.0 * pi, 2.0 * pi}, "one per instant",
-                             {.usually = "0"});
+constexpr NumbersKey heading("heading_deg", {-2.0 * pi, 2.0 * pi},
+                             "heading at each time of `time_s`", {.usually = "0"});
 }  // namespace motion_key
 
 namespace report_key {

@@ -8,7 +8,7 @@ namespace photorque {
 namespace {
 
 namespace published_key {
-constexpr TextKey quantity("quantity", "a name in `summary.json`");
+constexpr TextKey quantity("quantity", "name of the quantity in `summary.json`");
 constexpr NumberKey value("value", {}, "published value, in its unit");
 constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi}, "tilt to which the value applies");
 constexpr NumberKey rounded_to(
@@ -17,8 +17,8 @@ constexpr NumberKey rounded_to(
     "`published_misfit` of the summary is the sum of ((ours − `value`)/(½ "
     "`rounded_to`))²: for `optimise`, at most 1 for each figure that agrees",
     {.optional = true});
-constexpr TextKey source("source", "publication");
-constexpr TextKey why("why", "", "reason of the difference");
+constexpr TextKey source("source", "publication that contains the value");
+constexpr TextKey why("why", "", "known reason of the difference, printed with it");
 constexpr TablesKey published("published", "a published figure, compared at the same tilt");
 }  // namespace published_key
 

@@ -13,13 +13,13 @@ constexpr TextKey name("name", "name of the supply");
 constexpr TextKey experiment(
     "experiment", "experiment file in the same folder, with `[scene]`, sources and `[array]`");
 constexpr NumberKey lamp_efficiency("lamp_efficiency", 0.5, conversion_range,
-                                    "light divided by mains power");
+                                    "radiant power of the lamps divided by mains power");
 constexpr NumberKey converter_efficiency("converter_efficiency", 0.97, conversion_range,
                                          "efficiency of the converter after the array");
 constexpr NumberKey array_mass("array_mass_kg", 0.25, Range::not_negative(), "mass of the array");
-constexpr IntegerKey rays("rays", 256, int64_t{1} << 40, "of the trace",
+constexpr IntegerKey rays("rays", 256, int64_t{1} << 40, "number of rays of the trace",
                           {.usually = "those of that experiment"});
-constexpr TablesKey beam("beam", "light on an array");
+constexpr TablesKey beam("beam", "light on a solar array");
 }  // namespace beam_key
 
 RunOptions options_of_beam(const Settings& s, const RunOptions& options) {

@@ -22,7 +22,7 @@ constexpr NumberKey outer_radius("outer_radius_m", usual.outer_radius_m, Range::
                                  "outer radius of the spiral, above `inner_radius_m`");
 constexpr IntegerKey turns("turns", usual.turns, 1, 200, "number of turns");
 constexpr NumberKey copper_area("copper_area_mm2", usual.copper_area_m2, Range::positive(),
-                                "of the wire");
+                                "copper cross-section of the wire");
 constexpr NumberKey ac_factor("ac_factor", usual.ac_factor, {1.0, 1e3},
                               "resistance divided by that of direct current");
 }  // namespace coil_key
@@ -32,26 +32,32 @@ constexpr NumberKey transmitter_height("transmitter_height_m", -0.085, {},
                                        "height of the coil in the lab, lab axes");
 constexpr NumberKey receiver_height("receiver_height_m", -0.02, {},
                                     "height of the coil on the platform, body axes");
-constexpr NumberKey frequency("frequency_kHz", 1e5, Range::positive(), "of the current");
-constexpr UncertainNumberKey detuning("detuning", {0.0, 0.005}, {},
-                                      "of the frequency; the default is ± 0.005");
-constexpr UncertainNumberKey inverter_efficiency("inverter_efficiency", {0.93, 0.02},
-                                                 conversion_range, "the default is ± 0.02");
-constexpr UncertainNumberKey rectifier_efficiency("rectifier_efficiency", {0.95, 0.02},
-                                                  conversion_range, "the default is ± 0.02");
-constexpr NumberKey ball_radius("ball_radius_m", 0.03175, Range::positive(), "of the bearing");
+constexpr NumberKey frequency("frequency_kHz", 1e5, Range::positive(), "frequency of the current");
+constexpr UncertainNumberKey detuning(
+    "detuning", {0.0, 0.005}, {},
+    "relative detuning of the coil on the platform; the default is ± 0.005");
+constexpr UncertainNumberKey inverter_efficiency(
+    "inverter_efficiency", {0.93, 0.02}, conversion_range,
+    "efficiency of the inverter; the default is ± 0.02");
+constexpr UncertainNumberKey rectifier_efficiency(
+    "rectifier_efficiency", {0.95, 0.02}, conversion_range,
+    "efficiency of the rectifier; the default is ± 0.02");
+constexpr NumberKey ball_radius("ball_radius_m", 0.03175, Range::positive(),
+                                "radius of the ball of the bearing");
 constexpr NumberKey ball_conductivity("ball_conductivity_S_m", 2.5e7, Range::positive(),
                                       "conductivity of the metal of the ball");
 constexpr TableKey transmitter("transmitter", "the coil in the lab");
-constexpr TableKey receiver("receiver", "that on the platform");
-constexpr TableKey induction("induction", "two coils");
+constexpr TableKey receiver("receiver", "the coil on the platform");
+constexpr TableKey induction("induction", "inductive link of two coils");
 }  // namespace induction_key
 
 namespace microwave_key {
-constexpr NumberKey frequency("frequency_GHz", Range::positive(), "of the beam");
-constexpr ChoiceKey plane("plane", {"E", "H"}, 0, "plane of the tilt");
+constexpr NumberKey frequency("frequency_GHz", Range::positive(), "frequency of the beam");
+constexpr ChoiceKey plane("plane", {"E", "H"}, 0,
+                          "plane of the tilt relative to the electric (E) or magnetic (H) field");
 constexpr UncertainNumberKey transmitter_diameter("transmitter_diameter_m", {0.4, 0.0},
-                                                  Range::positive(), "diameter of the aperture");
+                                                  Range::positive(),
+                                                  "diameter of the transmitting aperture");
 constexpr UncertainNumberKey rectenna_side("rectenna_side_m", {0.322, 0.0}, Range::positive(),
                                            "side of the square rectenna on the platform");
 constexpr UncertainNumberKey distance("distance_m", {1.0, 0.0}, Range::positive(),
@@ -61,11 +67,11 @@ constexpr UncertainNumberKey height("height_m", {0.0238, 0.0}, {},
 constexpr UncertainNumberKey rectifier_efficiency("rectifier_efficiency", {0.82, 0.0},
                                                   conversion_range,
                                                   "efficiency of the rectifying elements");
-constexpr UncertainNumberKey transmitter_efficiency("transmitter_efficiency", {0.6, 0.1},
-                                                    conversion_range,
-                                                    "of mains to beam; the default is ± 0.1");
+constexpr UncertainNumberKey transmitter_efficiency(
+    "transmitter_efficiency", {0.6, 0.1}, conversion_range,
+    "efficiency from mains to beam; the default is ± 0.1");
 constexpr UncertainNumberKey mass("mass_kg_m2", {2.0, 0.5}, Range::not_negative(),
-                                  "of the rectenna per area; the default is ± 0.5");
+                                  "mass of the rectenna per area; the default is ± 0.5");
 constexpr TablesKey microwave("microwave", "a microwave beam");
 }  // namespace microwave_key
 

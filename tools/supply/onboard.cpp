@@ -13,10 +13,11 @@ namespace {
 
 namespace cable_key {
 constexpr PowerCable usual;
-constexpr UncertainNumberKey voltage("voltage_V", {24.0, 0.0}, Range::positive(), "at the source");
+constexpr UncertainNumberKey voltage("voltage_V", {24.0, 0.0}, Range::positive(),
+                                     "voltage at the source");
 constexpr UncertainNumberKey length("length_m", {usual.length_m, 0.0}, Range::positive(),
-                                    "of the loop");
-constexpr IntegerKey strands("strands", usual.strands, 1, 10000, "strands per wire");
+                                    "free length of the cable, from the platform to its fixed end");
+constexpr IntegerKey strands("strands", usual.strands, 1, 10000, "number of strands per wire");
 constexpr UncertainNumberKey strand_diameter("strand_diameter_m", {usual.strand_diameter_m, 0.0},
                                              Range::positive(), "diameter of one strand");
 constexpr UncertainNumberKey insulation_diameter("insulation_diameter_m",
@@ -25,23 +26,23 @@ constexpr UncertainNumberKey insulation_diameter("insulation_diameter_m",
                                                  "outer diameter of an insulated wire");
 constexpr UncertainNumberKey insulation_modulus(
     "insulation_modulus_Pa", {usual.insulation_modulus_Pa, 0.3 * usual.insulation_modulus_Pa},
-    Range::not_negative(), "Young's modulus; the default is ± 3e5");
+    Range::not_negative(), "Young's modulus of the insulation; the default is ± 3e5");
 constexpr UncertainNumberKey attached_below(
     "attached_below_m", {0.0, 0.005}, {},
-    "distance below the centre of rotation; the default is ± 0.005");
-constexpr TableKey cable("cable", "tethered");
+    "distance of the attachment below the centre of rotation; the default is ± 0.005");
+constexpr TableKey cable("cable", "cable to the platform");
 }  // namespace cable_key
 
 namespace battery_key {
-constexpr UncertainNumberKey specific_energy("specific_energy_Wh_kg",
-                                             {150.0 * 3600.0, 50.0 * 3600.0}, Range::positive(),
-                                             "of the pack; the default is ± 50");
+constexpr UncertainNumberKey specific_energy(
+    "specific_energy_Wh_kg", {150.0 * 3600.0, 50.0 * 3600.0}, Range::positive(),
+    "specific energy of the battery pack; the default is ± 50");
 constexpr UncertainNumberKey usable_fraction("usable_fraction", {0.9, 0.0},
                                              Range{0.0, 1.0, true, false},
                                              "usable fraction of the energy");
 constexpr UncertainNumberKey electrodes("electrodes_m", {3.2e-4, 0.0}, {},
                                         "displacement of the lithium along body x");
-constexpr TableKey battery("battery", "carried");
+constexpr TableKey battery("battery", "battery on the platform");
 }  // namespace battery_key
 
 struct BatteryInputs {

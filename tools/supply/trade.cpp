@@ -14,9 +14,10 @@ namespace photorque {
 namespace {
 
 namespace supply_key {
-constexpr NumberKey load("load_W", 25.0, Range::positive(), "delivered power");
+constexpr NumberKey load("load_W", 25.0, Range::positive(), "power delivered to the load");
 constexpr NumberKey duration("duration_h", 86400.0, Range::positive(), "duration of the task");
-constexpr NumberKey tilt_max("tilt_max_deg", {0.0, 80.0 * degree_rad, true, false}, "largest tilt",
+constexpr NumberKey tilt_max("tilt_max_deg", {0.0, 80.0 * degree_rad, true, false},
+                             "largest tilt of the comparison",
                              {.usually = "the platform's stop, else 30"});
 constexpr IntegerKey tilts("tilts", 7, 2, 181, "number of tilts from zero to `tilt_max_deg`");
 constexpr TableKey supply("supply_trade",

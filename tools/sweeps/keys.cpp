@@ -8,9 +8,10 @@ Key sweep_table() {
   using namespace axis_key;
   const std::vector<Key> grid = {axis_key::values, from, to, count, spacing};
   const Key axis = sweep_key::axis.of(joined({{key, name}, grid, {mean, sigma}}));
-  const Key mean_over = sweep_key::mean_over.of(
-      {key, axis_key::values.meaning("numbers; *or*"), weights,
-       from.meaning("of an interval, by the Gauss–Legendre rule"), to.meaning("its end"), nodes});
+  const Key mean_over =
+      sweep_key::mean_over.of({key, axis_key::values.meaning("numbers; *or*"), weights,
+                               from.meaning("start of an interval for the Gauss–Legendre rule"),
+                               to.meaning("end of the interval"), nodes});
   const Key worst_over = sweep_key::worst_over.of(joined({{key}, grid}));
   const Key tolerance =
       sweep_key::tolerance.of({key, sigma.meaning("normal with this standard deviation; *or*"),

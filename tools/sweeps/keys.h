@@ -12,19 +12,22 @@ namespace axis_key {
 inline constexpr auto most_designs = static_cast<int64_t>(max_designs);
 
 inline constexpr TextKey key(
-    "key", "as in `--set`, any outside `[sweep]`: `source[0].power_W`, `source[0].position_m[2]`");
-inline constexpr TextKey name("name", "", "name in pictures: `\"standoff\"`");
-inline constexpr OtherKey values("values", Key::an_array, "numbers, texts, arrays; *or*",
+    "key",
+    "any key outside `[sweep]`, as in `--set`: `source[0].power_W`, `source[0].position_m[2]`");
+inline constexpr TextKey name("name", "", "name of the axis in pictures, such as `\"standoff\"`");
+inline constexpr OtherKey values("values", Key::an_array,
+                                 "list of the values (numbers, texts or arrays); *or*",
                                  {.optional = true});
-inline constexpr NumbersKey weights("weights", Range::not_negative(), "of the values",
+inline constexpr NumbersKey weights("weights", Range::not_negative(), "weight of each value",
                                     {.usually = "equal"});
 inline constexpr NumberKey from(
-    "from", {}, "the first, in the unit of the axis' key; a random plan draws uniformly",
+    "from", {},
+    "first value, in the unit of `key`; a random plan draws uniformly between `from` and `to`",
     {.optional = true});
 inline constexpr NumberKey to("to", {}, "last value", {.optional = true});
 inline constexpr IntegerKey count(
     "count", 2, most_designs,
-    "of values in equal steps, both ends included; none in a random plan or for `optimise`",
+    "number of values including both ends; not used in a random plan or by `optimise`",
     {.optional = true});
 inline constexpr IntegerKey nodes(
     "count", 1, static_cast<int64_t>(max_gauss_nodes),
@@ -33,23 +36,28 @@ inline constexpr IntegerKey nodes(
 inline constexpr ChoiceKey spacing("spacing",
                                    {{"linear", "equal steps"},
                                     {"logarithmic", "equal factors, ends above 0"}},
-                                   0, "of the values");
-inline constexpr NumberKey mean("mean", {}, "of a random plan: normal, with `sigma`",
+                                   0, "spacing of the values");
+inline constexpr NumberKey mean("mean", {},
+                                "mean of a normal distribution in a random plan, with `sigma`",
                                 {.optional = true});
 inline constexpr NumberKey sigma("sigma", Range::positive(), "standard deviation",
                                  {.optional = true});
 inline constexpr NumberKey half_width("half_width", Range::positive(),
                                       "uniform within ± this; *or*", {.optional = true});
-inline constexpr FlagKey seed("seed", false,
-                              "the key takes the copy's number (1, 2, …): `source[0].spread_seed` "
-                              "of LEDs that differ by `power_spread` and `aim_spread_deg`");
-inline constexpr FlagKey relative("relative", false, "relative to the value");
+inline constexpr FlagKey seed(
+    "seed", false,
+    "true: the key is set to the number of the copy (1, 2, …), such as `source[0].spread_seed` for "
+    "LEDs with `power_spread` and `aim_spread_deg`");
+inline constexpr FlagKey relative("relative", false,
+                                  "true: `sigma` and `half_width` are fractions of the value");
 }  // namespace axis_key
 
 namespace constraint_key {
 inline constexpr TextKey figure("figure", "a name in `summary.json`, or `\"\\|NAME\\|\"`");
-inline constexpr NumberKey at_least("at_least", {}, "in the figure's unit", {.usually = "none"});
-inline constexpr NumberKey at_most("at_most", {}, "likewise", {.usually = "none"});
+inline constexpr NumberKey at_least("at_least", {}, "lower limit, in the unit of the figure",
+                                    {.usually = "none"});
+inline constexpr NumberKey at_most("at_most", {}, "upper limit, in the unit of the figure",
+                                   {.usually = "none"});
 }  // namespace constraint_key
 
 namespace sweep_key {
@@ -61,25 +69,27 @@ inline constexpr TextsKey figures(
     {.usually = "all"});
 inline constexpr OtherKey maximise(
     "maximise", Key::a_text | Key::an_array,
-    "a figure, or several; `\"\\|NAME\\|\"` is its absolute value: the objectives; the first ranks "
-    "the designs, several give the Pareto front",
+    "one or several figures to maximise; `\"\\|NAME\\|\"` is the absolute value of a figure. The "
+    "first objective ranks the designs, several give the Pareto front",
     {.optional = true});
-inline constexpr OtherKey minimise("minimise", Key::a_text | Key::an_array, "likewise",
-                                   {.optional = true});
+inline constexpr OtherKey minimise("minimise", Key::a_text | Key::an_array,
+                                   "figures to minimise, as in `maximise`", {.optional = true});
 inline constexpr IntegerKey designs(
     "designs", 2, axis_key::most_designs,
     "number of points of a random plan (Owen-scrambled Sobol sequence)", {.usually = "a grid"});
 inline constexpr IntegerKey seed("seed", 1, 0, INT64_MAX,
-                                 "of a random plan (`--seed` is that of the light)");
-inline constexpr TablesKey axis("axis", "at least one; the last varies fastest");
+                                 "seed of a random plan (`--seed` is that of the rays)");
+inline constexpr TablesKey axis("axis", "axes of the plan, at least one; the last varies fastest");
 inline constexpr TablesKey mean_over(
-    "mean_over", "takes several values within each design; figures are their mean");
+    "mean_over",
+    "key that takes several values within each design; the figures are means over these");
 inline constexpr TablesKey worst_over(
     "worst_over",
     "takes the values of a grid axis within each design; an objective or a constrained figure "
     "counts where it is worst, any other figure where the first objective (else the first "
     "constrained figure) is");
-inline constexpr TablesKey constraint("constraint", "held at every value of `worst_over`");
+inline constexpr TablesKey constraint("constraint",
+                                      "limit of a figure, required at every value of `worst_over`");
 inline constexpr TablesKey tolerance(
     "tolerance", "a manufacturing tolerance: every number of the key has a separate random error");
 inline constexpr IntegerKey built_copies("built_copies", 100, 2, 100000,
@@ -94,9 +104,9 @@ inline constexpr ChoiceKey built_of(
      {"every",
       "of every design, which are then judged by what the fraction reaches (column `p95_FIGURE`)"}},
     0, "designs of which copies are computed");
-inline constexpr IntegerKey built_seed("built_seed", 1, 0, INT64_MAX, "of the draws");
+inline constexpr IntegerKey built_seed("built_seed", 1, 0, INT64_MAX, "seed of the random copies");
 inline constexpr IntegerKey global("global", 100, 0, 100000,
-                                   "`optimise`: evaluations over the whole box");
+                                   "`optimise`: number of evaluations of the global search");
 inline constexpr IntegerKey local(
     "local", 100, 0, 100000, "number of evaluations of the local search from the best of these");
 inline constexpr NumberKey precision(

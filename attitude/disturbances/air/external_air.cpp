@@ -8,9 +8,9 @@ namespace photorque {
 namespace {
 
 namespace part_key {
-constexpr NumberKey radius("radius_m", Range::positive(), "of the disc");
-constexpr NumberKey length("length_m", Range::positive(), "along the flow");
-constexpr NumberKey area("area_m2", Range::positive(), "of a face");
+constexpr NumberKey radius("radius_m", Range::positive(), "radius of the disc");
+constexpr NumberKey length("length_m", Range::positive(), "length along the flow");
+constexpr NumberKey area("area_m2", Range::positive(), "area of one face");
 constexpr NumberKey distance("distance_m", Range::not_negative(),
                              "distance of its centre from the axis");
 constexpr NumberKey inner("inner_m", 0.0, Range::not_negative(),
@@ -20,19 +20,20 @@ constexpr NumberKey outer("outer_m", Range::positive(),
                           {.varies = true});
 constexpr IntegerKey faces("faces", 2, 1, 2, "number of faces in the air");
 constexpr NumberKey drag("drag_coefficient", {0.0, 1e3, false, false},
-                         "referred to the area across the flow");
+                         "drag coefficient, referred to the area across the flow");
 constexpr NumberKey moment("moment_coefficient", sphere_moment_howarth, {0.0, 1e3, true, false},
-                           "3.27 is also quoted");
+                           "moment coefficient of the sphere (Howarth); 3.27 is also published");
 constexpr ChoiceKey shape("shape",
-                          {{"disc", "friction: spins in its plane"},
-                           {"plate", "friction: moves edgewise"},
-                           {"swept_plate", "friction: a radial strip"},
-                           {"sphere", "friction"},
-                           {"radial_cylinder", "pressure: its axis points outwards"},
-                           {"upright_cylinder", "pressure"},
-                           {"blunt_face", "pressure: a stiffener, a box"}},
-                          "shape of the part; shapes of the other law are ignored");
-constexpr TextKey name("name", "of the part", {.usually = "the shape"});
+                          {{"disc", "friction: disc that spins in its plane"},
+                           {"plate", "friction: plate that moves edgewise"},
+                           {"swept_plate", "friction: plate as a radial strip"},
+                           {"sphere", "friction: sphere about its centre"},
+                           {"radial_cylinder", "form drag: cylinder whose axis points outwards"},
+                           {"upright_cylinder", "form drag: cylinder whose axis is vertical"},
+                           {"blunt_face", "form drag: flat face, such as a stiffener or a box"}},
+                          "shape of the part; `air_friction` uses only shapes with friction, "
+                          "`air_pressure_drag` only those with form drag");
+constexpr TextKey name("name", "name of the part", {.usually = "the shape"});
 constexpr NumberKey count("count", 1.0, Range::not_negative(),
                           "number of such parts, also fractional");
 constexpr TablesKey part("part", "parts in the air of `[environment]`");
@@ -193,14 +194,15 @@ Table air_table(const std::vector<AirPart>& parts, const Air& air, double rate_r
 Key air_parts_key() {
   using namespace part_key;
   return part.of(
-      {shape.bringing(
-           {{radius, faces},
-            {part_key::length, area, distance, faces},
-            {part_key::length, inner, outer, faces},
-            {radius.meaning("of the sphere"), moment},
-            {radius.meaning("of the cylinder"), part_key::length.meaning("of it"), inner, drag},
-            {radius.meaning("of the cylinder"), part_key::length.meaning("of it"), distance, drag},
-            {area.meaning("area across the flow"), distance, drag}}),
+      {shape.bringing({{radius, faces},
+                       {part_key::length, area, distance, faces},
+                       {part_key::length, inner, outer, faces},
+                       {radius.meaning("radius of the sphere"), moment},
+                       {radius.meaning("radius of the cylinder"),
+                        part_key::length.meaning("length of the cylinder"), inner, drag},
+                       {radius.meaning("radius of the cylinder"),
+                        part_key::length.meaning("length of the cylinder"), distance, drag},
+                       {area.meaning("area across the flow"), distance, drag}}),
        name, count});
 }
 

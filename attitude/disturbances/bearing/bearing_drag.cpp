@@ -21,19 +21,19 @@ constexpr auto coefficient =
     ScalarKey("coefficient_N_m_s", Range::not_negative(), "c in T = −c ω, about every axis; *or*")
         .optional();
 constexpr auto about_axis =
-    ScalarKey("axial_N_m_s", Range::not_negative(), "about the vertical; with `transverse_N_m_s`")
+    ScalarKey("axial_N_m_s", Range::not_negative(), "c about the vertical; with `transverse_N_m_s`")
         .optional();
 constexpr auto across_axis = ScalarKey("transverse_N_m_s", Range::not_negative(),
-                                       "about horizontal axes; *or*", about_axis.end())
+                                       "c about horizontal axes; *or*", about_axis.end())
                                  .optional();
 
 namespace key {
-constexpr NumberKey radius("radius_m", Range::positive(), "of the ball");
+constexpr NumberKey radius("radius_m", Range::positive(), "radius of the ball");
 constexpr NumberKey half_angle("half_angle_deg", {0.0, pi, true, false},
                                "polar angle of the socket's rim");
-constexpr NumberKey recess_half_angle("recess_half_angle_deg", 0.0, {0.0, pi, false, true},
-                                      "of the central recess, below `half_angle_deg`",
-                                      {.varies = true});
+constexpr NumberKey recess_half_angle(
+    "recess_half_angle_deg", 0.0, {0.0, pi, false, true},
+    "polar angle of the rim of the central recess, below `half_angle_deg`", {.varies = true});
 constexpr NumberKey sheared_share("sheared_share", 1.0, Range::fraction(),
                                   "fraction of the film that is thin (reduced by grooves)");
 constexpr NumberKey gap(
@@ -44,17 +44,18 @@ constexpr NumberKey rated_load("rated_load_N", Range::positive(),
                                "load at which the film has the thickness `gap_m`",
                                {.optional = true});
 constexpr NumberKey stiffness("stiffness_N_m", Range::positive(),
-                              "of the film as a linear spring, newton per metre",
+                              "stiffness of the film as a linear spring, in newton per metre",
                               {.optional = true});
-constexpr NumberKey supply("supply_Pa", Range::positive(),
-                           "instead of `gap_m`, absolute, above the ambient pressure: the "
-                           "gap follows from supply and feeding holes; needs a recess",
-                           {.optional = true, .varies = true});
-constexpr NumberKey hole_area("hole_area_mm2", Range::positive(), "of the feeding holes",
+constexpr NumberKey supply(
+    "supply_Pa", Range::positive(),
+    "instead of `gap_m`: absolute supply pressure, above the ambient pressure. The gap follows "
+    "from it and from the feeding holes; needs a recess",
+    {.optional = true, .varies = true});
+constexpr NumberKey hole_area("hole_area_mm2", Range::positive(), "total area of the feeding holes",
                               {.optional = true});
 constexpr NumberKey discharge_coefficient("discharge_coefficient", 0.8, {0.0, 1.0, true, false},
-                                          "of the holes");
-constexpr TableKey socket("socket", "both from the film of the ball");
+                                          "discharge coefficient of the feeding holes");
+constexpr TableKey socket("socket", "both coefficients, from the geometry of the air film");
 }  // namespace key
 
 struct IsotropicDrag final : TorqueLaw<IsotropicDrag> {

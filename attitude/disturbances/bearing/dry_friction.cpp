@@ -13,8 +13,9 @@ namespace {
 constexpr ScalarKey friction("torque_N_m", Range::not_negative(), "τ in T = −τ ω/√(ω² + creep²)");
 
 namespace key {
-constexpr NumberKey creep_rate("creep_rate_rad_s", 1e-6, Range::positive(),
-                               "about three axes: rate below which the torque decreases to zero");
+constexpr NumberKey creep_rate(
+    "creep_rate_rad_s", 1e-6, Range::positive(),
+    "rate below which the torque decreases to zero (rotation about three axes only)");
 }  // namespace key
 
 class DryFriction final : public TorqueLaw<DryFriction> {

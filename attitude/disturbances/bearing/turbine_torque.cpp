@@ -7,7 +7,8 @@
 namespace photorque::kinds::turbine_torque {
 namespace {
 
-constexpr ScalarKey torque_up("torque_N_m", {}, "positive counterclockwise from above");
+constexpr ScalarKey torque_up("torque_N_m", {},
+                              "torque about lab z; positive: counterclockwise seen from above");
 
 struct TurbineTorque final : TorqueLaw<TurbineTorque> {
   template <class T>

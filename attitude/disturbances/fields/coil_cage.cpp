@@ -27,11 +27,13 @@ Vec3 dipole_A_m2(std::span<const CurrentLoop> loops) {
 namespace {
 
 namespace loop_key {
-constexpr NumberKey current("current_A", {}, "right-handed about the area");
-constexpr NumberKey turns("turns", 1.0, Range::positive(), "of the loop");
-constexpr Vec3Key area("area_m2", "normal times area, body axes; or `corners_m`",
+constexpr NumberKey current("current_A", {}, "current, right-handed about the area vector");
+constexpr NumberKey turns("turns", 1.0, Range::positive(), "number of turns of the loop");
+constexpr Vec3Key area("area_m2",
+                       "area vector (normal times area) of the loop, body axes; or `corners_m`",
                        {.optional = true});
-constexpr Vec3sKey corners("corners_m", "at least three, body axes", {.optional = true});
+constexpr Vec3sKey corners("corners_m", "corners of the loop, at least three, body axes",
+                           {.optional = true});
 }  // namespace loop_key
 
 }  // namespace

@@ -26,15 +26,19 @@ constexpr Vec3Key field_lab("field_lab_T", {0.0, 0.0, 0.0},
 constexpr TextKey field_file("field_file",
                              "a CSV: `t_s`, `field_x_T`, `field_y_T`, `field_z_T`, ends held; *or*",
                              {.optional = true});
-constexpr NumberKey altitude("altitude_m", Range::not_negative(), "above 6371.2 km");
-constexpr NumberKey inclination("inclination_deg", {}, "of the orbit");
+constexpr NumberKey altitude("altitude_m", Range::not_negative(),
+                             "altitude of the orbit above a radius of 6371.2 km");
+constexpr NumberKey inclination("inclination_deg", {}, "inclination of the orbit");
 constexpr NumberKey date_year("date_year", {1900.0, 2035.0, false, false},
                               "date of the field (IGRF)");
-constexpr NumberKey duration("duration_s", Range::positive(), "duration of the field");
-constexpr NumberKey ascending_node("ascending_node_deg", 0.0, {}, "of the orbit");
+constexpr NumberKey duration("duration_s", Range::positive(), "duration of the table of the field");
+constexpr NumberKey ascending_node("ascending_node_deg", 0.0, {},
+                                   "right ascension of the ascending node");
 constexpr NumberKey phase("phase_deg", 0.0, {}, "argument of latitude at t = 0");
-constexpr NumberKey greenwich_angle("greenwich_angle_deg", 0.0, {}, "at t = 0");
-constexpr NumberKey interval("interval_s", 20.0, Range::positive(), "of the table of the field");
+constexpr NumberKey greenwich_angle("greenwich_angle_deg", 0.0, {},
+                                    "rotation angle of the Earth (Greenwich) at t = 0");
+constexpr NumberKey interval("interval_s", 20.0, Range::positive(),
+                             "time between rows of the table of the field");
 constexpr TableKey orbit("orbit", "the field of IGRF on a circular orbit");
 }  // namespace key
 

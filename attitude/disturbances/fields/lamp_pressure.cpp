@@ -13,11 +13,11 @@
 namespace photorque::kinds::lamp_pressure {
 namespace {
 
-constexpr VectorKey torque_lab("torque_lab_N_m", "at that current, lab axes");
+constexpr VectorKey torque_lab("torque_lab_N_m", "torque at the current `led_current_A`, lab axes");
 
 namespace key {
 constexpr NumberKey led_current("led_current_A", Range::positive(),
-                                "of the lamps, at which the torque is that");
+                                "current of the lamps at which they exert `torque_lab_N_m`");
 }  // namespace key
 constexpr ScalarKey led_current("led_current_A", torque_lab.end());
 

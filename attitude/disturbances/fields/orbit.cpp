@@ -27,12 +27,18 @@ namespace {
 constexpr double interval_s = 20.0;  // of the table of the field
 
 namespace key {
-constexpr NumberKey altitude("altitude_m", Range::positive(), "of a circle, above 6371.2 km",
+constexpr NumberKey altitude("altitude_m", Range::positive(),
+                             "altitude of a circular orbit above a radius of 6371.2 km",
                              {.optional = true});
-constexpr NumberKey inclination("inclination_deg", {}, "of a circle", {.optional = true});
-constexpr NumberKey ascending_node("ascending_node_deg", 0.0, {}, "of a circle");
-constexpr NumberKey phase("phase_deg", 0.0, {}, "of a circle: argument of latitude at t = 0");
-constexpr NumberKey greenwich_angle("greenwich_angle_deg", 0.0, {}, "of a circle, at t = 0");
+constexpr NumberKey inclination("inclination_deg", {}, "inclination of a circular orbit",
+                                {.optional = true});
+constexpr NumberKey ascending_node("ascending_node_deg", 0.0, {},
+                                   "right ascension of the ascending node of a circular orbit");
+constexpr NumberKey phase("phase_deg", 0.0, {},
+                          "argument of latitude at t = 0 on a circular orbit");
+constexpr NumberKey greenwich_angle(
+    "greenwich_angle_deg", 0.0, {},
+    "rotation angle of the Earth (Greenwich) at t = 0, for a circular orbit");
 constexpr TextKey ephemeris("ephemeris",
                             "instead of a circle: file of states around the Earth, CCSDS OEM (KVN "
                             "or XML)",
@@ -45,7 +51,7 @@ constexpr NumberKey date_year("date_year", {1900.0, 2035.0, false, false},
                               {.usually = "the field of `[environment]`"});
 constexpr NumberKey duration(
     "duration_s", 86400.0, {0.0, 1e6 * interval_s, true, false},
-    "of a circle with `date_year`: duration of the field; its end is held");
+    "duration of the field of a circular orbit with `date_year`; afterwards the field is constant");
 constexpr Vec3Key sun_direction("sun_direction",
                                 "towards the Sun, any length: shadow with penumbra",
                                 {.usually = "that of `[environment.sun]`, else always light"});

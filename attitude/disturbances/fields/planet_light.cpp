@@ -32,15 +32,16 @@ constexpr TextKey infrared_table("infrared_table", "table for the infrared light
                                  {.usually = "`table`: surfaces treat infrared as sunlight"});
 constexpr NumberKey table_irradiance("table_irradiance_W_m2", solar_irradiance_W_m2,
                                      Range::positive(),
-                                     "of the light in which the tables were traced");
+                                     "irradiance of the light with which the tables were traced");
 constexpr NumberKey irradiance("irradiance_W_m2", solar_irradiance_W_m2, Range::positive(),
-                               "of sunlight at the planet");
+                               "irradiance of sunlight at the planet");
 constexpr Vec3Key sun_direction("sun_direction", "towards the Sun, any length",
                                 {.usually = "`propagate`: that of `orbit`"});
-constexpr NumberKey albedo("albedo", earth.albedo.mean, Range::fraction(), "mean over the planet");
+constexpr NumberKey albedo("albedo", earth.albedo.mean, Range::fraction(),
+                           "mean albedo of the planet");
 constexpr NumberKey emissivity(
     "emissivity", earth.emissivity.mean, Range::fraction(),
-    "mean over the planet: infrared exitance divided by `irradiance_W_m2`/4");
+    "mean emissivity of the planet: infrared exitance divided by `irradiance_W_m2`/4");
 constexpr FlagKey zonal(
     "zonal", true,
     "variation with latitude, as on the Earth: albedo + 0.29 P₂, emissivity − 0.18 P₂");

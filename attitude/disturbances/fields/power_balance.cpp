@@ -30,11 +30,11 @@ constexpr NumbersKey tilt(
     "tilt_deg", {0.0, pi, false, false},
     "tilts of a table, rising; the last value holds beyond its end; with `power_W`",
     {.optional = true});
-constexpr NumbersKey power("power_W", Range::not_negative(), "of the array at each tilt",
-                           {.optional = true});
+constexpr NumbersKey power("power_W", Range::not_negative(),
+                           "power of the array at each tilt of the table", {.optional = true});
 }  // namespace key
-constexpr ScalarKey array_scale("array_scale", 1.0, Range::not_negative(), "factor on either",
-                                load.end());
+constexpr ScalarKey array_scale("array_scale", 1.0, Range::not_negative(),
+                                "factor on the power of the array", load.end());
 
 // A monotone cubic through points (F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984)
 // 300): smooth, and without a maximum that the points do not have.

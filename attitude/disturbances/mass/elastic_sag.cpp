@@ -20,8 +20,9 @@ constexpr OtherKey compliance(
     "C in T = m C (g − g at zero tilt) × g, metres per m/s²: three numbers (a diagonal; "
     "only these take ±) or a symmetric 3 × 3 matrix; *or*",
     {.optional = true});
-constexpr Vec3Key axis("axis", {1.0, 0.0, 0.0}, "of the arms, body axes");
-constexpr NumberKey length("length_m", Range::positive(), "length of one arm");
+constexpr Vec3Key axis("axis", {1.0, 0.0, 0.0}, "direction of the arms, body axes, any length");
+constexpr NumberKey length("length_m", Range::positive(),
+                           "length of one arm, from the middle to the end");
 constexpr NumberKey end_mass("end_mass_kg", Range::not_negative(), "mass at the end of an arm");
 constexpr NumberKey beam_mass("beam_mass_kg", Range::not_negative(), "mass of the beam of one arm");
 constexpr NumberKey bending_stiffness("bending_stiffness_N_m2", Range::positive(),

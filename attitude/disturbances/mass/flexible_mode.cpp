@@ -13,21 +13,24 @@
 namespace photorque::kinds::flexible_mode {
 namespace {
 
-constexpr VectorKey direction("axis", "of the mode, body axes, any length");
-constexpr ScalarKey frequency("frequency_Hz", Range::positive(), "with the body at rest",
+constexpr VectorKey direction("axis", "rotation axis of the mode, body axes, any length");
+constexpr ScalarKey frequency("frequency_Hz", Range::positive(),
+                              "natural frequency of the mode while the body is at rest",
                               direction.end());
-constexpr ScalarKey damping("damping", Range::not_negative(), "fraction of critical damping",
-                            frequency.end());
+constexpr ScalarKey damping("damping", Range::not_negative(),
+                            "damping ratio of the mode (1: critical damping)", frequency.end());
 constexpr ScalarKey inertia(
     "inertia_kg_m2", Range::positive(),
-    "of the appendage about the axis, below the platform's, of which it is part", damping.end());
+    "moment of inertia of the appendage about the axis; it is included in that of the platform",
+    damping.end());
 
 namespace key {
-constexpr NumberKey initial_angle("initial_angle_deg", 0.0, {},
-                                  "relative to the body at the start of a run");
-constexpr NumberKey initial_rate("initial_rate_rad_s", {},
-                                 "absolute rate about the axis at the start of a run",
-                                 {.usually = "that of the body"});
+constexpr NumberKey initial_angle(
+    "initial_angle_deg", 0.0, {},
+    "angle of the appendage relative to the body at the start of a run");
+constexpr NumberKey initial_rate(
+    "initial_rate_rad_s", {}, "absolute rate of the appendage about the axis at the start of a run",
+    {.usually = "that of the body"});
 }  // namespace key
 
 constexpr StateKey angle{"angle_rad", 0};

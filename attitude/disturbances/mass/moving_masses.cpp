@@ -63,12 +63,12 @@ BalanceCommand steps_that_remove(const Vec3& offset_body_m, const std::vector<Mo
 namespace {
 
 namespace moving_key {
-constexpr NumberKey moving_mass("moving_mass_kg", Range::positive(), "of each mass");
+constexpr NumberKey moving_mass("moving_mass_kg", Range::positive(), "mass of each balancing mass");
 constexpr NumberKey lead("lead_m", Range::positive(), "travel per turn of the screw");
 constexpr NumberKey step_angle("step_angle_deg", 1.8 * degree_rad, {1e-6 * degree_rad, 2.0 * pi},
-                               "of the motor");
-constexpr IntegerKey microsteps("microsteps", 1, 1, 1024, "positions per step");
-constexpr Vec3sKey directions("directions", "of travel, body axes, one per mass",
+                               "angle of a full step of the motor");
+constexpr IntegerKey microsteps("microsteps", 1, 1, 1024, "microsteps per full step of the motor");
+constexpr Vec3sKey directions("directions", "direction of travel of each mass, body axes",
                               {.usually = "eight: 2 x, 2 y, 4 z"});
 }  // namespace moving_key
 

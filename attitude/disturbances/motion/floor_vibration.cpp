@@ -23,19 +23,25 @@ constexpr auto shaking = VectorKey("acceleration_m_s2",
                                    "of mass), lab axes; with the next two; *or*")
                              .optional();
 constexpr auto frequency =
-    ScalarKey("frequency_Hz", tone_Hz, "of a sine", shaking.end()).optional();
+    ScalarKey("frequency_Hz", tone_Hz, "frequency of the sine", shaking.end()).optional();
 constexpr ScalarKey phase("phase", 0.0, {}, "phase of the sine at t = 0, rad; or `phase_deg`",
                           frequency.end());
-constexpr ScalarKey factor("scale", 1.0, Range::not_negative(), "factor on the last two");
+constexpr ScalarKey factor("scale", 1.0, Range::not_negative(),
+                           "factor on the acceleration of a spectrum or a file");
 
 namespace key {
-constexpr UncertainNumberKey phase("phase_deg", {}, "instead of `phase`", {.optional = true});
-constexpr NumbersKey frequency("frequency_Hz", Range::positive(), "at least two, rising");
-constexpr NumbersKey density("density_m2_s3", Range::not_negative(),
-                             "one-sided, the same along each axis");
-constexpr IntegerKey tones("tones", 32, 1, 10000, "number of tones");
-constexpr IntegerKey seed("seed", 1, 0, INT64_MAX, "of their phases");
-constexpr TableKey spectrum("spectrum", "a random floor; *or*");
+constexpr UncertainNumberKey phase("phase_deg", {}, "phase in degrees, instead of `phase`",
+                                   {.optional = true});
+constexpr NumbersKey frequency("frequency_Hz", Range::positive(),
+                               "frequencies of the spectrum, at least two, in rising order");
+constexpr NumbersKey density(
+    "density_m2_s3", Range::not_negative(),
+    "one-sided power spectral density of the acceleration at each frequency, equal along all axes");
+constexpr IntegerKey tones("tones", 32, 1, 10000,
+                           "number of sinusoids that represent the spectrum");
+constexpr IntegerKey seed("seed", 1, 0, INT64_MAX, "seed of the random phases of the sinusoids");
+constexpr TableKey spectrum("spectrum",
+                            "random acceleration of the floor with this spectrum; *or*");
 constexpr TextKey accelerogram_file(
     "accelerogram_file",
     "CSV: `t_s`, `acceleration_x_m_s2`, `…_y_…`, `…_z_…`, lab axes, zero outside",

@@ -11,11 +11,14 @@ namespace {
 // Faster, and the phase loses its digits within a day: steps would see something slow.
 constexpr Range tone_Hz{0.0, 1e6};
 constexpr VectorKey amplitude("torque_N_m", "T₀ in T = T₀ sin(2π f t + φ), body axes");
-constexpr ScalarKey frequency("frequency_Hz", tone_Hz, "frequency", amplitude.end());
-constexpr ScalarKey phase("phase", 0.0, {}, "φ, rad; or `phase_deg`", frequency.end());
+constexpr ScalarKey frequency("frequency_Hz", tone_Hz, "frequency f of the torque",
+                              amplitude.end());
+constexpr ScalarKey phase("phase", 0.0, {}, "phase φ at t = 0, rad; or `phase_deg`",
+                          frequency.end());
 
 namespace key {
-constexpr UncertainNumberKey phase("phase_deg", {}, "instead of `phase`", {.optional = true});
+constexpr UncertainNumberKey phase("phase_deg", {}, "phase in degrees, instead of `phase`",
+                                   {.optional = true});
 }  // namespace key
 
 struct PeriodicTorque final : TorqueLaw<PeriodicTorque> {

@@ -21,9 +21,9 @@ namespace photorque::kinds::wheel_control {
 namespace {
 
 constexpr ScalarKey gain_on_angle("gain_N_m_per_rad", Range::not_negative(),
-                                  "gain on the attitude error");
-constexpr ScalarKey gain_on_rate("gain_N_m_s", Range::not_negative(), "gain on the rate error",
-                                 gain_on_angle.end());
+                                  "controller gain: torque per attitude error");
+constexpr ScalarKey gain_on_rate("gain_N_m_s", Range::not_negative(),
+                                 "controller gain: torque per rate error", gain_on_angle.end());
 constexpr ScalarKey viscous("viscous_N_m_s", 0.0, Range::not_negative(),
                             "viscous friction of a wheel", gain_on_rate.end());
 constexpr ScalarKey dry("dry_N_m", 0.0, Range::not_negative(), "dry friction of a wheel",
@@ -35,13 +35,14 @@ constexpr Vec3Key target_axis("target_axis", {0.0, 0.0, 1.0},
 constexpr NumberKey target_angle("target_angle_deg", 0.0, {}, "rotation angle about `target_axis`");
 constexpr Vec3Key target_rate("target_rate_rad_s", {0.0, 0.0, 0.0},
                               "rate of the target, body axes");
-constexpr NumberKey wheel_inertia(
-    "wheel_inertia_kg_m2", Range::positive(),
-    "of each wheel; included in the inertia of the platform and below its smallest moment",
-    {.varies = true});
-constexpr NumberKey largest_torque("largest_torque_N_m", Range::positive(), "of a motor");
+constexpr NumberKey wheel_inertia("wheel_inertia_kg_m2", Range::positive(),
+                                  "moment of inertia of each wheel; included in the inertia of the "
+                                  "platform and below its smallest moment",
+                                  {.varies = true});
+constexpr NumberKey largest_torque("largest_torque_N_m", Range::positive(),
+                                   "largest torque of the motor of a wheel");
 constexpr NumberKey largest_rate("largest_rate_rad_s", Range::positive(),
-                                 "of a wheel relative to the body");
+                                 "largest rate of a wheel relative to the body");
 }  // namespace key
 
 // Absolute axial rate of each wheel.

@@ -22,22 +22,24 @@ constexpr double most_order = 200.0;
 void add_keys_of(const VariableKeys& variable, std::vector<Key>& keys) {
   const std::string name = variable.name, unit = "_" + std::string(variable.unit);
   keys.push_back(UncertainNumberKey(name + "_exponent", Range::positive(),
-                                    "a power of the " + name + "; *or*", {.optional = true}));
-  keys.push_back(NumbersKey(name + "_powers", {variable.least_power, most_order},
-                            "whole powers of the " + name + ", rising, one term each; *or*",
-                            {.optional = true}));
-  keys.push_back(NumbersKey(name + "_knots" + unit, {},
-                            "a smooth table over the " + name +
-                                ": at least 4 knots, rising, one value for each, cubic in "
-                                "between, once continuously differentiable",
-                            {.optional = true}));
-  keys.push_back(NumberKey(name + "_reference" + unit, variable.reference_SI, Range::positive(),
-                           "where the powers are 1"));
+                                    "exponent of a power of the " + name + "; *or*",
+                                    {.optional = true}));
   keys.push_back(
-      NumbersKey(name + "_range" + unit, {},
-                 "[from, to], range of the measurement. Beyond it the variable is held constant, "
-                 "after a smooth transition of at most a twentieth of the range",
-                 {.usually = "everywhere; of a table its knots", .size = 2}));
+      NumbersKey(name + "_powers", {variable.least_power, most_order},
+                 "integer powers of the " + name + " in rising order, one term each; *or*",
+                 {.optional = true}));
+  keys.push_back(
+      NumbersKey(name + "_knots" + unit, {},
+                 "knots of a smooth table over the " + name +
+                     ": at least 4, in rising order, one coefficient for each; cubic in between",
+                 {.optional = true}));
+  keys.push_back(NumberKey(name + "_reference" + unit, variable.reference_SI, Range::positive(),
+                           name + " at which the powers are 1"));
+  keys.push_back(NumbersKey(
+      name + "_range" + unit, {},
+      "[from, to]: measured range. Beyond it the variable is constant, after a smooth transition "
+      "of at most a twentieth of the range",
+      {.usually = "everywhere; of a table its knots", .size = 2}));
 }
 
 }  // namespace
@@ -52,26 +54,29 @@ std::vector<Key> empirical_shape_keys() {
           "`\"command\"`; `\"cross_talk\"` (of the command about the other axes: xy, xz, yx, yz, "
           "zx, zy)"),
       NumbersKey("yaw_orders", {1.0, most_order},
-                 "whole, rising: cos nψ, sin nψ of the yaw ψ (azimuth of body x) for each n",
+                 "integers n in rising order: cos nψ and sin nψ of the yaw ψ (azimuth of body x) "
+                 "for each n",
                  {.optional = true})};
   for (const VariableKeys& variable : shape_variables) add_keys_of(variable, keys);
   return joined(
       {keys,
-       {UncertainNumberKey("time_constant_s", Range::positive(), "exp(−t/τ); *or*",
-                           {.optional = true}),
-        UncertainNumberKey("time_period_s", Range::positive(), "with `time_orders`",
-                           {.optional = true}),
+       {UncertainNumberKey("time_constant_s", Range::positive(),
+                           "time constant τ of a factor exp(−t/τ); *or*", {.optional = true}),
+        UncertainNumberKey("time_period_s", Range::positive(),
+                           "period of the sines and cosines of `time_orders`", {.optional = true}),
         NumbersKey("time_orders", {0.0, most_order},
-                   "whole, rising: cos and sin of 2π n t/period for each n (0: a constant); *or*",
+                   "integers n in rising order: cos and sin of 2π n t/period for each n (0: a "
+                   "constant); *or*",
                    {.optional = true}),
-        NumberKey("time_span_s", Range::positive(), "with `time_cosines`", {.optional = true}),
-        NumbersKey("time_cosines", {0.0, most_order}, "whole, rising: cos(π n t/span) for each n",
-                   {.optional = true}),
-        UncertainNumberKey(
-            empirical_coefficients, {},
-            "term by term of the first function, of each all terms of the second, of "
-            "each all components of the axes; 200 numbers at most are practical",
-            {.several = true})}});
+        NumberKey("time_span_s", Range::positive(), "span of the cosines of `time_cosines`",
+                  {.optional = true}),
+        NumbersKey("time_cosines", {0.0, most_order},
+                   "integers n in rising order: cos(π n t/span) for each n", {.optional = true}),
+        UncertainNumberKey(empirical_coefficients, {},
+                           "one coefficient for each combination, the last index fastest: term of "
+                           "the first variable, term of the second variable, component of the "
+                           "axes; at most 200 numbers are practical",
+                           {.several = true})}});
 }
 
 }  // namespace photorque

@@ -20,15 +20,17 @@ namespace noise_key {
 constexpr NumberKey irradiance("noise_W_m2", 0.0, Range::not_negative(),
                                "standard deviation of a reading");
 constexpr NumberKey relative("relative_noise", 0.0, Range::not_negative(),
-                             "standard deviation as a fraction of the reading, added");
-constexpr TableKey of_scans("irradiance", "instrument of scans of the light");
-constexpr NumberKey voltage("voltage_noise_V", 0.0, Range::not_negative(), "of a reading");
-constexpr NumberKey current("current_noise_A", 0.0, Range::not_negative(), "of a reading");
+                             "additional standard deviation, as a fraction of the reading");
+constexpr TableKey of_scans("irradiance", "sensor that scans the irradiance");
+constexpr NumberKey voltage("voltage_noise_V", 0.0, Range::not_negative(),
+                            "standard deviation of a voltage reading");
+constexpr NumberKey current("current_noise_A", 0.0, Range::not_negative(),
+                            "standard deviation of a current reading");
 constexpr NumberKey tracker_step(
     "tracker_step_V", Range::not_negative(),
     "voltage step of the tracker; its recorded voltage is then an input of the model",
     {.usually = "the tracker is assumed to be at the highest maximum"});
-constexpr TableKey of_array("array", "instruments of the array");
+constexpr TableKey of_array("array", "meters of the voltage and the current of the array");
 }  // namespace noise_key
 
 InputLocation place_of(const Experiment& experiment) {

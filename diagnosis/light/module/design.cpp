@@ -11,11 +11,13 @@ namespace {
 
 namespace module_key {
 constexpr int64_t most_cells = 10000;
-constexpr IntegerKey cells("cells_in_series", 1, most_cells, "of the module");
+constexpr IntegerKey cells("cells_in_series", 1, most_cells,
+                           "number of cells in series in the module");
 constexpr IntegerKey bypass_every("bypass_every", 0, 0, most_cells,
                                   "cells per bypass diode, at most all; 0: no diodes",
                                   {.varies = true});
-constexpr NumberKey bypass_drop("bypass_drop_V", 0.5, Range::positive(), "of a bypass diode");
+constexpr NumberKey bypass_drop("bypass_drop_V", 0.5, Range::positive(),
+                                "forward voltage of a bypass diode");
 constexpr OtherKey reference_curve(
     "reference_curve", Key::a_text | Key::an_array,
     "curves of the module before the fault, one file or several; *or* "
@@ -23,20 +25,24 @@ constexpr OtherKey reference_curve(
     {.optional = true});
 constexpr TablesKey datasheet("datasheet", "the module as its maker rates it");
 constexpr Range temperatures_K{1.0, 1000.0};
-constexpr OtherKey reference_temperature("reference_temperature_K", Key::a_number | Key::an_array,
-                                         "of the references, one for all or one for each",
-                                         {.usually = "298.15, or the first of the datasheet"});
-constexpr OtherKey reference_irradiance("reference_irradiance_W_m2", Key::a_number | Key::an_array,
-                                        "measured by a sensor at the references, likewise",
-                                        {.optional = true});
+constexpr OtherKey reference_temperature(
+    "reference_temperature_K", Key::a_number | Key::an_array,
+    "cell temperature of the references, one for all or one for each",
+    {.usually = "298.15, or the first of the datasheet"});
+constexpr OtherKey reference_irradiance(
+    "reference_irradiance_W_m2", Key::a_number | Key::an_array,
+    "irradiance of the references, measured by a sensor, one for all or one for each",
+    {.optional = true});
 constexpr UncertainNumberKey temperature("temperature_K", temperatures_K,
-                                         "of the curves that are diagnosed",
+                                         "cell temperature of the curves that are diagnosed",
                                          {.usually = "as the references"});
 constexpr NumberKey temperature_sigma("temperature_sigma_K", 2.0, Range::positive(),
                                       "standard error of the temperatures");
-constexpr NumberKey current_noise("current_noise_A", Range::positive(), "of a reading",
+constexpr NumberKey current_noise("current_noise_A", Range::positive(),
+                                  "standard deviation of a current reading",
                                   {.usually = "found from second differences"});
-constexpr NumberKey voltage_noise("voltage_noise_V", 0.0, Range::not_negative(), "of a reading");
+constexpr NumberKey voltage_noise("voltage_noise_V", 0.0, Range::not_negative(),
+                                  "standard deviation of a voltage reading");
 constexpr TableKey table("module", "a module in sunlight, whose curves are diagnosed");
 }  // namespace module_key
 
@@ -58,25 +64,31 @@ constexpr ChoiceKey kind("kind",
                          {{"cell_shaded", "cells in the shade"},
                           {"cell_cracked",
                            "cells with a part that is connected only through a resistance"},
-                          {"cell_shunted", "cells with a short cut"},
+                          {"cell_shunted", "cells with a leakage path (shunt)"},
                           {"shunt", "short cuts in every cell"},
                           {"series_resistance", "a resistance in series"},
-                          {"temperature", "warmer or colder than stated"},
+                          {"temperature", "the cells are warmer or colder than stated"},
                           {"bypass_shorted", "a bypass diode that conducts always"},
                           {"bypass_open", "shaded cells whose bypass diode is open"},
                           {"substring_shaded", "cells of whole bypass diodes in the shade"},
                           {"unsteady_light", "light that changes while the voltage rises"}},
                          "the effect");
-constexpr IntegerKey count("count", 1, 1, module_key::most_cells, "of the cells, at most all",
+constexpr IntegerKey count("count", 1, 1, module_key::most_cells, "number of affected cells",
                            {.varies = true});
-constexpr NumberKey factor("factor", Range::fraction(), "of the light");
-constexpr OtherKey factors("factor", Key::a_number | Key::an_array, "of the light, of each");
-constexpr NumberKey fraction("fraction", {0.0, 1.0, true, true}, "of the area");
+constexpr NumberKey factor("factor", Range::fraction(),
+                           "fraction of the light that the cells receive");
+constexpr OtherKey factors("factor", Key::a_number | Key::an_array,
+                           "fraction of the light that each group of cells receives");
+constexpr NumberKey fraction("fraction", {0.0, 1.0, true, true},
+                             "fraction of the area of a cell that is behind the resistance");
 constexpr NumberKey resistance("resistance_ohm", Range::positive(), "of the module");
 constexpr NumberKey change_of_temperature("change_K", {-150.0, 150.0},
                                           "temperature difference of all cells");
-constexpr NumberKey change("change", {-1.0, 1.0}, "from the first point to the last");
-constexpr NumberKey bend("bend", 0.0, {-1.0, 1.0}, "at the ends over the middle, two thirds of");
+constexpr NumberKey change("change", {-1.0, 1.0},
+                           "relative change of the light from the first point to the last");
+constexpr NumberKey bend("bend", 0.0, {-1.0, 1.0},
+                         "coefficient b of a curvature b (6u² − 6u + 1) of the light, u from 0 at "
+                         "the first point to 1 at the last");
 constexpr TextKey curve("curve", "the only curve on which the effect acts",
                         {.usually = "all curves"});
 // Reverse conduction of shaded and cracked cells.
@@ -259,17 +271,19 @@ std::vector<Key::Choice> module_effects() {
   using namespace effect_key;
   const std::vector<Key> reverse = {breakdown_fraction, breakdown, breakdown_exponent};
   std::vector<Key::Choice> kinds =
-      kind.bringing(
-              {joined({{count, factor}, reverse}),
-               joined({{count, fraction, resistance.meaning("in front of that part")}, reverse}),
-               {count, resistance.meaning("in parallel with each of the cells")},
-               {resistance.meaning("beside every cell")},
-               {resistance},
-               {change_of_temperature},
-               {},
-               joined({{count, factor}, reverse}),
-               {factors},
-               {change, bend}})
+      kind.bringing({joined({{count, factor}, reverse}),
+                     joined({{count, fraction,
+                              resistance.meaning(
+                                  "resistance between this part and the rest of the cell")},
+                             reverse}),
+                     {count, resistance.meaning("resistance in parallel with each affected cell")},
+                     {resistance.meaning("beside every cell")},
+                     {resistance},
+                     {change_of_temperature},
+                     {},
+                     joined({{count, factor}, reverse}),
+                     {factors},
+                     {change, bend}})
           .choices;
   for (Key::Choice& one : kinds) one.keys.push_back(curve);
   return kinds;
