@@ -100,8 +100,8 @@ constexpr ChoiceKey force_key(
     "force",
     {{"momentum", "momentum in minus momentum out"},
      {"as_published",
-      "equation 29 of the paper as it stands: all light absorbed, and the cosine, which the "
-      "irradiance on a surface holds already, applied again ([paper.md](paper.md))"}},
+      "equation 29 of the paper as printed: all light is absorbed, and the cosine that the "
+      "irradiance on a surface already contains is applied again ([paper.md](paper.md))"}},
     0, "law of the force of light on an element");
 
 ReceiverKind kind() {

@@ -49,9 +49,9 @@ inline constexpr NumberKey shunt_photocurrent(
 inline constexpr NumberKey shunt_dark("shunt_dark_ohm", Range::positive(),
                                       "with `shunt_photocurrent_A`: R_sh in the dark, approached "
                                       "exponentially (PVsyst)");
-inline constexpr NumberKey shunt_exponent("shunt_exponent", Range{0.01, 100.0},
-                                          "with `shunt_dark_ohm`: c in e^(−c·light); PVsyst has "
-                                          "5.5");
+inline constexpr NumberKey shunt_exponent(
+    "shunt_exponent", Range{0.01, 100.0},
+    "with `shunt_dark_ohm`: exponent c in e^(−c·light); PVsyst uses 5.5");
 inline constexpr NumberKey breakdown_fraction(
     "breakdown_fraction", {0.0, 7.0}, "coefficient a of the reverse breakdown; 0: no breakdown");
 inline constexpr NumberKey breakdown("breakdown_V", {-1e308, 0.0, false, true},
@@ -131,13 +131,14 @@ inline constexpr NumberKey margin("margin_m", 0.0, Range::not_negative(),
                                   "margin around the cells, in the same unit");
 inline constexpr NumberKey temperature(
     "temperature_K", {1.0, 1000.0},
-    "of cells and diodes, in every run. The `saturation_A` of the diodes is valid at this "
-    "temperature, or at 298.15 K if it is not given, and does not follow the cells' temperature",
+    "temperature of cells and diodes in every run. The `saturation_A` of the diodes is valid at "
+    "this temperature, or at 298.15 K if it is not given; it is independent of the temperature of "
+    "the cells",
     {.usually = "the steady state of `[array.thermal]`, over time its balance; `diagnose` 298.15"});
 inline constexpr NumberKey rated_temperature(
     "rated_temperature_K", ArrayDesign{}.rated_temperature_K, {1.0, 1000.0},
-    "of the cells; warmer cells give a warning. 85 °C is the maximum of the thermal cycling test "
-    "of modules (IEC 61215)");
+    "rated temperature of the cells; warmer cells give a warning. 85 °C is the maximum of the "
+    "thermal cycling test of modules (IEC 61215)");
 inline constexpr TableKey thermal(
     "thermal", "heat balance of the cells, used if `temperature_K` is not given");
 inline constexpr TableKey cell_parameters(

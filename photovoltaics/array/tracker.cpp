@@ -16,7 +16,7 @@ namespace tracker_key {
 constexpr Tracker usual;
 constexpr TextsKey kinds(
     "kinds",
-    "of `\"perturb_and_observe\"`, `\"incremental_conductance\"`, `\"global_scan\"`, "
+    "any of `\"perturb_and_observe\"`, `\"incremental_conductance\"`, `\"global_scan\"`, "
     "`\"periodic_sweep\"`; the list of losses uses the first",
     {.usually = "all four"});
 constexpr NumberKey period("period_s", usual.period_s, Range::positive(),

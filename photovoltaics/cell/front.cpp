@@ -26,8 +26,8 @@ constexpr NumbersKey transmittance("transmittance", Range::fraction(),
                                    {.optional = true});
 constexpr FlagKey cosine_twice(
     "cosine_twice", false,
-    "instead of all these, T = cos θ: the light on the cells, which holds the cosine already, "
-    "counts with it again; for the paper's figures ([paper.md](paper.md)), not for cells");
+    "instead of all these, T = cos θ: the cosine that the light on the cells already contains is "
+    "applied again; for the figures of the paper ([paper.md](paper.md)), not for real cells");
 }  // namespace cover_key
 
 // Amplitudes reflected on the way from a medium of index n and cosine c into another.

@@ -16,8 +16,8 @@ inline constexpr TextKey file("file",
                               "glTF or GLB, beside the experiment; metres, +Y up: glTF (x, y, z) "
                               "is body (x, −z, y). Or STL or OBJ, with `unit`");
 inline constexpr ChoiceKey up("up", {"z", "y"}, 0,
-                              "of an STL or OBJ file: the axis that is up at zero tilt; z: the "
-                              "file's axes are the body's, y: as in glTF");
+                              "axis of an STL or OBJ file that points up at zero tilt; z: the axes "
+                              "of the file are those of the body, y: as in glTF");
 inline constexpr NumberKey metres_per_unit(
     "metres_per_unit", 1.0, Range::positive(),
     "scale of a glTF file's lengths: 0.001 for a model in millimetres");
@@ -64,17 +64,17 @@ inline constexpr IntegerKey max_depth("max_depth", 1, 65535,
                                       "largest number of interactions of a ray",
                                       {.optional = true});
 inline constexpr NumberKey cutoff("cutoff", {0.0, 1.0, false, true},
-                                  "rays end below this fraction of their first power (this "
-                                  "and `max_depth` are reported as truncated power)",
+                                  "rays end below this fraction of their initial power (the power "
+                                  "lost in this way and by `max_depth` is reported as truncated)",
                                   {.optional = true});
 inline constexpr ChoiceKey direct(
     "direct",
     {{"auto",
-      "as `\"gather\"`; but as `\"rays\"`, with a note, if quadrature would take seconds and more "
-      "than four times as long as the rays (thousands of lamps). Bodies: in sunlight alone"},
+      "as `\"gather\"`, for bodies in sunlight only; but as `\"rays\"`, with a note, if quadrature "
+      "would take seconds and more than four times as long as the rays (thousands of lamps)"},
      {"gather",
-      "quadrature over the lamps, with shadow rays where something may shade: for flat flux maps, "
-      "flat torque maps of plain surfaces, and force and torque on bodies"},
+      "quadrature over the lamps, with shadow rays for surfaces that may be shaded: for flat flux "
+      "maps, flat torque maps of plain surfaces, and force and torque on bodies"},
      {"rays", "by rays alone"}},
     0,
     "method for direct light. Quadrature needs sources with uniform apertures (`led`, `led_array`, "
@@ -82,19 +82,19 @@ inline constexpr ChoiceKey direct(
     "always use rays");
 inline constexpr NumberKey target_error(
     "target_error", {1e-6, 1.0, false, false},
-    "double the rays until every bin above a tenth of its map's peak has this "
-    "relative standard error; also `--target-error`",
+    "relative standard error of every bin above a tenth of the peak of its map; the rays are "
+    "doubled until it is reached; also `--target-error`",
     {.optional = true});
-inline constexpr NumberKey max_time(
-    "max_time_s", Range::positive(),
-    "end before the next round would exceed this time; only with a target; also `--max-time`",
-    {.optional = true});
+inline constexpr NumberKey max_time("max_time_s", Range::positive(),
+                                    "longest time of the trace, which ends before the next round "
+                                    "would exceed it; only with `target_error`; also `--max-time`",
+                                    {.optional = true});
 inline constexpr IntegerKey arriving_rays(
     "arriving_rays", 1, 10'000'000,
-    "`trace` also writes, for every flux map, the rays that arrive there, of this many "
-    "emitted ones (rounded up as `rays`, with 8 replicates): `rays_NAME.tm25ray`, IES "
-    "TM-25, millimetres in the body frame, with power and, of line sources, wavelength; "
-    "no file for a map that no ray meets; at most 4096 lamps",
+    "number of emitted rays (rounded up as `rays`, with 8 replicates) from which `trace` writes "
+    "those that arrive at each flux map: `rays_NAME.tm25ray` (IES TM-25, millimetres in the body "
+    "frame, with power and, for line sources, wavelength), no file if no ray arrives; at most 4096 "
+    "lamps",
     {.optional = true});
 inline constexpr TableKey trace("trace", "accuracy and effort of the trace");
 }  // namespace trace_key

@@ -27,14 +27,15 @@ constexpr NumberKey specular = fraction("specular", "fraction that is mirrored")
 constexpr NumberKey diffuse = fraction("diffuse", "fraction that is scattered by Lambert's law");
 constexpr NumberKey transmittance =
     fraction("transmittance",
-             "fraction that passes straight through; the four sum to 1, and one may be omitted");
+             "fraction that passes straight through. The fractions, with `retroreflectance`, sum "
+             "to 1; one of the first four may be omitted");
 constexpr NumberKey retroreflectance =
-    fraction("retroreflectance", "a fifth fraction, reflected back to the source");
+    fraction("retroreflectance", "additional fraction that is reflected back to the source");
 constexpr NumberKey roughness(
     "roughness", {0.0, 1.0, true},
-    "as in glTF: the specular fraction follows GGX microfacets with alpha = roughness² and Smith "
-    "masking; light reflected more than once is included, so that `specular` is the reflectance at "
-    "every angle",
+    "roughness as in glTF: the specular fraction follows GGX microfacets with alpha = roughness² "
+    "and Smith masking; light reflected more than once is included, so that `specular` is the "
+    "reflectance at every angle",
     {.optional = true});
 constexpr NumberKey slope_error(
     "slope_error_mrad", {1e-6, 0.2},
@@ -48,10 +49,10 @@ constexpr ChoiceKey slope_error_shape(
       "deviation"},
      {"pillbox", "slopes uniform over a disc; the size is its radius"}},
     0, "distribution of the slopes");
-constexpr Vec3Key slope_error_axis(
-    "slope_error_axis",
-    "with two sizes: the first acts along this direction's projection onto the surface, body axes",
-    {.optional = true});
+constexpr Vec3Key slope_error_axis("slope_error_axis",
+                                   "with two sizes: the first one acts along the projection of "
+                                   "this direction onto the surface, body axes",
+                                   {.optional = true});
 constexpr NumberKey refractive_index(
     "refractive_index", {1.0, 10.0},
     "glass in front, by Fresnel's law for unpolarised light; the fractions are those behind it",

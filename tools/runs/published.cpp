@@ -13,9 +13,9 @@ constexpr NumberKey value("value", {}, "published value, in its unit");
 constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi}, "tilt to which the value applies");
 constexpr NumberKey rounded_to(
     "rounded_to", Range::positive(),
-    "one unit of its last printed digit (38 %: 0.01): the computed one is compared with it, and "
-    "`published_misfit` of the summary is the sum of ((ours − `value`)/(½ "
-    "`rounded_to`))²: for `optimise`, at most 1 for each figure that agrees",
+    "one unit of the last printed digit (38 %: 0.01). For `optimise`, `published_misfit` in the "
+    "summary is the sum of ((computed − `value`)/(½ `rounded_to`))²; a figure that agrees "
+    "contributes at most 1",
     {.optional = true});
 constexpr TextKey source("source", "publication that contains the value");
 constexpr TextKey why("why", "", "known reason of the difference, printed with it");

@@ -65,7 +65,8 @@ inline constexpr TextKey verb("verb", "power",
                               "command of every design: `trace`, `power`, `torque-map`, `budget`, "
                               "`balance`, `propagate`, `fit-cell`");
 inline constexpr TextsKey figures(
-    "figures", "names in its `summary.json`: columns of `sweep.csv`, plotted too",
+    "figures",
+    "names of figures in `summary.json`, which become columns of `sweep.csv` and are plotted",
     {.usually = "all"});
 inline constexpr OtherKey maximise(
     "maximise", Key::a_text | Key::an_array,
@@ -85,9 +86,9 @@ inline constexpr TablesKey mean_over(
     "key that takes several values within each design; the figures are means over these");
 inline constexpr TablesKey worst_over(
     "worst_over",
-    "takes the values of a grid axis within each design; an objective or a constrained figure "
-    "counts where it is worst, any other figure where the first objective (else the first "
-    "constrained figure) is");
+    "key that takes the values of a grid axis within each design. Objectives and constrained "
+    "figures are taken at their worst value, other figures where the first objective (else the "
+    "first constrained figure) is worst");
 inline constexpr TablesKey constraint("constraint",
                                       "limit of a figure, required at every value of `worst_over`");
 inline constexpr TablesKey tolerance(
@@ -98,12 +99,12 @@ inline constexpr IntegerKey built_copies("built_copies", 100, 2, 100000,
 inline constexpr NumberKey built_fraction("built_fraction", {0.5, 1.0, false, true},
                                           "fraction of the copies that reach the stated value",
                                           {.optional = true});
-inline constexpr ChoiceKey built_of(
-    "built_of",
-    {{"best", "copies of the best and the nominal design"},
-     {"every",
-      "of every design, which are then judged by what the fraction reaches (column `p95_FIGURE`)"}},
-    0, "designs of which copies are computed");
+inline constexpr ChoiceKey built_of("built_of",
+                                    {{"best", "copies of the best and the nominal design"},
+                                     {"every",
+                                      "copies of every design; designs are then ranked by the "
+                                      "value that the fraction reaches (column `p95_FIGURE`)"}},
+                                    0, "designs of which copies are computed");
 inline constexpr IntegerKey built_seed("built_seed", 1, 0, INT64_MAX, "seed of the random copies");
 inline constexpr IntegerKey global("global", 100, 0, 100000,
                                    "`optimise`: number of evaluations of the global search");
