@@ -16,7 +16,6 @@ namespace photorque {
 namespace {
 
 namespace budget_key {
-constexpr BearingDatasheet usual;
 constexpr NumberKey source_to_cell("source_to_cell", Range::fraction(),
                                    "light on the cells divided by the emitted light",
                                    {.usually = "the paper's"});
@@ -41,7 +40,7 @@ constexpr NumberKey inlet("inlet_Pa", Range::positive(), "absolute pressure of t
 constexpr NumberKey load("load_N", Range::positive(), "rated load");
 constexpr NumberKey drag("drag_N_m", 0.0, Range::not_negative(),
                          "drag torque in the catalogue; 0: not given");
-constexpr NumberKey drag_rate("drag_rate_rpm", usual.drag_rate_rad_s, Range::positive(),
+constexpr NumberKey drag_rate("drag_rate_rpm", pi, Range::positive(),  // 30 rpm
                               "rate at which the drag was measured");
 constexpr TablesKey bearing("bearing", "a bearing of a catalogue, compared with the paper's model");
 constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi, false, false}, "tilt of the platform");

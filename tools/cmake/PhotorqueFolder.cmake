@@ -62,10 +62,12 @@ function(photorque_precompiled target)
   endif()
 endfunction()
 
-# No kernel is in this target: without the costly passes it compiles in less time. Sums are rounded as elsewhere
-# (multiply-add comes with the expensive optimisations).
+# No kernel is in this target: without the costly passes GCC compiles it in less time. Sums are rounded as elsewhere
+# (multiply-add comes with the expensive optimisations). Clang gains little, and wants its compiled header at one level.
 function(photorque_cold target)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1> $<$<CXX_COMPILER_ID:GNU>:-fexpensive-optimizations>)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1 -fexpensive-optimizations>)
+  endif()
 endfunction()
 
 # photorque_folder(NAME [FILES file ...] [WITHOUT path ...] [USES folder ...] [LINKS library ...] [ALONE file ...]

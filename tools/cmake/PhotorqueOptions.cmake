@@ -117,7 +117,11 @@ if(PHOTORQUE_CCACHE)
       CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
       CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=true CCACHE_DEPEND=true CCACHE_MAXSIZE=20G
       ${PHOTORQUE_CCACHE})
-  add_compile_options(-fpch-preprocess)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    add_compile_options(-fpch-preprocess)
+  else()
+    add_compile_options("SHELL:-Xclang -fno-pch-timestamp")  # otherwise every compiled header has another content
+  endif()
 endif()
 find_program(PHOTORQUE_MOLD mold)
 if(PHOTORQUE_MOLD)

@@ -16,24 +16,23 @@ namespace photorque {
 namespace {
 
 namespace serve_key {
-constexpr ServeSettings usual;
 constexpr ChoiceKey mode("mode",
                          {{"paced", "by the clock"},
                           {"lockstep", "every tick waits for the client's answer"}},
                          0, "clock of the ticks");
-constexpr NumberKey rate("rate_Hz", usual.rate_Hz, {0.1, 1e5},
+constexpr NumberKey rate("rate_Hz", 160.0, {0.1, 1e5},
                          "rate of the ticks and of the rows of `recording.csv`");
-constexpr TextKey address("address", usual.address, "IPv4 address of the UDP socket");
+constexpr TextKey address("address", "127.0.0.1", "IPv4 address of the UDP socket");
 constexpr IntegerKey port("port", PHOTORQUE_PORT, 0, 65535,
                           "UDP port; 0: a free port, which the first line of the output states");
 constexpr FlagKey wait_for_client("wait_for_client", true,
                                   "true: the first tick waits for a client");
-constexpr NumberKey client_timeout("client_timeout_s", usual.client_timeout_s, {1e-3, 1e6},
+constexpr NumberKey client_timeout("client_timeout_s", 60.0, {1e-3, 1e6},
                                    "longest wait for the first hello and, in lockstep, for every "
                                    "answer; afterwards the run ends with status 3");
-constexpr NumberKey max_torque("max_torque_N_m", usual.max_torque_N_m, Range::positive(),
+constexpr NumberKey max_torque("max_torque_N_m", 1.0, Range::positive(),
                                "commands with a larger torque are rejected");
-constexpr NumberKey silence("silence_s", usual.silence_s, {0.01, 1e6},
+constexpr NumberKey silence("silence_s", 2.0, {0.01, 1e6},
                             "paced: after this time without a packet of the client, the torque is "
                             "zero and another client is accepted");
 constexpr NumberKey hold("hold_s", Range::positive(),
@@ -47,7 +46,7 @@ constexpr ChoiceKey on_miss("on_miss",
                              {"slip", "the clock is set back"},
                              {"stop", "the run ends"}},
                             0, "after a missed tick");
-constexpr NumberKey spin("spin_s", usual.spin_s, {0.0, 1.0},
+constexpr NumberKey spin("spin_s", 50e-6, {0.0, 1.0},
                          "time before a tick in which the run polls instead of sleeping; costs "
                          "processor time, avoids the delay of waking up");
 constexpr IntegerKey realtime_priority(

@@ -22,17 +22,17 @@ struct ServeSettings {
     lockstep,  // every tick waits for the client's answer; no clock
   };
   Mode mode = Mode::paced;
-  double rate_Hz = 160.0;
-  std::string address = "127.0.0.1";
+  double rate_Hz = 0.0;
+  std::string address;
   int port = 0;
   bool wait_for_client = true;  // before the first tick
-  double client_timeout_s = 60.0;
-  double silence_s = 2.0;  // after which the torque of a paced run's client ends
-  double max_torque_N_m = 1.0;
+  double client_timeout_s = 0.0;
+  double silence_s = 0.0;  // after which the torque of a paced run's client ends
+  double max_torque_N_m = 0.0;
   double hold_s = 0.0;  // after which a command that is not renewed ends; infinity: never
   double deadline_s = 0.0;
   OnMiss on_miss = OnMiss::catch_up;
-  double spin_s = 50e-6;
+  double spin_s = 0.0;
   int realtime_priority = 0;
   bool send_truth = false;
   LinkSettings to_client, from_client;

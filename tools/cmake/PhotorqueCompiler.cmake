@@ -1,0 +1,8 @@
+# The compiler, unless CXX or CMAKE_CXX_COMPILER names one: Clang of Debian's security archive where it is installed,
+# which builds in two thirds of g++'s time, otherwise the default. Included before project().
+if(NOT CMAKE_CXX_COMPILER AND NOT DEFINED ENV{CXX})
+  find_program(PHOTORQUE_CLANG clang++-22)
+  if(PHOTORQUE_CLANG)
+    set(CMAKE_CXX_COMPILER ${PHOTORQUE_CLANG})
+  endif()
+endif()
