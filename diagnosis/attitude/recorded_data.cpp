@@ -450,7 +450,11 @@ bool settle_again(const Fit& explained, const Thresholds& limits, RecordedData& 
   });
   use_noise(find_noise(again.train, residuals_of(explained, again.train), limits.noise), again);
   const NoiseLevels &now = again.train.front().noise, &before = data.train.front().noise;
-  if (!is_quieter(now, before)) return false;
+  bool is_whiter = false;
+  for (int k = 0; k < 6; ++k) {
+    is_whiter = is_whiter || (before.of(k).coloured > 0.0 && !(now.of(k).coloured > 0.0));
+  }
+  if (!is_whiter && !is_quieter(now, before)) return false;
   data = std::move(again);
   return true;
 }

@@ -46,7 +46,8 @@ Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& 
 
 // Estimates the noise about an explanation near the readings if the nominal model left it open. The
 // noise that was estimated about the nominal model may contain effects that it lacks: it is
-// replaced if the readings are quieter about the explanation. Returns whether it changed.
+// replaced if the readings are quieter or less correlated about the explanation. Returns whether it
+// changed.
 bool settle_again(const Fit& explained, const Thresholds& limits, RecordedData& data);
 
 // Gyro bias that drifts within a recording.
