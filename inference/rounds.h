@@ -89,7 +89,8 @@ class Rounds {
   // swings.
   std::vector<size_t> follow_what_swings(const Trial& best) {
     const Trial base = with_instruments(domain_, best, trials_.front(), set_.runs);
-    if (has_diverged(base, limits_)) return {};
+    // A scan about a diverged base is useless if some candidate leads back to the readings.
+    if (has_diverged(base, limits_) && !has_diverged(best, limits_)) return {};
     std::vector<Trial> found = scanned(base);
     if (found.empty()) return {};
     sort_by_evidence(found);
