@@ -93,8 +93,9 @@ struct Where {
   std::vector<Interval> intervals_s;  // of the first recording, in order of time
   std::optional<Interval> band_Hz;
   struct Dependence {
-    std::string variable;   // tilt, heading, rate, time, charge, command, irradiance, …
-    double strength = 0.0;  // fraction of the difference that a function of it explains, 0 to 1
+    std::string variable;  // tilt, heading, rate, time, charge, command, irradiance, …
+    // Fraction of the difference that a function of it explains, 0 to 1; 0: not known.
+    double strength = 0.0;
   };
   std::vector<Dependence> depends_on;  // strongest first
 };

@@ -59,7 +59,8 @@ Json where_json(const Where& where) {
   for (const auto& i : where.intervals_s) intervals.push_back(numbers({i.from, i.to}));
   Json depends = Json::array();
   for (const auto& d : where.depends_on) {
-    Json one = {{"variable", d.variable}, {"strength", number(d.strength)}};
+    Json one = {{"variable", d.variable}};
+    if (d.strength > 0.0) one["strength"] = number(d.strength);
     // This schema calls the yaw "heading".
     if (d.variable == "yaw") {
       one["variable"] = "heading";

@@ -49,6 +49,10 @@ struct CandidateTraits {
   // Whether it is so nonlinear that forecasts about a model without it fail. Such candidates are
   // fitted one at a time, from all their starts, before sets are forecast.
   bool is_fitted_first = false;
+  // Whether it changes only readings, so that no torque takes its place.
+  bool is_of_instrument = false;
+  // How often a trial may contain it.
+  size_t most = 1;
 };
 
 // Candidates, evidence and significance of a trial, without the fit.
@@ -67,6 +71,8 @@ struct Explanation {
   // Excess of the held-out χ² over the value that the parameter errors predict (held_out.h)
   // [sigma].
   std::optional<double> held_out_sigma = {};
+  // For each candidate the largest |θ|/σ of a single parameter of its size; empty: not computed.
+  std::vector<double> largest_component = {};
 };
 
 // Convergence options. The first `windows` fractions of each run are fitted in turn, each with at
@@ -180,11 +186,13 @@ inline bool has_place(const std::vector<size_t>& among, const std::vector<Candid
   return std::any_of(among.begin(), among.end(), [&](size_t c) { return all[c].has_place; });
 }
 
-// Whether one of `among` has the same name as `candidate`.
+// Whether `among` contains the name of `candidate` as often as allowed.
 inline bool acts_already(const std::vector<size_t>& among, size_t candidate,
                          const std::vector<CandidateTraits>& all) {
-  return std::any_of(among.begin(), among.end(),
-                     [&](size_t other) { return all[other].name == all[candidate].name; });
+  const auto count = std::count_if(among.begin(), among.end(), [&](size_t other) {
+    return all[other].name == all[candidate].name;
+  });
+  return static_cast<size_t>(count) >= all[candidate].most;
 }
 
 // Whether the prediction of a trial has diverged, so that its derivatives are useless.

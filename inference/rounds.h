@@ -33,16 +33,20 @@ class Rounds {
   // set. `scans`: whether to search also for effects that only a scan can find.
   std::vector<Trial> run(const Trial& from, bool scans = true) {
     if (!from.candidates.empty()) trials_.push_back(from);
-    Trial at = from;
-    bool scan = false, scans_base = false;
+    go_on(from, {}, scans);
+    return std::move(trials_);
+  }
+
+ private:
+  // Rounds over trials that contain the candidates `swinging`. Without them, the first round is
+  // followed by rounds over what a scan of the base finds.
+  void go_on(Trial at, const std::vector<size_t>& swinging, bool scans) {
+    bool scan = false;
+    const bool is_first_track = swinging.empty();
     for (int round = 0; round < limits_.search.max_rounds; ++round) {
-      std::vector<Trial> found = scan ? scanned(at) : predicted(at, round == 0);
-      // Slow effects may mimic a fast one, so one scan also starts from the base without them.
-      if (scan && !scans_base && may_be_stand_ins(at)) {
-        scans_base = true;
-        for (Trial& t : scanned_alone(at)) found.push_back(std::move(t));
-      }
-      if (round == 0) {
+      const bool is_first = is_first_track && round == 0;
+      std::vector<Trial> found = scan ? scanned(at) : predicted(at, is_first);
+      if (is_first) {
         for (Trial& t : each_alone(at)) found.push_back(std::move(t));
       }
       if (scan) {
@@ -55,38 +59,67 @@ class Rounds {
       if (set_.pieces == 1) settle_leaders(domain_, set_.runs, threads_, found, parents);
       for (Trial& parent : parents) keep(std::move(parent));
       for (Trial& trial : found) keep(std::move(trial));
-      const Trial& best = best_to_go_on();
-      const Trial& before = *std::find_if(trials_.begin(), trials_.end(), [&](const Trial& t) {
+      const Trial before = *std::find_if(trials_.begin(), trials_.end(), [&](const Trial& t) {
         return same_candidates(t.candidates, at.candidates);
       });
+      Trial best = best_to_go_on(swinging);
+      if (is_first && scans && may_be_stand_ins(best)) {
+        const std::vector<size_t> fast = follow_what_swings(best);
+        best = best_to_go_on(swinging);
+        if (!fast.empty() && includes(best.candidates, fast)) return;
+      }
       const bool gained =
           best.log_evidence > before.log_evidence + limits_.search.min_log_evidence_gain;
       at = gained ? best : before;
       // Pieces select the sets that are fitted to whole runs.
       if (set_.pieces > 1 && explains(at)) {
         at = without_each(std::move(at));
-        if (!has_empirical(at)) {
-          if (!scans_base && may_be_stand_ins(at)) {
-            for (Trial& t : scanned_alone(at)) keep(std::move(t));
-          }
-          break;
-        }
+        if (!has_empirical(at)) return;
       }
       // Scans are slow: they start when no predicted candidate lowers χ² further.
-      if (!gained && (scan || !scans || !is_worth_a_scan(at))) break;
-      if (scan && set_.pieces > 1) break;
+      if (!gained && (scan || !scans || !is_worth_a_scan(at))) return;
+      if (scan && set_.pieces > 1) return;
       scan = !gained;
     }
-    return std::move(trials_);
   }
 
- private:
-  bool may_be_stand_ins(const Trial& at) const {
-    if (at.candidates.empty()) return false;
+  // Slow effects take the quasi-static part of an effect that swings and then hide the rest of it.
+  // The base is therefore scanned without them, but with the errors of instruments of `best`, and
+  // rounds start from the best result. Returns the candidates of that result; empty: nothing
+  // swings.
+  std::vector<size_t> follow_what_swings(const Trial& best) {
+    const Trial base = with_instruments(domain_, best, trials_.front(), set_.runs);
     // A scan about a diverged base is useless if some candidate leads back to the readings.
-    if (has_diverged(trials_.front(), limits_) && !has_diverged(at, limits_)) return false;
-    return at.candidates.size() > 1 ||
-           domain_.excess_sigma(at, set_.runs) > limits_.search.explained_sigma;
+    if (has_diverged(base, limits_) && !has_diverged(best, limits_)) return {};
+    std::vector<Trial> found = scanned(base);
+    if (found.empty()) return {};
+    sort_by_evidence(found);
+    const Trial again =
+        domain_.refit(found.front(), set_.runs, domain_.begins_of(found.front()), patient(limits_));
+    if (again.log_evidence > found.front().log_evidence) found.front() = again;
+    const Trial first = found.front();
+    for (Trial& t : found) keep(std::move(t));
+    const double least = base.log_evidence + limits_.decision.min_log_odds;
+    if (!(first.log_evidence > least) || !first.objection.empty()) return {};
+    go_on(first, first.candidates, true);
+    return first.candidates;
+  }
+
+  // Whether slow effects may take the place of one that swings: several together, one of which only
+  // a combination is significant, or one that leaves something. What remains may cancel in means of
+  // neighbours, but it raises χ².
+  bool may_be_stand_ins(const Trial& at) const {
+    const bool swings = std::ranges::any_of(
+        at.candidates, [&](size_t c) { return domain_.candidates()[c].is_fast; });
+    if (at.candidates.empty() || swings) return false;
+    const double most = limits_.search.explained_sigma;
+    const bool is_vague = std::ranges::any_of(at.largest_component, [&](double sigma) {
+      return sigma < limits_.decision.min_significance;
+    });
+    return at.candidates.size() > 1 || is_vague ||
+           at.fit.chi2_per_sample() >
+               1.0 + most * std::sqrt(2.0 / static_cast<double>(at.fit.samples)) ||
+           domain_.excess_sigma(at, set_.runs) > most;
   }
 
   // Whether neither residual structure nor a large misfit remains. Both are tested, because in a
@@ -410,25 +443,6 @@ class Rounds {
     return extend_by_tasks(domain_, at, tasks, set_.runs, threads_);
   }
 
-  // Scans from the base alone: slow effects that mimic a fast one hide most of it. If the best
-  // result explains most of the gain of `at`, candidates that complement it are added.
-  std::vector<Trial> scanned_alone(const Trial& at) const {
-    const Trial& base = trials_.front();
-    std::vector<Trial> found = scanned(base);
-    if (found.empty()) return found;
-    sort_by_evidence(found);
-    Trial first =
-        domain_.refit(found.front(), set_.runs, domain_.begins_of(found.front()), patient(limits_));
-    if (first.log_evidence > found.front().log_evidence) found.front() = first;
-    first = found.front();
-    const bool is_most =
-        first.log_evidence - base.log_evidence > 0.5 * (at.log_evidence - base.log_evidence);
-    if (!is_most || explains(first) || !first.objection.empty()) return found;
-    for (Trial& t : predicted(first, false)) found.push_back(std::move(t));
-    for (Trial& t : scanned(first)) found.push_back(std::move(t));
-    return found;
-  }
-
   void keep(Trial trial) {
     for (Trial& t : trials_) {
       if (!same_candidates(t.candidates, trial.candidates)) continue;
@@ -440,9 +454,16 @@ class Rounds {
     trials_.push_back(std::move(trial));
   }
 
-  const Trial& best_to_go_on() const {
+  static bool includes(const std::vector<size_t>& all, const std::vector<size_t>& some) {
+    return std::ranges::all_of(some,
+                               [&](size_t c) { return std::ranges::find(all, c) != all.end(); });
+  }
+
+  // The allowed trial of largest evidence that contains the candidates.
+  const Trial& best_to_go_on(const std::vector<size_t>& containing) const {
     for (const size_t i : by_evidence(trials_)) {
-      if (trials_[i].objection.empty()) return trials_[i];
+      const Trial& t = trials_[i];
+      if (t.objection.empty() && includes(t.candidates, containing)) return t;
     }
     return trials_.front();
   }

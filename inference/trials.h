@@ -70,6 +70,20 @@ void settle_leaders(const D& domain, const std::vector<typename D::Run>& runs, i
   });
 }
 
+// The base with the errors of instruments that the trial contains; without any, the base itself.
+template <Domain D>
+typename D::Trial with_instruments(const D& domain, const typename D::Trial& trial,
+                                   const typename D::Trial& base,
+                                   const std::vector<typename D::Run>& runs) {
+  Members<typename D::Start> members;
+  for (const auto& term : domain.terms_of(trial)) {
+    if (domain.candidates()[term.candidate].is_of_instrument) members.push_back({term});
+  }
+  if (members.empty()) return base;
+  const Effort effort{.max_iterations = domain.limits().fitting.trial_iterations};
+  return domain.assemble(trial, members, runs, effort);
+}
+
 // The runs, or their pieces.
 template <Domain D>
 struct RunSet {

@@ -148,10 +148,13 @@ Answer at_noise_of_readings(const NominalModel& nominal, RecordedData& data,
                             const DiagnoseOptions& options, Fit& nominal_fit, const Trial* near) {
   tell(options, "fitting every effect of the catalogue");
   Answer a = searched(nominal, nominal_fit, data, options, Among::all, near);
+  const bool is_named = a.decision.finding == inference::Finding::named;
+  if (!data.noise_is_open && !is_named) return a;
   if (!settle_again(a.chosen().fit, options.limits, data)) return a;
   tell(options, "again, with the noise that was found");
   nominal_fit = fit(nominal_fit.best, data.train);
-  return searched(nominal, nominal_fit, data, options, Among::all, near);
+  const Trial named = a.chosen();
+  return searched(nominal, nominal_fit, data, options, Among::all, is_named ? &named : near);
 }
 
 // Whether an empirical law describes the recordings far better than known physics.

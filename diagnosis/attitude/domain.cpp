@@ -18,6 +18,9 @@ inference::CandidateTraits traits_of(const Candidate& c) {
   traits.is_empirical = c.empirical();
   traits.is_linear = c.is_linear();
   traits.is_fast = c.effect.how.fast;
+  traits.is_of_instrument = c.start.stage == Stage::measurement;
+  // Several appendages with different frequencies and axes are distinguishable.
+  if (c.effect.how.scan == Scan::mode) traits.most = 2;
   traits.has_strength = c.has_linear_strength();
   traits.parameters = c.start.parameters.size();
   return traits;

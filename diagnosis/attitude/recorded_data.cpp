@@ -404,7 +404,11 @@ bool find_and_use_noise(const Fit& near, const Thresholds& limits, RecordedData&
   if (findings.is_open) return false;
   const bool robustified = robustify_noise(near, limits, data);
   if (robustified) findings = find_noise(data.train, residuals_of(near, data.train), limits.noise);
-  return use_noise(findings, data) || robustified;
+  const NoiseLevels before = data.train.front().noise;
+  const bool changed = use_noise(findings, data);
+  // The pseudo-values of heavy tails belong to this noise.
+  if (changed && !robustified) data.noise_before = before;
+  return changed || robustified;
 }
 
 }  // namespace
@@ -429,11 +433,30 @@ Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& 
 }
 
 bool settle_again(const Fit& explained, const Thresholds& limits, RecordedData& data) {
-  if (!data.noise_is_open) return false;
   if (!(explained.chi2_per_sample() < limits.diverged_chi2_per_sample)) return false;
-  const bool changed = find_and_use_noise(explained, limits, data);
-  data.noise_is_open = false;
-  return changed;
+  if (data.noise_is_open) {
+    const bool changed = find_and_use_noise(explained, limits, data);
+    data.noise_is_open = false;
+    return changed;
+  }
+  if (!data.noise_before) return false;
+  RecordedData again = data;
+  for (auto* runs : {&again.train, &again.held}) {
+    for (Observation& seen : *runs) seen.noise = *data.noise_before;
+  }
+  again.noise_before.reset();
+  std::erase_if(again.instruments, [](const InstrumentFinding& finding) {
+    return finding.what == "noise_level" || finding.what == "noise_correlation_time_s";
+  });
+  use_noise(find_noise(again.train, residuals_of(explained, again.train), limits.noise), again);
+  const NoiseLevels &now = again.train.front().noise, &before = data.train.front().noise;
+  bool is_whiter = false;
+  for (int k = 0; k < 6; ++k) {
+    is_whiter = is_whiter || (before.of(k).coloured > 0.0 && !(now.of(k).coloured > 0.0));
+  }
+  if (!is_whiter && !is_quieter(now, before)) return false;
+  data = std::move(again);
+  return true;
 }
 
 namespace {

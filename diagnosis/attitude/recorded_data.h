@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdio>
+#include <optional>
 #include <string>
 
 #include "attitude/estimation/fit.h"
@@ -24,6 +25,8 @@ struct RecordedData {
   int64_t outliers = 0;  // number of dropped readings
   std::vector<InstrumentFinding> instruments;
   bool noise_is_open = false;  // the nominal model fits too badly to separate noise from motion
+  // The noise before it was estimated about the nominal model; empty: it is as stated.
+  std::optional<NoiseLevels> noise_before;
   std::vector<std::string> warnings;
 };
 
@@ -41,8 +44,10 @@ DataQuality quality_of(const std::vector<NamedRecording>& recordings,
 // that cannot be propagated has infinite χ², and the noise remains as stated.
 Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data);
 
-// Estimates the noise about an explanation near the readings if the nominal model left it open.
-// Returns whether it changed.
+// Estimates the noise about an explanation near the readings if the nominal model left it open. The
+// noise that was estimated about the nominal model may contain effects that it lacks: it is
+// replaced if the readings are quieter or less correlated about the explanation. Returns whether it
+// changed.
 bool settle_again(const Fit& explained, const Thresholds& limits, RecordedData& data);
 
 // Gyro bias that drifts within a recording.

@@ -45,6 +45,14 @@ TEST(DiagnosisJson, HoldsEveryKeyOfTheSchema) {
   EXPECT_EQ(json["data"]["rejected"]["gap"], 12);
 }
 
+TEST(DiagnosisJson, OmitsAStrengthThatIsNotKnown) {
+  Diagnosis d = sample_diagnosis();
+  d.where.depends_on = {{"tilt", 0.0}};
+  const Json depends = json_of(d)["where"]["depends_on"];
+  EXPECT_EQ(depends[0]["variable"], "tilt");
+  EXPECT_FALSE(depends[0].contains("strength"));
+}
+
 TEST(DiagnosisJson, OneNumberIsANumberAndMoreAreAnArray) {
   const Json effects = json_of(sample_diagnosis())["effects"];
   EXPECT_EQ(effects[0]["parameters"]["dipole_A_m2"]["value"],

@@ -6,6 +6,7 @@
 #include "attitude/observation/prediction.h"
 #include "attitude/propagation/run.h"
 #include "core/errors.h"
+#include "diagnosis/attitude/recorded_data.h"
 #include "tests/diagnosis/noisy_recording.h"
 
 namespace photorque {
@@ -165,6 +166,39 @@ TEST(NoiseSearch, MeasuresALevelThatIsNotAsStated) {
       const double ratio = c.noise.level / seen.noise.of(k).level;
       EXPECT_NEAR(std::log(ratio / level), 0.0, 4.0 * c.level_sigma) << k;
       EXPECT_LT(c.level_sigma, 0.06);
+    }
+  }
+}
+
+// A vibration of 1.4 Hz that the nominal model lacks appears as correlated gyro noise. About the
+// model with the vibration, the noise is as stated.
+TEST(NoiseSearch, ReplacesNoiseThatContainsAnEffect) {
+  const Vec3 amplitude_N_m(3e-4, 2e-4, 1e-4);
+  const double frequency_Hz = 1.4;
+  const auto vibration = [&](const State& s) -> Vec3 {
+    return amplitude_N_m * std::sin(2.0 * pi * frequency_Hz * s.time_s);
+  };
+  Session session;
+  session.interval_s = 0.05;
+  RecordedData data;
+  data.train = {observed(1, session, vibration)};
+  data.held = {observed(2, session, vibration)};
+  const NoiseLevels stated = data.train.front().noise;
+  settle(nominal_model(), {}, data);
+  ASSERT_TRUE(data.noise_before);
+  ASSERT_GT(data.train.front().noise.of(3).coloured, 0.0);
+  NominalModel vibrating = nominal_model();
+  vibrating.model.disturbances.push_back(make_disturbance_of(
+      "periodic_torque",
+      {{"torque_N_m", {amplitude_N_m.x(), amplitude_N_m.y(), amplitude_N_m.z()}},
+       {"frequency_Hz", {frequency_Hz}}},
+      vibrating.context()));
+  EXPECT_TRUE(settle_again(fit_nominal(vibrating, data.train), {}, data));
+  EXPECT_TRUE(data.instruments.empty());
+  for (const auto* runs : {&data.train, &data.held}) {
+    for (int k = 0; k < 6; ++k) {
+      EXPECT_EQ(runs->front().noise.of(k).level, stated.of(k).level);
+      EXPECT_EQ(runs->front().noise.of(k).coloured, 0.0);
     }
   }
 }

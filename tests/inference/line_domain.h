@@ -136,8 +136,11 @@ class LineDomain {
     Eigen::Index first = 0, own = at.fit.value.size() - amplitudes(at);
     for (size_t i = 0; i < terms.size(); ++i) {
       const Term& t = terms_[terms[i].candidate];
-      if (t.traits.is_fast) continue;
       const auto count = static_cast<Eigen::Index>(t.traits.parameters);
+      if (t.traits.is_fast) {
+        if (i < at.candidates.size()) own += count;
+        continue;
+      }
       StrengthGroup group{i, t.traits.name, t.traits.is_empirical, first, {}, {}, {}, {}};
       for (Eigen::Index k = 0; k < count; ++k) {
         group.value.push_back(i < at.candidates.size() ? at.fit.value[own++] : 0.0);
@@ -362,6 +365,23 @@ inline Term tone() {
     const Eigen::ArrayXd phase = 3.14159265358979 * periods * run.x.array();
     columns << phase.sin().matrix(), phase.cos().matrix();
     return Eigen::MatrixXd(columns * std::sqrt(2.0 / static_cast<double>(samples)));
+  };
+  return t;
+}
+
+// A slow part that equals a polynomial, and a ringing of a scanned frequency. The degree follows
+// the frequency.
+inline Term swing() {
+  Term t = tone();
+  t.traits.name = "swing";
+  t.traits.parameters = 1;
+  t.traits.most = 2;
+  t.shape = [](const Series& run, double periods) -> Eigen::MatrixXd {
+    constexpr double ringing = 0.35;
+    const Eigen::Index degree = 2 + std::lround(periods) % 6;
+    const Eigen::VectorXd slow = polynomial(degree).shape(run, 0.0),
+                          fast = tone().shape(run, periods).col(0);
+    return std::sqrt(1.0 - ringing * ringing) * slow + ringing * fast;
   };
   return t;
 }

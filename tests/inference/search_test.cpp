@@ -203,6 +203,66 @@ TEST(Search, CallsUnknownWhatLeavesStructure) {
   EXPECT_NE(answer(terms, train, held, mutant).decision.finding, Finding::unknown);
 }
 
+Eigen::VectorXd of_swing(double periods, double sigmas) {
+  return sigmas * swing().shape({grid(samples), {}, 1.0}, periods).col(0);
+}
+
+std::vector<Term> terms_with_swing(size_t most) {
+  std::vector<Term> terms = known_terms();
+  terms.push_back(swing());
+  terms.back().traits.most = most;
+  return terms;
+}
+
+// The polynomial takes the slow part of the swing, and the ringing that remains cancels in means of
+// 20 neighbours. With one effect, nothing can be added to the polynomial. Strong ringing leaves all
+// models without it far from the readings, also in pieces.
+TEST(Search, NamesWhatSwingsWhereASlowTermStandsForIt) {
+  Thresholds limits;
+  limits.search.max_effects = 1;
+  for (const double sigmas : {40.0, 400.0}) {
+    const Eigen::VectorXd signal = of_swing(40.0, sigmas);
+    const std::vector<Series> train = {recorded(1, signal)}, held = {recorded(2, signal)};
+    EXPECT_EQ(answer(terms_with_swing(2), train, held, limits).names, Names{"swing"}) << sigmas;
+  }
+  Thresholds mutant = limits;
+  mutant.search.explained_sigma = 1e9;
+  for (uint64_t seed = 1; seed <= 5; ++seed) {
+    const Eigen::VectorXd signal = of_swing(40.0, 40.0);
+    const std::vector<Series> train = {recorded(2 * seed, signal)},
+                              held = {recorded(2 * seed + 1, signal)};
+    EXPECT_EQ(answer(terms_with_swing(2), train, held, limits).names, Names{"swing"}) << seed;
+    EXPECT_NE(answer(terms_with_swing(2), train, held, mutant).names, Names{"swing"}) << seed;
+  }
+}
+
+TEST(Search, NamesTwoThatSwing) {
+  for (uint64_t seed = 1; seed <= 5; ++seed) {
+    const Eigen::VectorXd signal = of_swing(20.0, 40.0) + of_swing(33.0, 50.0);
+    const std::vector<Series> train = {recorded(2 * seed, signal)},
+                              held = {recorded(2 * seed + 1, signal)};
+    const Names both{"swing", "swing"};
+    EXPECT_EQ(answer(terms_with_swing(2), train, held).names, both) << seed;
+    EXPECT_NE(answer(terms_with_swing(1), train, held).names, both) << seed;
+  }
+}
+
+// Only the errors of instruments remain of a trial.
+TEST(Search, KeepsInstrumentErrorsInTheBase) {
+  std::vector<Term> terms = known_terms();
+  terms[1].traits.is_of_instrument = true;
+  const LineDomain domain(terms, {});
+  const std::vector<Series> runs = {recorded(1, of_degree(3, 30.0))};
+  const LineDomain::Trial base = domain.nominal(runs);
+  const auto of = [&](const std::vector<size_t>& candidates) {
+    LineDomain::Trial trial = base;
+    for (const size_t c : candidates) trial = domain.extend(trial, c, domain.start_of(c), runs, {});
+    return with_instruments(domain, trial, base, runs).candidates;
+  };
+  EXPECT_EQ(of({0, 1, 4}), std::vector<size_t>{1});
+  EXPECT_TRUE(of({0, 4}).empty());
+}
+
 TEST(Search, DoesNotNameWhatIsForbidden) {
   std::vector<Term> terms = {polynomial(2)};
   terms.front().not_negative = true;

@@ -133,6 +133,7 @@ BarChart dependence_chart(const Where& where) {
                  "fraction explained by a function of this alone [%]",
                  {}};
   for (const Where::Dependence& d : where.depends_on) {
+    if (!(d.strength > 0.0)) continue;
     chart.bars.push_back({spoken(d.variable), 100.0 * d.strength, "", chart.bars.empty()});
   }
   return chart;

@@ -227,8 +227,8 @@ std::string where_section(const Where& where) {
   std::string section = tag("h2", "Differences between recordings and nominal model");
   if (!facts.empty()) section += tag("ul", facts);
   if (!where.channels.empty()) section += bar_chart_html(misfit_chart(where));
-  if (!where.depends_on.empty()) {
-    section += tag("h3", "Dependence of the difference") + bar_chart_html(dependence_chart(where));
+  if (const BarChart dependence = dependence_chart(where); !dependence.bars.empty()) {
+    section += tag("h3", "Dependence of the difference") + bar_chart_html(dependence);
   }
   return tag("section", section);
 }

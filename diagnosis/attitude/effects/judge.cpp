@@ -116,11 +116,17 @@ std::string key_of_size(const Candidate& c) {
   return "";
 }
 
-// Significance in standard errors; NaN for an effect without a size.
-double significance(const Trial& trial, const Candidates& all, size_t which) {
+// Significance in standard errors: of all parameters of the size together, and of the largest
+// alone; NaN for an effect without a size.
+struct Significance {
+  double together = std::numeric_limits<double>::quiet_NaN();
+  double largest_component = std::numeric_limits<double>::quiet_NaN();
+};
+
+Significance significance(const Trial& trial, const Candidates& all, size_t which) {
   const Candidate& c = all[trial.candidates[which]];
   const std::string size = key_of_size(c);
-  if (size.empty()) return std::numeric_limits<double>::quiet_NaN();
+  if (size.empty()) return {};
   const std::vector<Eigen::Index> where = shared_indices(trial, which);
   const Eigen::MatrixXd covariance = trial.fit.shared_posterior();
   std::vector<std::pair<Eigen::Index, double>> linear;
@@ -135,7 +141,7 @@ double significance(const Trial& trial, const Candidates& all, size_t which) {
         at, trial.fit.best.model.disturbances[trial.disturbances[which]].parameters[p].value);
   }
   const auto n = static_cast<Eigen::Index>(linear.size());
-  if (n == 0) return 0.0;
+  if (n == 0) return {0.0, 0.0};
   Eigen::MatrixXd C(n, n);
   Eigen::VectorXd theta(n);
   for (Eigen::Index a = 0; a < n; ++a) {
@@ -145,7 +151,8 @@ double significance(const Trial& trial, const Candidates& all, size_t which) {
           covariance(linear[static_cast<size_t>(a)].first, linear[static_cast<size_t>(b)].first);
     }
   }
-  return std::sqrt(std::max(0.0, squared_distance(theta, C)));
+  return {std::sqrt(std::max(0.0, squared_distance(theta, C))),
+          theta.cwiseAbs().cwiseQuotient(C.diagonal().cwiseSqrt()).maxCoeff()};
 }
 
 }  // namespace
@@ -191,8 +198,11 @@ double log_evidence(const Trial& trial, const Candidates& all) {
 
 void judge(Trial& trial, const Candidates& all) {
   trial.significance.clear();
+  trial.largest_component.clear();
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
-    trial.significance.push_back(significance(trial, all, i));
+    const Significance found = significance(trial, all, i);
+    trial.significance.push_back(found.together);
+    trial.largest_component.push_back(found.largest_component);
   }
   trial.log_evidence = log_evidence(trial, all);
   if (!std::isfinite(trial.log_evidence)) trial.log_evidence = -1e300;

@@ -307,11 +307,12 @@ Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
   const std::vector<Disturbance>& source = other.fit.best.model.disturbances;
   const size_t nominal = to.size() - trial.candidates.size();
   for (size_t d = 0; d < nominal; ++d) to[d].parameters = source[d].parameters;
+  std::vector<bool> is_taken(other.candidates.size(), false);
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
-    const auto twin =
-        std::find(other.candidates.begin(), other.candidates.end(), trial.candidates[i]);
-    if (twin == other.candidates.end()) continue;
-    const auto j = static_cast<size_t>(twin - other.candidates.begin());
+    size_t j = 0;
+    while (j < is_taken.size() && (is_taken[j] || other.candidates[j] != trial.candidates[i])) ++j;
+    if (j == is_taken.size()) continue;
+    is_taken[j] = true;
     to[trial.disturbances[i]].parameters = source[other.disturbances[j]].parameters;
   }
   std::vector<RunStart> starts = other.fit.best.runs;
