@@ -214,7 +214,10 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
   Answer fine;
   if (!is_far) {
     fine = at_noise_of_readings(nominal, data, options, nominal_fit, nullptr);
-    const bool may_name = fine.decision.leaves_more || is_hardly_better_in_time(fine);
+    const Platform& platform = nominal.model.platform;
+    const bool may_name =
+        fine.decision.leaves_more ||
+        (platform.turns_about_one_axis() && !platform.slides() && is_hardly_better_in_time(fine));
     if (!may_name || law_is_far_better(fine, limits) || !is_simple(nominal)) {
       describe(data, options, fine);
       return fine;
