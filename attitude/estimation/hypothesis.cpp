@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "attitude/estimation/swing.h"
+
 namespace photorque {
 
 AttitudeModel Hypothesis::model_of(size_t run, const Observation& seen) const {
@@ -102,7 +104,15 @@ PlatformState first_state(const AttitudeModel& model, const Observation& seen) {
   }
   state.time_s = seen.time_s.front();
   state.charge_drawn_C = seen.initial_charge_C;
-  if (first == seen.blocks()) return state;
+  if (first == seen.blocks()) {
+    // Angle zero is the middle of a swing that rates alone show.
+    if (!platform.turns_about_one_axis() || platform.slides()) return state;
+    const AxisReadings swing = angles_of_swing(seen, platform.axis);
+    if (!swing.value.empty()) {
+      state.lab_from_body = Eigen::AngleAxisd(swing.value.front(), platform.axis);
+    }
+    return state;
+  }
   const double back_s = seen.time_s.front() - seen.time_s[first];
   const Vec3 turn = back_s * rate;
   state.lab_from_body = seen.attitude[first];

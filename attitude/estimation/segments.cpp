@@ -6,6 +6,9 @@
 #include <cstdio>
 #include <limits>
 
+#include "attitude/estimation/axis_readings.h"
+#include "attitude/estimation/rates_of_angles.h"
+#include "attitude/estimation/rest.h"
 #include "attitude/estimation/swing.h"
 #include "attitude/recordings/columns.h"
 #include "core/errors.h"
@@ -128,23 +131,38 @@ bool is_commanded(const Schedule& schedule) {
 
 Segments cut(const Recording& recording, const std::string& name, const Platform& platform,
              size_t max_blocks) {
-  const Observation rows = observe(recording, name, platform, std::numeric_limits<size_t>::max());
+  Observation rows = observe(recording, name, platform, std::numeric_limits<size_t>::max());
   const MotionColumns columns(recording, platform, name);
   const double gap_s = long_gap_s(recording);
   const std::vector<char> kinks = kinks_of(rows, platform);
   Segments result;
+  const bool turns_alone = platform.turns_about_one_axis() && !platform.slides();
+  if (turns_alone && is_rate_of_angle(rows, platform.axis)) {
+    drop_rates(rows);
+    result.notes.emplace_back(
+        "the rate is the difference of neighbouring angles: it contains nothing new and is left "
+        "out");
+  }
   const double share = static_cast<double>(max_blocks) / static_cast<double>(rows.blocks());
   size_t first = 0;
   const auto close = [&](size_t end) {
     size_t last = end;
-    if (platform.turns_about_one_axis() && !platform.slides() && rows.has_gyro) {
+    if (turns_alone && !is_commanded(rows.schedule)) {
+      const size_t sets_off = sets_off_at(rows, platform.axis, first, last);
+      if (sets_off > first) {
+        result.lawless.push_back("until " + readable_number(rows.time_s[sets_off], 4) +
+                                 " s it rests and then sets off at once: a drive or a hand begins "
+                                 "to act");
+      }
+      first = sets_off;
+    }
+    if (turns_alone && rows.has_gyro) {
       LawfulSegment lawful = lawful_segment(rows, platform.axis, first, last);
       first = lawful.first;
       last = lawful.last;
       if (!lawful.left_out.empty()) result.lawless.push_back(std::move(lawful.left_out));
     }
-    if (platform.turns_about_one_axis() && !platform.slides() && rows.sees_some_attitude() &&
-        !is_commanded(rows.schedule)) {
+    if (turns_alone && rows.sees_some_attitude() && !is_commanded(rows.schedule)) {
       const size_t released = released_at(rows, platform.axis, first, last);
       if (released > first) {
         result.lawless.push_back("until " + readable_number(rows.time_s[released], 4) +
@@ -220,34 +238,29 @@ Segments observe_segments(const Recording& recording, const std::string& name,
                           const Platform& platform, size_t max_blocks) {
   const std::optional<AngleConvention> angles = convention_of_angles(recording, platform, name);
   const bool as_usual = !angles || angles->text.empty();
-  Segments result =
-      cut(as_usual ? recording : read_as(*angles, recording), name, platform, max_blocks);
+  const std::optional<Recording> rates = with_rates_of_far_turns(recording, platform);
+  Segments result = cut(rates      ? *rates
+                        : as_usual ? recording
+                                   : read_as(*angles, recording),
+                        name, platform, max_blocks);
+  if (rates) {
+    result.notes.emplace_back(
+        "the angle has fewer than nine readings a turn: it is read as the mean rates between them");
+  }
   if (angles) result.angles = *angles;
   return result;
 }
 
 namespace {
 
-// The rates about the axis that were read, each the median of five neighbours: a count that was
-// lost halves a reading or two.
-struct AxisRates {
-  std::vector<size_t> row;
-  std::vector<double> time_s, rate_rad_s;
-};
-
-AxisRates rates_about(const Observation& rows, int axis, size_t first, size_t last) {
-  AxisRates read;
-  for (size_t i = first; i < last; ++i) {
-    if (!(rows.gyro_rows[i][axis] > 0.0)) continue;
-    read.row.push_back(i);
-    read.time_s.push_back(rows.time_s[i]);
-    read.rate_rad_s.push_back(rows.gyro_rad_s[i][axis]);
-  }
-  const std::vector<double> raw = read.rate_rad_s;
+// Each rate the median of five neighbours: a count that was lost halves a reading or two.
+AxisReadings smoothed_rates(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
+  AxisReadings read = rates_about(rows, axis, first, last);
+  const std::vector<double> raw = read.value;
   for (size_t i = 2; i + 2 < raw.size(); ++i) {
     std::array<double, 5> near = {raw[i - 2], raw[i - 1], raw[i], raw[i + 1], raw[i + 2]};
     std::nth_element(near.begin(), near.begin() + 2, near.end());
-    read.rate_rad_s[i] = near[2];
+    read.value[i] = near[2];
   }
   return read;
 }
@@ -263,20 +276,20 @@ struct Line {
   }
 };
 
-Line line_through(const AxisRates& read, size_t first, size_t last) {
+Line line_through(const AxisReadings& read, size_t first, size_t last) {
   const auto count = static_cast<double>(last - first);
   double mean_s = 0.0, mean_rad_s = 0.0;
   Line line;
-  line.least_rad_s = line.most_rad_s = read.rate_rad_s[first];
+  line.least_rad_s = line.most_rad_s = read.value[first];
   for (size_t i = first; i < last; ++i) {
     mean_s += read.time_s[i] / count;
-    mean_rad_s += read.rate_rad_s[i] / count;
-    line.least_rad_s = std::min(line.least_rad_s, read.rate_rad_s[i]);
-    line.most_rad_s = std::max(line.most_rad_s, read.rate_rad_s[i]);
+    mean_rad_s += read.value[i] / count;
+    line.least_rad_s = std::min(line.least_rad_s, read.value[i]);
+    line.most_rad_s = std::max(line.most_rad_s, read.value[i]);
   }
   double spread_s2 = 0.0, product = 0.0, square = 0.0;
   for (size_t i = first; i < last; ++i) {
-    const double t = read.time_s[i] - mean_s, w = read.rate_rad_s[i] - mean_rad_s;
+    const double t = read.time_s[i] - mean_s, w = read.value[i] - mean_rad_s;
     spread_s2 += t * t;
     product += t * w;
     square += w * w;
@@ -288,7 +301,7 @@ Line line_through(const AxisRates& read, size_t first, size_t last) {
 }
 
 struct Break {
-  size_t at = 0;  // index into AxisRates
+  size_t at = 0;  // index into the readings
   double before_rad_s2 = 0.0, after_rad_s2 = 0.0, error_rad_s2 = 0.0;
 
   double change_rad_s2() const { return std::abs(after_rad_s2 - before_rad_s2); }
@@ -299,7 +312,7 @@ struct Break {
 // The slopes of `window` readings on either side of every reading where the rate goes on as before;
 // of long windows at every 48th part of one, or long recordings would take the square of their
 // time.
-std::vector<Break> changes_of(const AxisRates& read, size_t window) {
+std::vector<Break> changes_of(const AxisReadings& read, size_t window) {
   std::vector<Break> changes;
   const size_t step = std::max<size_t>(1, window / 48);
   for (size_t i = window; i + window <= read.row.size(); i += step) {
@@ -316,7 +329,7 @@ std::vector<Break> changes_of(const AxisRates& read, size_t window) {
 
 // The changes of slope that are far larger than all others. Of neighbouring ones, only the most
 // significant is kept. An oscillating law has such changes everywhere and therefore no breaks.
-std::vector<Break> breaks_of(const AxisRates& read, size_t window) {
+std::vector<Break> breaks_of(const AxisReadings& read, size_t window) {
   constexpr double least_standard_errors = 10.0, least_share = 0.5, least_medians = 8.0;
   const std::vector<Break> changes = changes_of(read, window);
   if (changes.empty()) return {};
@@ -344,9 +357,7 @@ std::vector<Break> breaks_of(const AxisRates& read, size_t window) {
 LawfulSegment lawful_segment(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
   LawfulSegment whole = {first, last, ""};
   if (is_commanded(rows.schedule)) return whole;
-  int along = 0;
-  axis.cwiseAbs().maxCoeff(&along);
-  const AxisRates read = rates_about(rows, along, first, last);
+  const AxisReadings read = smoothed_rates(rows, axis, first, last);
   std::vector<Break> breaks;
   // A long window sees a weak torque; the shortest that sees one locates it best.
   for (size_t window = 12; breaks.empty() && 8 * window <= read.row.size(); window *= 2) {

@@ -19,6 +19,7 @@ struct Segments {
   int64_t long_gaps = 0;  // at which the recording was cut
   int64_t too_short = 0;  // segments with too few readings for an initial state, left out
   std::optional<AngleConvention> angles;  // how roll, pitch and yaw were read
+  std::vector<std::string> notes;         // on columns that are read otherwise or left out
   std::vector<std::string> lawless;       // why parts of segments are left out (lawful_segment())
 };
 

@@ -3,33 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "attitude/estimation/axis_readings.h"
 #include "core/constants.h"
 #include "core/numerics/linear.h"
 
 namespace photorque {
 namespace {
-
-// The angles about the axis that were read, whole turns counted.
-struct AxisAngles {
-  std::vector<size_t> row;
-  std::vector<double> time_s, angle_rad;
-};
-
-AxisAngles angles_about(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
-  AxisAngles read;
-  double angle_rad = 0.0;
-  for (size_t i = first; i < last; ++i) {
-    if (!(rows.attitude_rows[i] > 0.0)) continue;
-    angle_rad += read.row.empty()
-                     ? axis.dot(rotation_vector(rows.attitude[i]))
-                     : axis.dot(rotation_vector(rows.attitude[i] *
-                                                rows.attitude[read.row.back()].conjugate()));
-    read.row.push_back(i);
-    read.time_s.push_back(rows.time_s[i]);
-    read.angle_rad.push_back(angle_rad);
-  }
-  return read;
-}
 
 double middle_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -39,25 +18,25 @@ double middle_of(std::vector<double> values) {
 
 // Without what it rests at the end: from where it stays as near to its last angle as a swing hardly
 // shows.
-void leave_out_rest(AxisAngles& read) {
+void leave_out_rest(AxisReadings& read) {
   constexpr double hardly = 0.01;
-  const auto [least, most] = std::minmax_element(read.angle_rad.begin(), read.angle_rad.end());
-  const double near_rad = hardly * (*most - *least), end_rad = read.angle_rad.back();
+  const auto [least, most] = std::minmax_element(read.value.begin(), read.value.end());
+  const double near_rad = hardly * (*most - *least), end_rad = read.value.back();
   size_t count = read.row.size();
-  while (count > 0 && std::abs(read.angle_rad[count - 1] - end_rad) <= near_rad) --count;
+  while (count > 0 && std::abs(read.value[count - 1] - end_rad) <= near_rad) --count;
   read.row.resize(count);
   read.time_s.resize(count);
-  read.angle_rad.resize(count);
+  read.value.resize(count);
 }
 
 // Twice the median time between passages through the median angle; 0 where there are few.
-double period_s(const AxisAngles& read) {
+double period_s(const AxisReadings& read) {
   constexpr size_t fewest_passages = 6;
-  const double middle_rad = middle_of(read.angle_rad);
+  const double middle_rad = middle_of(read.value);
   std::vector<double> between_s;
   double before_s = read.time_s.front();
   for (size_t i = 1; i < read.row.size(); ++i) {
-    if ((read.angle_rad[i - 1] < middle_rad) == (read.angle_rad[i] < middle_rad)) continue;
+    if ((read.value[i - 1] < middle_rad) == (read.value[i] < middle_rad)) continue;
     between_s.push_back(read.time_s[i] - before_s);
     before_s = read.time_s[i];
   }
@@ -68,12 +47,13 @@ double period_s(const AxisAngles& read) {
 // three times.
 struct LocalMotion {
   std::vector<size_t> row;
+  std::vector<double> time_s;
   Eigen::MatrixXd motion;  // a row each
 };
 
 constexpr int steps_per_period = 32;
 
-LocalMotion local_motion(const AxisAngles& read) {
+LocalMotion local_motion(const AxisReadings& read) {
   constexpr size_t fewest = 8, fewest_periods = 3;
   LocalMotion result;
   const double whole_s = period_s(read);
@@ -98,11 +78,12 @@ LocalMotion local_motion(const AxisAngles& read) {
       const size_t k = begin + static_cast<size_t>(i);
       const double since = (read.time_s[k] - t) / reach_s;
       powers.row(i) << 1.0, since, since * since, since * since * since;
-      angles[i] = read.angle_rad[k];
+      angles[i] = read.value[k];
     }
     const Eigen::Vector4d c = least_squares(powers, angles).solution;
     all.emplace_back(c[0], c[1] / reach_s, 2.0 * c[2] / (reach_s * reach_s));
     result.row.push_back(read.row[at]);
+    result.time_s.push_back(t);
   }
   if (all.size() < fewest_periods * steps_per_period) return {};
   result.motion.resize(static_cast<Eigen::Index>(all.size()), 3);
@@ -166,13 +147,122 @@ Eigen::VectorXd off_the_law(const Eigen::MatrixXd& motion) {
   return robust_residual(with_friction(motion, of_angle), motion.col(2), least).off;
 }
 
+// The integral of each, from the first, by the trapezoidal rule.
+std::vector<double> integral(const std::vector<double>& time_s, const std::vector<double>& values) {
+  std::vector<double> sum = {0.0};
+  for (size_t i = 1; i < values.size(); ++i) {
+    sum.push_back(sum.back() + 0.5 * (values[i] + values[i - 1]) * (time_s[i] - time_s[i - 1]));
+  }
+  return sum;
+}
+
+// A turning point of a swing, and the angle there as integrated.
+struct TurningPoint {
+  double time_s = 0.0, angle_rad = 0.0;
+};
+
+// Where the rates pass zero, from a fifth of the largest nearby on one side to as much on the
+// other.
+std::vector<TurningPoint> turning_points(const AxisReadings& rates,
+                                         const std::vector<double>& turned_rad) {
+  constexpr double far = 0.2, least_of_largest = 0.02;
+  double largest = 0.0, nearby = 0.0;
+  for (const double rate : rates.value) largest = std::max(largest, std::abs(rate));
+  std::vector<TurningPoint> points;
+  int side = 0;
+  size_t crossed = 0;  // the last reading on the side before
+  nearby = largest;
+  double peak = 0.0;
+  for (size_t i = 0; i < rates.value.size(); ++i) {
+    const double rate = rates.value[i];
+    const double limit = std::max(far * nearby, least_of_largest * largest);
+    const int now = rate > limit ? 1 : rate < -limit ? -1 : 0;
+    if (side != 0 && rate * side > 0.0) crossed = i;
+    if (now == 0 || now == side) {
+      peak = std::max(peak, std::abs(rate));
+      if (side == 0) side = now;
+      continue;
+    }
+    if (side == -now) {
+      points.push_back({rates.time_s[crossed], turned_rad[crossed]});
+      nearby = peak;
+    }
+    peak = std::abs(rate);
+    side = now;
+  }
+  return points;
+}
+
+// The middles of the swing between turning points: the mean of each and of the mean of both
+// neighbours. A bias of the rates, or their noise, moves them.
+std::vector<TurningPoint> middles(const std::vector<TurningPoint>& points) {
+  std::vector<TurningPoint> result;
+  for (size_t i = 1; i + 1 < points.size(); ++i) {
+    result.push_back({points[i].time_s, 0.25 * points[i - 1].angle_rad + 0.5 * points[i].angle_rad +
+                                            0.25 * points[i + 1].angle_rad});
+  }
+  return result;
+}
+
+bool are_regular(const std::vector<TurningPoint>& points) {
+  constexpr double alike = 2.0;
+  std::vector<double> between_s;
+  for (size_t i = 1; i < points.size(); ++i) {
+    between_s.push_back(points[i].time_s - points[i - 1].time_s);
+  }
+  std::ranges::sort(between_s);
+  const size_t tenth = between_s.size() / 10;
+  return between_s[between_s.size() - 1 - tenth] < alike * between_s[tenth];
+}
+
+}  // namespace
+
+AxisReadings angles_of_swing(const Observation& rows, const Vec3& axis) {
+  constexpr size_t fewest_readings = 40, fewest_points = 4;
+  AxisReadings read = rates_about(rows, axis, 0, rows.blocks());
+  if (read.row.size() < fewest_readings) return {};
+  const std::vector<double> turned_rad = integral(read.time_s, read.value);
+  const std::vector<TurningPoint> points = turning_points(read, turned_rad);
+  if (points.size() < fewest_points || !are_regular(points)) return {};
+  const std::vector<TurningPoint> middle = middles(points);
+  size_t next = 0;
+  for (size_t i = 0; i < read.row.size(); ++i) {
+    const double t = read.time_s[i];
+    while (next < middle.size() && middle[next].time_s < t) ++next;
+    double zero_rad = middle[next == 0 ? 0 : next - 1].angle_rad;
+    if (next > 0 && next < middle.size()) {
+      const TurningPoint &before = middle[next - 1], &after = middle[next];
+      zero_rad += (after.angle_rad - before.angle_rad) * (t - before.time_s) /
+                  (after.time_s - before.time_s);
+    }
+    read.value[i] = turned_rad[i] - zero_rad;
+  }
+  return read;
+}
+
+namespace {
+
 // The swing within the rows, if there is one.
 LocalMotion swing_of(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
   constexpr size_t fewest_readings = 60;
-  AxisAngles read = angles_about(rows, axis, first, last);
+  AxisReadings read = rows.sees_some_attitude() ? angles_about(rows, axis, first, last)
+                                                : angles_of_swing(rows, axis);
   if (read.row.size() < fewest_readings) return {};
   leave_out_rest(read);
   return read.row.size() < fewest_readings ? LocalMotion() : local_motion(read);
+}
+
+// A series at steps of local motion less its mean over a period about each: small errors of an
+// angle that last long add up in integrals, and the mean removes them.
+Eigen::VectorXd without_slow_part(const Eigen::VectorXd& values) {
+  constexpr Eigen::Index half = steps_per_period / 2;
+  Eigen::VectorXd result(values.size() - 2 * half);
+  for (Eigen::Index i = 0; i < result.size(); ++i) {
+    const double ends = 0.5 * (values[i] + values[i + 2 * half]);
+    result[i] =
+        values[i + half] - (values.segment(i + 1, 2 * half - 1).sum() + ends) / (2.0 * half);
+  }
+  return result;
 }
 
 }  // namespace
@@ -193,31 +283,39 @@ size_t released_at(const Observation& rows, const Vec3& axis, size_t first, size
 }
 
 RestoringLaw restoring_law(const Observation& rows, const Vec3& axis) {
-  constexpr double clearly = 0.5, of_largest = 0.5;
+  constexpr double beyond_chance = 16.0, clearly = 0.1;
   const LocalMotion local = swing_of(rows, axis, 0, rows.blocks());
   if (local.row.empty()) return RestoringLaw::unclear;
   const Eigen::MatrixXd& motion = local.motion;
-  // Far from the middle the laws differ most.
-  const double middle_rad = middle_of({motion.col(0).begin(), motion.col(0).end()});
-  const Eigen::ArrayXd away_rad = (motion.col(0).array() - middle_rad).abs();
-  const double far_rad = of_largest * away_rad.maxCoeff();
-  const auto scatter = [&](const Eigen::VectorXd& first, const Eigen::VectorXd& second) {
+  const auto angle = motion.col(0).array();
+  const Eigen::VectorXd rate = without_slow_part(motion.col(1));
+  const auto residual = [&](const Eigen::VectorXd& first, const Eigen::VectorXd& second) {
     Eigen::MatrixXd of_angle(motion.rows(), 2);
     of_angle << first, second;
-    const Eigen::VectorXd left = robust_residual(with_friction(motion, of_angle), motion.col(2),
-                                                 Eigen::VectorXd::Zero(motion.rows()))
-                                     .left;
-    std::vector<double> far;
-    for (Eigen::Index i = 0; i < left.size(); ++i) {
-      if (away_rad[i] > far_rad) far.push_back(std::abs(left[i]));
+    Eigen::MatrixXd law = with_friction(motion, of_angle);
+    for (Eigen::Index k = 0; k < law.cols(); ++k) {
+      const std::vector<double> sum =
+          integral(local.time_s, std::vector<double>(law.col(k).begin(), law.col(k).end()));
+      law.col(k) = Eigen::Map<const Eigen::VectorXd>(sum.data(), law.rows());
     }
-    return middle_of(std::move(far));
+    Eigen::MatrixXd fast(rate.size(), law.cols());
+    for (Eigen::Index k = 0; k < law.cols(); ++k) fast.col(k) = without_slow_part(law.col(k));
+    fast.colwise().normalize();
+    return Eigen::VectorXd(rate - fast * least_squares(fast, rate).solution);
   };
-  const auto angle = motion.col(0).array();
-  const double of_weight = scatter(angle.sin(), angle.cos()),
-               of_spring = scatter(Eigen::VectorXd::Ones(motion.rows()), motion.col(0));
-  if (of_spring < clearly * of_weight) return RestoringLaw::spring;
-  return of_weight < clearly * of_spring ? RestoringLaw::weight : RestoringLaw::unclear;
+  const Eigen::VectorXd of_weight = residual(angle.sin(), angle.cos()),
+                        of_spring = residual(Eigen::VectorXd::Ones(motion.rows()), motion.col(0));
+  const bool is_spring = of_spring.squaredNorm() < of_weight.squaredNorm();
+  const Eigen::VectorXd &better = is_spring ? of_spring : of_weight,
+                        &worse = is_spring ? of_weight : of_spring;
+  // Neighbouring residuals are alike: as many are independent as their correlation leaves.
+  const Eigen::Index count = better.size() - 1;
+  const double alike =
+      std::clamp(better.head(count).dot(better.tail(count)) / better.squaredNorm(), 0.0, 0.999);
+  const double independent = static_cast<double>(count) * (1.0 - alike) / (1.0 + alike),
+               gain = std::log(worse.squaredNorm() / better.squaredNorm());
+  if (!(gain > clearly) || !(independent * gain > beyond_chance)) return RestoringLaw::unclear;
+  return is_spring ? RestoringLaw::spring : RestoringLaw::weight;
 }
 
 }  // namespace photorque

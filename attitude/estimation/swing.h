@@ -1,7 +1,7 @@
 // A body that swings about one axis: the instant of its release, and the law that drives it back.
 #pragma once
 
-#include "attitude/observation/observation.h"
+#include "attitude/estimation/axis_readings.h"
 
 namespace photorque {
 
@@ -15,11 +15,18 @@ namespace photorque {
 // rows, and where that would leave out more than a quarter of the rows.
 size_t released_at(const Observation& rows, const Vec3& axis, size_t first, size_t last);
 
+// The angles of a swing that its rates alone show: their integral from the middle of the swing,
+// which is found between turning points, so that neither a bias of the gyro nor its noise adds up.
+// Empty if the rates do not pass zero four times, or if the times between differ by a factor of
+// two.
+AxisReadings angles_of_swing(const Observation& rows, const Vec3& axis);
+
 // The restoring torque about `axis`: proportional to the sine of the angle from a rest position (a
-// weight about a level axis), or to the angle (a spring, a twisted line). The law that leaves less
-// than half of the other's scatter of the accelerations far from the middle, beside dry, viscous
-// and quadratic friction; `unclear` for small swings, where both are alike, or where there are too
-// few readings.
+// weight about a level axis), or to the angle (a spring, a twisted line). Beside dry, viscous and
+// quadratic friction, each law is fitted to the rates of local cubics (integrated over time); the
+// one with the smaller residual, if that gains a tenth of χ² and 16 in χ² for as many independent
+// residuals as their correlation leaves. `unclear` for small swings, where both are alike, or where
+// there are too few readings. Where there is no angle, those of angles_of_swing().
 enum class RestoringLaw { unclear, weight, spring };
 RestoringLaw restoring_law(const Observation& rows, const Vec3& axis);
 

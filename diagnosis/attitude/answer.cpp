@@ -165,6 +165,20 @@ bool law_is_far_better(const Answer& a, const Thresholds& limits) {
   return is_law && law < limits.discrepancy.max_fraction_of_law * known;
 }
 
+// Whether known effects describe the recordings nearly as well as a law in time does. Such a law
+// follows any slow error of a model or an instrument; whether the effects are named is decided by
+// what they predict.
+bool is_hardly_better_in_time(const Answer& a) {
+  constexpr double hardly = 1.5;
+  if (a.decision.finding != inference::Finding::unknown || a.decision.best_named == 0) return false;
+  for (const size_t c : a.chosen().candidates) {
+    if (a.all[c].empirical() && a.all[c].variable != "time") return false;
+  }
+  return a.decision.chosen != a.decision.best_named &&
+         a.trials[a.decision.best_named].fit.chi2_per_sample() <
+             hardly * a.chosen().fit.chi2_per_sample();
+}
+
 // Describes the unexplained residual by a refined law in time.
 void describe(const RecordedData& data, const DiagnoseOptions& options, Answer& a) {
   if (a.decision.finding != inference::Finding::unknown) return;
@@ -203,7 +217,11 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
   Answer fine;
   if (!is_far) {
     fine = at_noise_of_readings(nominal, data, options, nominal_fit, nullptr);
-    if (!fine.decision.leaves_more || law_is_far_better(fine, limits) || !is_simple(nominal)) {
+    const Platform& platform = nominal.model.platform;
+    const bool may_name =
+        fine.decision.leaves_more ||
+        (platform.turns_about_one_axis() && !platform.slides() && is_hardly_better_in_time(fine));
+    if (!may_name || law_is_far_better(fine, limits) || !is_simple(nominal)) {
       describe(data, options, fine);
       return fine;
     }

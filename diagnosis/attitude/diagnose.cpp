@@ -8,6 +8,7 @@
 #include "attitude/disturbances/kind.h"
 #include "attitude/estimation/conventions.h"
 #include "attitude/estimation/fit.h"
+#include "attitude/estimation/swing.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/answer.h"
@@ -169,11 +170,17 @@ NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
       data.train.begin(), data.train.end(),
       [&](const Observation& seen) { return seen.feels_attitude(stated.model.platform); });
   const Platform& platform = nominal.model.platform;
-  // A twisted line exerts a restoring torque, from which rates alone determine an angle.
-  const bool may_twist = platform.turns_about_one_axis() && !platform.slides() &&
-                         std::abs(platform.axis.z()) > 0.5 &&
-                         turns_little(data.train, platform.axis);
-  nominal.model.holds_attitude = !is_seen && !may_twist && !depends_on_attitude(stated.model);
+  // A twisted line or a weight exerts a restoring torque, from which rates alone determine an
+  // angle.
+  const bool turns_alone = platform.turns_about_one_axis() && !platform.slides();
+  const bool may_twist =
+      turns_alone && std::abs(platform.axis.z()) > 0.5 && turns_little(data.train, platform.axis);
+  const bool may_swing =
+      turns_alone && std::ranges::any_of(data.train, [&](const Observation& seen) {
+        return !angles_of_swing(seen, platform.axis).row.empty();
+      });
+  nominal.model.holds_attitude =
+      !is_seen && !may_twist && !may_swing && !depends_on_attitude(stated.model);
   return nominal;
 }
 

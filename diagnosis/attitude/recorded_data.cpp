@@ -36,6 +36,7 @@ void say_cuts(const std::string& name, const Segments& segments,
   say(segments.long_gaps, " long gaps: a new segment starts after each of them");
   say(segments.too_short,
       " segments with too few readings for their initial conditions are left out");
+  for (const std::string& note : segments.notes) warnings.push_back(name + ": " + note);
   for (const std::string& why : segments.lawless) {
     warnings.push_back(name + ": " + why + ", which is left out");
   }

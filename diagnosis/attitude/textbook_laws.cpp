@@ -5,6 +5,7 @@
 #include <ranges>
 
 #include "diagnosis/attitude/domain.h"
+#include "diagnosis/attitude/laws_of_curve.h"
 #include "diagnosis/attitude/model_discrepancy.h"
 #include "inference/trials.h"
 
@@ -98,25 +99,32 @@ std::pair<inference::RunSet<AttitudeDomain>, Trial> near_short_pieces(
   return {std::move(pieces), std::move(parted)};
 }
 
-}  // namespace
+// The laws fitted over the whole recordings from their strengths by the curve, over growing windows
+// if the whole is not reached at once.
+std::optional<Trial> fit_from_curve(const Trial& nominal, const std::vector<size_t>& laws,
+                                    const AttitudeDomain& domain, const Candidates& all,
+                                    const std::vector<Observation>& runs) {
+  const LawsOfCurve curve = laws_of_curve(nominal, all, laws, runs);
+  if (curve.members.empty()) return std::nullopt;
+  const Trial stated = domain.with_begins(as_stated(nominal), curve.begins);
+  std::optional<Trial> best;
+  for (const std::vector<double>& windows :
+       {std::vector<double>{1.0}, std::vector<double>{0.1, 0.3, 1.0}}) {
+    inference::Effort effort = inference::patient(all.limits);
+    effort.windows = windows;
+    Trial trial = domain.assemble(stated, curve.members, runs, effort);
+    if (std::isfinite(trial.fit.chi2) && !(best && best->fit.chi2 <= trial.fit.chi2)) {
+      best = std::move(trial);
+    }
+    if (best && best->fit.chi2_per_sample() < all.limits.diverged_chi2_per_sample) break;
+  }
+  return best;
+}
 
-std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates& all,
-                                       const RecordedData& data) {
-  const AttitudeModel& model = nominal_fit.best.model;
-  if (!model.platform.turns_about_one_axis() || model.platform.slides() ||
-      !std::isfinite(nominal_fit.chi2)) {
-    return std::nullopt;
-  }
-  const AttitudeDomain domain(all);
-  inference::Members<Start> members;
-  for (size_t c = 0; c < all.size(); ++c) {
-    if (!all[c].is_linear() || all[c].empirical()) continue;
-    const bool is_law = braking_power(all[c], model) || pulls_back(all[c], model) ||
-                        all[c].effect.how.steady || all[c].start.stage == Stage::measurement;
-    if (is_law && all[c].has_linear_strength()) members.push_back({{c, domain.start_of(c)}, {}});
-  }
-  if (members.empty()) return std::nullopt;
-  const Trial nominal = nominal_trial(nominal_fit, all);
+// All laws fitted to short pieces, then to longer ones, finally to the whole recordings.
+std::optional<Trial> fit_growing(const Trial& nominal, const inference::Members<Start>& members,
+                                 const AttitudeDomain& domain, const Candidates& all,
+                                 const RecordedData& data) {
   inference::Effort growing = inference::patient(all.limits);
   growing.windows = {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0};
   Trial found = nominal;
@@ -135,13 +143,13 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
     constexpr double alike = 100.0, useless = 0.01;
     const double near_whole = alike * std::max(1.0, all_laws.fit.chi2_per_sample());
     const auto is_near = [&] {
-      return found.fit.chi2 < nominal_fit.chi2 && found.fit.chi2_per_sample() < near_whole;
+      return found.fit.chi2 < nominal.fit.chi2 && found.fit.chi2_per_sample() < near_whole;
     };
     found = in_the_whole(all_laws);
     if (!is_near()) {
       Trial longer = in_the_whole(lengthened(all_laws, pieces, domain, all, data.train));
       if (!(found.fit.chi2 < longer.fit.chi2)) found = std::move(longer);
-      if (!is_near() && !(found.fit.chi2 < useless * nominal_fit.chi2)) return std::nullopt;
+      if (!is_near() && !(found.fit.chi2 < useless * nominal.fit.chi2)) return std::nullopt;
     }
   } else {
     // Fewer readings than that hardly determine as many laws.
@@ -157,10 +165,42 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
   if (!leaves_only_noise(found.fit, data)) {
     constexpr double hardly = 2.0;
     Trial fewer = without_superfluous(found, domain, all, data.train, sees_angle ? 0.0 : 2.0);
-    const double most = sees_angle ? hardly * found.fit.chi2 : nominal_fit.chi2;
+    const double most = sees_angle ? hardly * found.fit.chi2 : nominal.fit.chi2;
     if (fewer.fit.chi2 < most) found = std::move(fewer);
   }
-  if (!(found.fit.chi2 < nominal_fit.chi2)) return std::nullopt;
+  if (!(found.fit.chi2 < nominal.fit.chi2)) return std::nullopt;
+  return found;
+}
+
+}  // namespace
+
+std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates& all,
+                                       const RecordedData& data) {
+  const AttitudeModel& model = nominal_fit.best.model;
+  if (!model.platform.turns_about_one_axis() || model.platform.slides() ||
+      !std::isfinite(nominal_fit.chi2)) {
+    return std::nullopt;
+  }
+  const AttitudeDomain domain(all);
+  inference::Members<Start> members;
+  std::vector<size_t> laws;
+  for (size_t c = 0; c < all.size(); ++c) {
+    if (!all[c].is_linear() || all[c].empirical()) continue;
+    const bool is_law = braking_power(all[c], model) || pulls_back(all[c], model) ||
+                        all[c].effect.how.steady || all[c].start.stage == Stage::measurement;
+    if (!is_law || !all[c].has_linear_strength()) continue;
+    members.push_back({{c, domain.start_of(c)}, {}});
+    laws.push_back(c);
+  }
+  if (members.empty()) return std::nullopt;
+  const Trial nominal = nominal_trial(nominal_fit, all);
+  const std::optional<Trial> by_curve = fit_from_curve(nominal, laws, domain, all, data.train);
+  if (by_curve && leaves_only_noise(by_curve->fit, data)) return by_curve;
+  std::optional<Trial> found = fit_growing(nominal, members, domain, all, data);
+  if (by_curve && by_curve->fit.chi2 < nominal_fit.chi2 &&
+      !(found && found->fit.chi2 <= by_curve->fit.chi2)) {
+    return by_curve;
+  }
   return found;
 }
 

@@ -12,6 +12,7 @@
 #include "attitude/recordings/named_columns.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/numerics/linear.h"
 #include "diagnosis/guess/guess.h"
 
 namespace photorque {
@@ -41,6 +42,8 @@ struct Machine {
   std::vector<Observation> runs;
   std::optional<AngleConvention>
       angles;  // convention of roll, pitch and yaw of the first recording
+  // The gyro axis whose rates are those about `platform.axis`, if that has another letter.
+  std::optional<int> rate_from;
 
   bool has(const char* channel) const { return recordings.front().find(channel) != nullptr; }
   bool has_all(std::initializer_list<const char*> channels) const {
@@ -206,32 +209,87 @@ bool passes_its_mean(const std::vector<Observation>& runs, int axis) {
   return times >= swings;
 }
 
+// How what drives a swing back follows from the readings.
+std::string why_it_swings(RestoringLaw law, const std::string& seen) {
+  return law == RestoringLaw::spring
+             ? seen +
+                   ", driven back in proportion to the angle and not to its sine: a torsion "
+                   "pendulum, a spring (\"x\" for a weight about a level axis)."
+             : seen +
+                   ": a pendulum about a horizontal axis (\"z\" where the axis is vertical and "
+                   "something else drives it back). Angle zero is taken to hang.";
+}
+
+RestoringLaw law_of_swing(const std::vector<Observation>& runs, const Vec3& axis) {
+  RestoringLaw law = RestoringLaw::unclear;
+  for (const Observation& seen : runs) {
+    const RestoringLaw of_run = restoring_law(seen, axis);
+    if (of_run != RestoringLaw::unclear) law = of_run;
+    if (law == RestoringLaw::spring) break;
+  }
+  return law;
+}
+
+// A swing that the rates about body axis `k` show. A weight acts about a level axis, a spring about
+// any: rates about another body axis are read as those about the axis of the platform.
+bool see_swing_by_rates(Machine& m, int k, const std::string& seen) {
+  const Vec3 axis = Vec3::Unit(k);
+  const bool swings = std::ranges::any_of(
+      m.runs, [&](const Observation& run) { return !angles_of_swing(run, axis).row.empty(); });
+  if (!swings) return false;
+  const RestoringLaw law = law_of_swing(m.runs, axis);
+  m.why = why_it_swings(law, seen);
+  const bool is_spring = law == RestoringLaw::spring;
+  if (is_spring == (k == 2)) return true;
+  m.rate_from = k;
+  m.platform.axis = is_spring ? Vec3::UnitZ() : Vec3::UnitX();
+  return true;
+}
+
 // Selects the axis of rotation, and whether weight may act as a restoring torque.
 void see_one_axis(Machine& m) {
   const char* const letters[] = {"x", "y", "z"};
   for (int k = 0; k < 3; ++k) {
     if (!m.has((std::string("gyro_") + letters[k] + "_rad_s").c_str())) continue;
+    m.observe_as(Topology::one_axis, Vec3::Unit(k));
+    if (see_swing_by_rates(m, k, "one rate that passes zero again and again")) return;
     m.why = std::string("the one gyro axis is ") + letters[k] + ", so it turns about that alone.";
-    return m.observe_as(Topology::one_axis, Vec3::Unit(k));
+    return;
   }
   const bool has_angle = !m.has("rate_rad_s") || m.has("angle_rad") || m.has("roll_rad");
   m.why = std::string("there is one ") + (has_angle ? "angle" : "rate") +
           " alone, so it turns about one axis: a wheel, a turntable, one angle of a spacecraft.";
   m.observe_as(Topology::one_axis);
-  if (!has_angle || !passes_its_mean(m.runs, 2)) return;
-  const bool has_spring = std::ranges::any_of(m.runs, [](const Observation& seen) {
-    return restoring_law(seen, Vec3::UnitZ()) == RestoringLaw::spring;
-  });
-  if (has_spring) {
-    m.why =
-        "one angle that swings about its mean, driven back in proportion to the angle and not to "
-        "its sine: a torsion pendulum, a spring (\"x\" for a weight about a level axis).";
-  } else {
-    m.why =
-        "one angle that swings about its mean: a pendulum about a horizontal axis (\"z\" where "
-        "the axis is vertical and something else drives it back). Angle zero is taken to hang.";
-    m.observe_as(Topology::one_axis, Vec3::UnitX());
+  if (!has_angle) {
+    if (see_swing_by_rates(m, 2, "one rate that passes zero again and again") && m.rate_from) {
+      m.rate_from.reset();
+      m.observe_as(Topology::one_axis, m.platform.axis);
+    }
+    return;
   }
+  if (!passes_its_mean(m.runs, 2)) return;
+  const RestoringLaw law = law_of_swing(m.runs, Vec3::UnitZ());
+  m.why = why_it_swings(law, "one angle that swings about its mean");
+  if (law != RestoringLaw::spring) m.observe_as(Topology::one_axis, Vec3::UnitX());
+}
+
+// The axis about which a body swings that three rates show: nearly all of their square is along one
+// line, whose largest component is returned. Nothing if they are not, or if they do not swing.
+std::optional<int> axis_of_swing(const std::vector<Observation>& runs) {
+  constexpr double across = 0.2;
+  Mat3 squares = Mat3::Zero();
+  for (const Observation& seen : runs) {
+    for (const Vec3& rate : seen.gyro_rad_s) {
+      if (rate.allFinite()) squares += rate * rate.transpose();
+    }
+  }
+  const SymmetricEigen principal = symmetric_eigen(squares);
+  if (!(principal.values.head(2).sum() < across * across * principal.values[2])) {
+    return std::nullopt;
+  }
+  Eigen::Index largest = 0;
+  principal.vectors.col(2).cwiseAbs().maxCoeff(&largest);
+  return static_cast<int>(largest);
 }
 
 // The axis with nearly all of the rate; none if several have significant rates.
@@ -282,6 +340,15 @@ void see_machine(Machine& m) {
       "bearing or with a weight off the centre it is \"tabletop\".";
   if (!m.sees_attitude()) {
     m.observe_as(Topology::free);
+    if (const std::optional<int> swung = axis_of_swing(m.runs)) {
+      m.observe_as(Topology::one_axis, Vec3::Unit(*swung));
+      if (see_swing_by_rates(m, *swung,
+                             std::string("three rates along one line, that about ") +
+                                 "xyz"[*swung] + " the largest, which pass zero again and again")) {
+        return;
+      }
+      m.observe_as(Topology::free);
+    }
     const std::optional<int> axis = only_axis(m.runs);
     if (!axis) return;
     m.why = std::string("three rates, of which that about ") + "xyz"[*axis] +
@@ -300,15 +367,31 @@ void see_machine(Machine& m) {
       "bearing (\"free\" for what is in orbit or thrown).";
 }
 
-void add_columns(TomlDocument& document, const std::vector<GuessedColumn>& columns,
-                 RecordingOptions& options) {
+RecordingOptions options_of(const std::vector<GuessedColumn>& columns) {
+  RecordingOptions options;
   for (const GuessedColumn& c : columns) {
     if (c.channel.empty() || c.channel == c.in_file) continue;
-    const std::string in_file = header_cell_text(c.in_file);
-    options.columns[c.channel] = in_file;
-    if (!c.is_sure) document.comment("CONFIRM: " + c.because + " the next column.");
-    document.set(document.table("recording"), "columns." + c.channel, {in_file});
+    options.columns[c.channel] = header_cell_text(c.in_file);
   }
+  return options;
+}
+
+void add_columns(TomlDocument& document, const std::vector<GuessedColumn>& columns) {
+  for (const GuessedColumn& c : columns) {
+    if (c.channel.empty() || c.channel == c.in_file) continue;
+    if (!c.is_sure) document.comment("CONFIRM: " + c.because + " the next column.");
+    document.set(document.table("recording"), "columns." + c.channel,
+                 {header_cell_text(c.in_file)});
+  }
+}
+
+// The columns with the rates about body axis `k` as those about the one axis.
+std::vector<GuessedColumn> with_rate_from(std::vector<GuessedColumn> columns, int k) {
+  const std::string gyro = std::string("gyro_") + "xyz"[k];
+  for (GuessedColumn& c : columns) {
+    if (c.channel.starts_with(gyro)) c.channel = "rate" + c.channel.substr(gyro.size());
+  }
+  return columns;
 }
 
 // Throws InputError for a file without a time or without anything that moves.
@@ -415,6 +498,7 @@ void add_drag(TomlDocument& document, const Machine& m) {
   m.platform.axis.maxCoeff(&axis);
   double slowed = 0.0, sum = 0.0;
   for (const Observation& seen : m.runs) {
+    if (!angles_of_swing(seen, m.platform.axis).row.empty()) return;
     std::vector<double> rate;
     for (size_t i = 0; i < seen.blocks(); ++i) {
       if (seen.gyro_rows[i][axis] > 0.0) rate.push_back(std::abs(seen.gyro_rad_s[i][axis]));
@@ -453,17 +537,25 @@ void add_sequence(TomlDocument& document, const Machine& m) {
 }  // namespace
 
 void guess_motion(TomlDocument& document, const std::vector<fs::path>& recordings) {
-  RecordingOptions options;
-  const std::vector<GuessedColumn> columns = guess_columns(recordings.front());
+  std::vector<GuessedColumn> columns = guess_columns(recordings.front());
   require_motion(recordings.front(), columns);
-  add_columns(document, columns, options);
   Machine m;
-  for (const fs::path& path : recordings) {
-    m.recordings.push_back(read_recording(path, options));
-    m.names.push_back(path.string());
-    require_rows(path, columns, m.recordings.back());
-  }
+  const auto read_all = [&] {
+    m.recordings.clear();
+    for (const fs::path& path : recordings) {
+      m.recordings.push_back(read_recording(path, options_of(columns)));
+      require_rows(path, columns, m.recordings.back());
+    }
+  };
+  for (const fs::path& path : recordings) m.names.push_back(path.string());
+  read_all();
   see_machine(m);
+  if (m.rate_from) {
+    columns = with_rate_from(std::move(columns), *m.rate_from);
+    read_all();
+    m.observe_as(Topology::one_axis, m.platform.axis);
+  }
+  add_columns(document, columns);
   if (m.platform.slides()) {
     if (const std::string note = circle_of(m.recordings.front()); !note.empty()) {
       document.comment(note);

@@ -15,6 +15,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/diagnose.h"
+#include "diagnosis/attitude/recorded_data.h"
 #include "diagnosis/guess/guess.h"
 #include "scenes/experiment/toml.h"
 #include "tests/diagnosis/machine_bench.h"
@@ -351,6 +352,23 @@ TEST_F(Guess, ATorsionPendulumTurnsAboutAnUprightAxis) {
                 AllOf(HasSubstr("axis = \"z\""), HasSubstr("in proportion to the angle")))
         << "every " << interval_s << " s";
   }
+}
+
+// Three rates of a telephone on a pendulum: those across the axis are small, and none has a mean.
+TEST_F(Guess, APendulumIsNoFreeBodyByItsRates) {
+  constexpr double omega = 3.1, c = 0.05;
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> noise(0.0, 0.004);
+  std::string text = "Time (s),Gyroscope x (rad/s),Gyroscope y (rad/s),Gyroscope z (rad/s)\n";
+  for (int i = 0; i < 1500; ++i) {
+    const double t = 0.02 * i,
+                 rate_rad_s = 0.6 * std::exp(-0.5 * c * t) * std::sin(omega * t + 0.7);
+    text += written("%.9g,%.9g,%.9g,%.9g\n", t, 0.06 * rate_rad_s + noise(random),
+                    -0.08 * rate_rad_s + noise(random), rate_rad_s + 0.002 + noise(random));
+  }
+  EXPECT_THAT(guess_experiment({write("phone.csv", text)}, "."),
+              AllOf(HasSubstr("topology = \"one_axis\""), HasSubstr("axis = \"x\""),
+                    HasSubstr("rate_rad_s = \"Gyroscope z (rad/s)\"")));
 }
 
 TEST_F(Guess, AThrowHasTheRatiosOfItsMoments) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "attitude/estimation/swing.h"
 #include "attitude/propagation/run.h"
 #include "core/constants.h"
 #include "diagnosis/attitude/effects/trial.h"
@@ -70,11 +71,19 @@ ReadMotion read_motion(const AttitudeModel& model, const Observation& seen) {
   ReadMotion motion;
   Vec3 least = Vec3::Constant(1e308), most = -least, slowest = least, fastest = most;
   const int translation = Dynamics(model).first_of_translation();
+  const bool hides_angle = model.platform.turns_about_one_axis() && !seen.sees_some_attitude();
+  const AxisReadings swing =
+      hides_angle ? angles_of_swing(seen, model.platform.axis) : AxisReadings();
+  size_t at_swing = 0;
   for (size_t i = 0; i < seen.blocks(); i += stride) {
     PlatformState state = Dynamics(model).initial_state(rate_at(seen, i, reach));
     state.time_s = seen.time_s[i];
     if (seen.sees_some_attitude() && seen.attitude_rows[i] > 0.0) {
       state.lab_from_body = seen.attitude[i];
+    }
+    while (at_swing < swing.row.size() && swing.row[at_swing] < i) ++at_swing;
+    if (at_swing < swing.row.size()) {
+      state.lab_from_body = Eigen::AngleAxisd(swing.value[at_swing], model.platform.axis);
     }
     if (translation >= 0) {
       const std::array<double, 4> place = place_at(seen, i, reach);
@@ -405,59 +414,26 @@ bool swings_little(const std::vector<Observation>& runs) {
   return sees && most_rad - least_rad < little_rad;
 }
 
-}  // namespace
-
-std::optional<double> braking_power(const Candidate& candidate, AttitudeModel model) {
-  const bool slides = model.platform.slides(), pushes = is_force(candidate.effect.how.needs);
-  if (candidate.empirical() || candidate.start.stage == Stage::measurement) return std::nullopt;
-  if (pushes ? !slides : !model.platform.turns_about_one_axis()) return std::nullopt;
-  Disturbance acting = candidate.start;
-  for (size_t p = 0; p < acting.parameters.size(); ++p) {
-    if (candidate.is_strength(p)) acting.parameters[p].value += candidate.scale[p];
-  }
-  model.disturbances = {std::move(acting)};
-  if (slides) model.disturbances.push_back(translation());
-  // The force along x at this speed, or the torque about the axis at this rate.
-  const auto action = [&](double motion) {
-    PlatformState state =
-        Dynamics(model).initial_state(pushes ? Vec3::Zero().eval() : motion * model.platform.axis);
-    if (slides) {
-      std::copy_n(std::array{0.0, 0.0, pushes ? motion : 0.0, 0.0}.begin(), 4,
-                  state.extra.end() - 4);
+// Rates alone do not show where the angle is zero: the zero is where a restoring torque vanishes.
+// The components of such a torque with an effect there are excluded.
+void set_zero_at_rest(const AttitudeModel& nominal, Candidate& c) {
+  if (!pulls_back(c, nominal)) return;
+  AttitudeModel model = nominal;
+  for (size_t p = 0; p < c.start.parameters.size(); ++p) {
+    if (!c.is_strength(p)) continue;
+    Disturbance one = c.start;
+    for (size_t other = 0; other < one.parameters.size(); ++other) {
+      if (c.is_strength(other)) one.parameters[other].value = other == p ? c.scale[p] : 0.0;
     }
-    return pushes ? disturbance_forces_lab_N(model, state).front().x()
-                  : model.platform.axis.dot(disturbance_torques_body_N_m(model, state).front());
-  };
-  constexpr double slow = 0.5, alike = 1e-6;
-  const double forward = action(slow), backward = action(-slow), faster = action(2.0 * slow);
-  const bool brakes = forward < 0.0 && std::abs(forward + backward) < -alike * forward;
-  if (!brakes || !(faster < 0.0)) return std::nullopt;
-  return std::log2(faster / forward);
+    model.disturbances = {std::move(one)};
+    const PlatformState upright = Dynamics(model).initial_state(Vec3::Zero());
+    if (model.platform.axis.dot(disturbance_torques_body_N_m(model, upright).front()) != 0.0) {
+      c.scale[p] = 0.0;
+    }
+  }
 }
 
-bool pulls_back(const Candidate& candidate, AttitudeModel model) {
-  if (candidate.empirical() || candidate.start.stage == Stage::measurement ||
-      !model.platform.turns_about_one_axis() || is_force(candidate.effect.how.needs)) {
-    return false;
-  }
-  Disturbance acting = candidate.start;
-  for (size_t p = 0; p < acting.parameters.size(); ++p) {
-    if (candidate.is_strength(p)) acting.parameters[p].value += candidate.scale[p];
-  }
-  model.disturbances = {std::move(acting)};
-  if (model.platform.slides()) model.disturbances.push_back(translation());
-  const Vec3& axis = model.platform.axis;
-  const auto torque = [&](double angle_rad, double rate_rad_s) {
-    PlatformState state = Dynamics(model).initial_state(rate_rad_s * axis);
-    state.lab_from_body = Quat(Eigen::AngleAxisd(angle_rad, axis));
-    return axis.dot(disturbance_torques_body_N_m(model, state).front());
-  };
-  constexpr double near_rad = pi / 3.0, far_rad = 2.0 * pi / 3.0, alike = 1e-6;
-  const double near = torque(near_rad, 0.0) - torque(-near_rad, 0.0),
-               far = torque(far_rad, 0.0) - torque(-far_rad, 0.0),
-               of_rate = torque(near_rad, 1.0) - torque(near_rad, 0.0);
-  return near * far > 0.0 && std::abs(of_rate) < alike * std::abs(near);
-}
+}  // namespace
 
 Candidates all_candidates(const NominalModel& nominal, const std::vector<Observation>& runs,
                           const Thresholds& limits) {
@@ -559,9 +535,19 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
       return has_weight && c.effect.how.needs == Requirement::bearing &&
              pulls_back(c, nominal.model);
     });
+    const bool sees_angle = std::ranges::any_of(
+        runs, [](const Observation& seen) { return seen.sees_some_attitude(); });
+    if (!sees_angle && !context.platform.slides()) {
+      for (Candidate& c : all.list) set_zero_at_rest(nominal.model, c);
+    }
     // In small swings the weight has a constant torque, and a steady torque is an error of the
-    // angle's zero.
-    if (is_level && has_weight && !context.platform.slides() && swings_little(runs)) {
+    // angle's zero; so it is in every swing that only its rates show.
+    const bool hides_steady =
+        sees_angle ? is_level && has_weight && swings_little(runs)
+                   : std::ranges::any_of(runs, [&](const Observation& seen) {
+                       return !angles_of_swing(seen, context.platform.axis).row.empty();
+                     });
+    if (hides_steady && !context.platform.slides()) {
       std::erase_if(all.list, [](const Candidate& c) { return c.effect.how.steady; });
     }
     // Where the model has no weight yet, the sag of a structure would only stand for one.

@@ -1,0 +1,32 @@
+// Strengths of laws of rotation about one axis from the recorded curve alone, without a fit: a
+// start that is near the readings over the whole recording.
+#pragma once
+
+#include <vector>
+
+#include "diagnosis/attitude/domain.h"
+
+namespace photorque {
+
+// Local cubics through the readings give angle θ and rate ω. The equation of motion, integrated
+// over time,
+//
+//   ω(t) = ω₀ + Σ_k s_k ∫ a_k(θ, ω) dt,
+//
+// is linear in the strengths s_k of the laws (accelerations a_k per unit) and in one ω₀ a run. A
+// strength beyond its physical bounds is zero, and the others are computed again.
+struct LawsOfCurve {
+  inference::Members<Start> members;  // with a strength that is not zero
+  std::vector<RunStart> begins;
+};
+
+// `nominal`: its trial, whose parameters are used at the values that the experiment states.
+// `candidates`: indices of the laws. No members where a run has too few readings.
+LawsOfCurve laws_of_curve(const Trial& nominal, const Candidates& all,
+                          const std::vector<size_t>& candidates,
+                          const std::vector<Observation>& runs);
+
+// The trial with its own parameters at the values that the experiment states.
+Trial as_stated(Trial nominal);
+
+}  // namespace photorque
