@@ -165,26 +165,16 @@ bool law_is_far_better(const Answer& a, const Thresholds& limits) {
   return is_law && law < limits.discrepancy.max_fraction_of_law * known;
 }
 
-// Whether known effects describe the recordings nearly as well as a law in time does. Such a law
-// follows any slow error of a model or an instrument; whether the effects are named is decided by
-// what they predict.
-bool is_hardly_better_in_time(const Answer& a) {
-  constexpr double hardly = 1.5;
-  if (a.decision.finding != inference::Finding::unknown || a.decision.best_named == 0) return false;
-  for (const size_t c : a.chosen().candidates) {
-    if (a.all[c].empirical() && a.all[c].variable != "time") return false;
-  }
-  return a.decision.chosen != a.decision.best_named &&
-         a.trials[a.decision.best_named].fit.chi2_per_sample() <
-             hardly * a.chosen().fit.chi2_per_sample();
-}
-
 // Describes the unexplained residual by a refined law in time.
 void describe(const RecordedData& data, const DiagnoseOptions& options, Answer& a) {
   if (a.decision.finding != inference::Finding::unknown) return;
   Trial& chosen = a.trials[a.decision.chosen];
   chosen = refined_in_time(chosen, a.all, data.train);
   keep_what_predicts(data, options.limits, a);
+}
+
+bool has_law(const Trial& trial, const Candidates& all) {
+  return std::ranges::any_of(trial.candidates, [&](size_t c) { return all[c].empirical(); });
 }
 
 void leave_unexplained(inference::Decision& decision) {
@@ -214,40 +204,44 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
   // only distorts the nominal model.
   const bool is_far = !is_watched(nominal, data) &&
                       !(nominal_fit.chi2_per_sample() < limits.diverged_chi2_per_sample);
+  const Platform& platform = nominal.model.platform;
+  const bool turns_alone = platform.turns_about_one_axis() && !platform.slides();
   Answer fine;
   if (!is_far) {
     fine = at_noise_of_readings(nominal, data, options, nominal_fit, nullptr);
-    const Platform& platform = nominal.model.platform;
-    const bool may_name =
-        fine.decision.leaves_more ||
-        (platform.turns_about_one_axis() && !platform.slides() && is_hardly_better_in_time(fine));
-    if (!may_name || law_is_far_better(fine, limits) || !is_simple(nominal)) {
+    // About one axis an empirical law does not replace known laws: they are named beside it.
+    const bool may_name = fine.decision.leaves_more ||
+                          (turns_alone && fine.decision.finding == inference::Finding::unknown);
+    if (!may_name || (!turns_alone && law_is_far_better(fine, limits)) || !is_simple(nominal)) {
       describe(data, options, fine);
       return fine;
     }
   }
   std::optional<Trial> laws;
-  if (is_far) {
+  const Candidates known =
+      candidates_among(among_with_discrepancy(nominal, data), nominal, data.train, limits);
+  if (is_far || (turns_alone && is_of_textbook(known))) {
     tell(options, "fitting the laws of a textbook together");
-    laws = fit_textbook_laws(
-        nominal_fit,
-        candidates_among(among_with_discrepancy(nominal, data), nominal, data.train, limits), data);
+    laws = fit_textbook_laws(nominal_fit, known, data);
   }
-  if (laws && leaves_only_noise(laws->fit, data)) {
+  if (is_far && laws && leaves_only_noise(laws->fit, data)) {
     fine = at_noise_of_readings(nominal, data, options, nominal_fit, &*laws);
-    if (!fine.decision.leaves_more) {
-      describe(data, options, fine);
-      return fine;
-    }
+    if (fine.decision.finding != inference::Finding::unknown) return fine;
   }
   RecordedData rough = data;
   std::optional<Answer> named =
       identify_with_discrepancy(nominal, rough, options, laws ? &*laws : nullptr);
-  if (named && is_far && leaves_only_noise(named->chosen().fit, data)) {
-    return at_noise_of_readings(nominal, data, options, nominal_fit, &named->chosen());
+  if (named && fine.trials.empty() && leaves_only_noise(named->chosen().fit, data)) {
+    Answer again = at_noise_of_readings(nominal, data, options, nominal_fit, &named->chosen());
+    if (again.decision.finding != inference::Finding::unknown) return again;
   }
-  if (named) return std::move(*named);
-  if (!is_far) {
+  if (named) {
+    if (!fine.trials.empty() && has_law(fine.chosen(), fine.all)) {
+      named->depends_on = of_unknown_law({}, fine.chosen(), fine.all);
+    }
+    return std::move(*named);
+  }
+  if (!fine.trials.empty()) {
     describe(data, options, fine);
     return fine;
   }

@@ -28,6 +28,7 @@ struct Answer {
     size_t segments = 0;
     std::vector<double> sigma;                     // for each candidate of the chosen trial
     std::vector<std::vector<std::string>> rivals;  // for each: indistinguishable names
+    std::vector<std::string> tied;                 // sets of names that predict as well
   };
   std::optional<BesideTheRest> beside = {};
 

@@ -50,6 +50,7 @@ void say_what_was_found(const Answer& answer, const Fit& nominal_fit, const Reco
     d.effects = found_effects(decision, trials, all);
   }
   if (answer.beside) {
+    d.where.depends_on = depends_on;
     d.effects = found_effects(decision, trials, all);
     for (size_t i = 0; i < d.effects.size(); ++i) {
       d.effects[i].probability = decision.confidence;
@@ -123,6 +124,11 @@ void report_gains_over_segments(const Answer& answer, Diagnosis& d) {
                 "better with it than without it by %.1f standard errors",
                 d.effects[i].kind.c_str(), answer.beside->segments, answer.beside->sigma[i]));
   }
+  std::string sets;
+  for (const std::string& set : answer.beside->tied) sets += (sets.empty() ? "" : "; or ") + set;
+  if (sets.empty()) return;
+  d.warnings.push_back("the segments are predicted as well, within 1.6 standard errors, by " +
+                       sets);
 }
 
 // Adds a warning if held-out data do not test the names or scatter less than the noise.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "attitude/estimation/fit.h"
@@ -10,6 +11,7 @@
 #include "diagnosis/attitude/cross_validation.h"
 #include "diagnosis/attitude/domain.h"
 #include "diagnosis/attitude/holdout.h"
+#include "diagnosis/attitude/textbook_laws.h"
 
 namespace photorque {
 namespace {
@@ -54,31 +56,59 @@ struct Contender {
   double held_samples = 0.0;
 };
 
-// Compares explanations of one search by their predictions of segments.
+// The most likely allowed explanations of a search and the best predictors of the held-out data,
+// including the nominal model.
+std::vector<size_t> likely_of(const Answer& answer) {
+  const Thresholds::Discrepancy& limits = answer.all.limits.discrepancy;
+  std::vector<size_t> order = inference::by_evidence(answer.trials);
+  std::erase_if(order, [&](size_t i) {
+    return !answer.trials[i].objection.empty() || !std::isfinite(answer.trials[i].fit.chi2);
+  });
+  std::vector<size_t> by_held = order;
+  std::erase_if(by_held,
+                [&](size_t i) { return !answer.trials[i].holdout_chi2_per_sample.has_value(); });
+  std::ranges::stable_sort(by_held, {},
+                           [&](size_t i) { return *answer.trials[i].holdout_chi2_per_sample; });
+  order.resize(std::min(order.size(), limits.max_likeliest));
+  by_held.resize(std::min(by_held.size(), limits.max_predicting));
+  for (const size_t i : by_held) {
+    if (std::ranges::find(order, i) == order.end()) order.push_back(i);
+  }
+  if (std::ranges::find(order, 0U) == order.end()) order.push_back(0);
+  return order;
+}
+
+// Compares some explanations (`which`) by their predictions of segments.
 class Contest {
  public:
-  Contest(const Answer& answer, const RecordedData& data, size_t segments, int threads)
+  Contest(const Answer& answer, const std::vector<size_t>& which, const RecordedData& data,
+          size_t segments, int threads)
       : answer_(answer),
         limits_(answer.all.limits.discrepancy),
         domain_(answer.all),
         train_(data.train),
         held_(data.held),
-        segments_(domain_, data.train, data.held, segments, threads) {}
+        segments_(domain_, data.train, data.held, segments, threads) {
+    for (const size_t i : which) contenders_.push_back(contender(answer_.trials[i]));
+  }
 
   size_t segments() const { return segments_.count(); }
 
-  // The best predictor, or a simpler or more likely explanation that is indistinguishable from it,
-  // without names that no segment requires.
+  // The best predictor, or a simpler explanation that is indistinguishable from it, without names
+  // that no segment requires.
   Contender winner() {
-    for (const size_t i : likely()) contenders_.push_back(contender(answer_.trials[i]));
     const Contender* best = &contenders_.front();
     for (const Contender& other : contenders_) {
-      if (gain_sigma(best->chi2, other.chi2) > limits_.min_rival_sigma) best = &other;
+      const double gain = gain_sigma(best->chi2, other.chi2);
+      if (gain > (halves_held_out(*best, other) ? 0.0 : limits_.min_rival_sigma)) best = &other;
     }
     const Contender won = pruned(*best);
-    const Contender& likelier = likeliest_like(won);
-    return &likelier == &won ? won : pruned(likelier);
+    const Contender& simplest = simplest_like(won);
+    return &simplest == &won ? won : pruned(simplest);
   }
+
+  // The trial without names that no segment requires.
+  Trial needed_of(const Trial& trial) { return pruned(contender(trial)).trial; }
 
   // For each name of the winner, the gain in prediction over its absence [standard errors].
   const std::vector<double>& sigma() const { return sigma_; }
@@ -98,39 +128,38 @@ class Contest {
       }
       const bool is_exchanged = other.trial.candidates.size() == best.trial.candidates.size() &&
                                 theirs.size() == 1 && theirs[0] != best.trial.candidates[which];
-      if (is_exchanged && gain_sigma(other.chi2, best.chi2) < limits_.min_rival_sigma) {
+      if (is_exchanged && is_as_good(other, best)) {
         names.insert(answer_.all[theirs[0]].label);
       }
     }
     return {names.begin(), names.end()};
   }
 
- private:
-  // The most likely allowed explanations and the best predictors of the held-out data, including
-  // the nominal model.
-  std::vector<size_t> likely() const {
-    std::vector<size_t> order = inference::by_evidence(answer_.trials);
-    std::erase_if(order, [&](size_t i) {
-      return !answer_.trials[i].objection.empty() || !std::isfinite(answer_.trials[i].fit.chi2);
-    });
-    std::vector<size_t> by_held = order;
-    std::erase_if(by_held,
-                  [&](size_t i) { return !answer_.trials[i].holdout_chi2_per_sample.has_value(); });
-    std::ranges::stable_sort(by_held, {},
-                             [&](size_t i) { return *answer_.trials[i].holdout_chi2_per_sample; });
-    order.resize(std::min(order.size(), limits_.max_likeliest));
-    by_held.resize(std::min(by_held.size(), limits_.max_predicting));
-    for (const size_t i : by_held) {
-      if (std::ranges::find(order, i) == order.end()) order.push_back(i);
+  // The sets of names that predict the segments as well as those of `best` but lack one of them.
+  std::vector<std::string> tied(const Contender& best) const {
+    std::set<std::string> sets;
+    for (const Contender& other : contenders_) {
+      std::vector<size_t> theirs = other.trial.candidates, ours = best.trial.candidates;
+      std::ranges::sort(theirs);
+      std::ranges::sort(ours);
+      if (std::ranges::includes(theirs, ours) || !is_as_good(other, best)) continue;
+      std::string text;
+      for (const size_t c : theirs) text += (text.empty() ? "" : " + ") + answer_.all[c].label;
+      if (!text.empty()) sets.insert(text);
     }
-    if (std::ranges::find(order, 0U) == order.end()) order.push_back(0);
-    return order;
+    return {sets.begin(), sets.end()};
   }
 
+ private:
   Contender contender(const Trial& trial) const {
     const Trial held = domain_.predict(trial, held_);
     const double chi2 = std::isnan(held.fit.chi2) ? inference::infinity : held.fit.chi2;
     return {trial, segments_.chi2(trial), chi2, static_cast<double>(held.fit.samples)};
+  }
+
+  // Whether `with` leaves less than half of the held-out χ² of `without`.
+  bool halves_held_out(const Contender& without, const Contender& with) const {
+    return with.held_chi2 < answer_.all.limits.decision.max_held_out_fraction * without.held_chi2;
   }
 
   // Motion about three axes is flexible enough to fit anything. There a further name must halve the
@@ -138,38 +167,51 @@ class Contest {
   bool tells_enough(const Contender& without, const Contender& with) const {
     const Platform& platform = answer_.trials.front().fit.best.model.platform;
     return platform.turns_about_one_axis() || platform.slides() ||
-           without.trial.candidates.empty() ||
-           with.held_chi2 < answer_.all.limits.decision.max_held_out_fraction * without.held_chi2;
+           without.trial.candidates.empty() || halves_held_out(without, with);
   }
 
   // Standard errors by which a name improves the prediction of segments; 0 if it worsens that of
-  // the held-out data.
+  // the held-out data. Held-out data whose χ² it halves confirm the segments: 1.67 standard errors
+  // then count as three.
   double missed(const Contender& without, const Contender& with) const {
-    constexpr double by_chance = 3.0;
+    constexpr double by_chance = 3.0, confirmed = 1.8;
     const double scatter = std::sqrt(2.0 * with.held_samples);
     if (with.held_chi2 > limits_.max_held_growth * without.held_chi2 + by_chance * scatter) {
       return 0.0;
     }
-    return gain_sigma(without.chi2, with.chi2);
+    return gain_sigma(without.chi2, with.chi2) * (halves_held_out(without, with) ? confirmed : 1.0);
   }
 
-  // The most likely contender that is indistinguishable from `won` and has no more names, or `won`.
-  // The simpler of two kinds of one law counts as more likely (simpler_by()).
-  const Contender& likeliest_like(const Contender& won) const {
-    const auto evidence = [&](const Contender& c) {
-      const auto twin = std::ranges::find_if(answer_.trials, [&](const Trial& t) {
-        return inference::same_candidates(t.candidates, c.trial.candidates);
-      });
-      return twin == answer_.trials.end() ? -inference::infinity : twin->log_evidence;
-    };
+  // Whether the segments do not show `one` to predict worse than `other`.
+  bool is_as_good(const Contender& one, const Contender& other) const {
+    return gain_sigma(one.chi2, other.chi2) < limits_.min_rival_sigma;
+  }
+
+  // Drag by a power of the rate that is no whole number may stand for a sum of two that are.
+  bool has_broken_power(const Trial& trial) const {
+    return std::ranges::any_of(trial.candidates, [&](size_t c) {
+      const auto power = braking_power(answer_.all[c], answer_.trials.front().fit.best.model);
+      return power && std::abs(*power - std::round(*power)) > 0.25;
+    });
+  }
+
+  // Whether `one` is to be preferred to `other` where both predict alike: without a broken power,
+  // with fewer names, the simpler of two kinds of one law (simpler_by()), the more likely.
+  bool is_simpler(const Contender& one, const Contender& other) const {
+    const bool broken = has_broken_power(one.trial);
+    if (broken != has_broken_power(other.trial)) return !broken;
+    const size_t ours = one.trial.candidates.size(), theirs = other.trial.candidates.size();
+    if (ours != theirs) return ours < theirs;
+    return simpler_by(one.trial, other.trial, answer_)
+               .value_or(one.trial.log_evidence - other.trial.log_evidence) > 0.0;
+  }
+
+  // The simplest contender that predicts as well as `won`, or `won`.
+  const Contender& simplest_like(const Contender& won) const {
     const Contender* best = &won;
     for (const Contender& other : contenders_) {
-      const bool is_as_simple = !other.trial.candidates.empty() &&
-                                other.trial.candidates.size() <= won.trial.candidates.size();
-      const bool is_alike = gain_sigma(other.chi2, won.chi2) < limits_.min_rival_sigma;
-      const double better =
-          simpler_by(other.trial, best->trial, answer_).value_or(evidence(other) - evidence(*best));
-      if (is_as_simple && is_alike && better > 0.0) best = &other;
+      const bool is_alike = is_as_good(other, won) && !halves_held_out(other, won);
+      if (!other.trial.candidates.empty() && is_alike && is_simpler(other, *best)) best = &other;
     }
     return *best;
   }
@@ -272,11 +314,44 @@ void choose(const Contender& won, const Contest& contest, Answer& a) {
   for (size_t i = 0; i < chosen.candidates.size(); ++i) {
     a.beside->rivals.push_back(contest.rivals(won, i));
   }
+  a.beside->tied = contest.tied(won);
+}
+
+// In place of a search: the nominal model and every set of friction and drag beside the other laws
+// of `found`, all fitted with the noise of `data`.
+Answer sets_of_laws(const Fit& nominal_fit, const Trial& found, const RecordedData& data,
+                    const DiagnoseOptions& options, const Candidates& all) {
+  Answer a;
+  a.all = all;
+  const AttitudeDomain domain(a.all);
+  const Trial stated = nominal_trial(nominal_fit, a.all);
+  a.trials = fit_sets_of_brakes(stated, found, a.all, data, options.threads);
+  a.trials.insert(a.trials.begin(), stated);
+  for (Trial& t : a.trials) {
+    t.holdout_chi2_per_sample = domain.predict(t, data.held).fit.chi2_per_sample();
+  }
+  a.decision.probability.resize(a.trials.size());
+  return a;
+}
+
+// The sets beside those of the other laws that the segments require: without them, all sets would
+// contain laws that stand for friction and drag.
+Answer sets_of_needed_laws(const Fit& nominal_fit, const Trial& laws, const RecordedData& data,
+                           const NoiseLevels& own, const DiagnoseOptions& options,
+                           const Candidates& all) {
+  const Trial found =
+      AttitudeDomain(all).refit(laws, data.train, laws.fit.best.runs, inference::Effort{});
+  const Answer full = sets_of_laws(nominal_fit, found, data, options, all);
+  const auto best =
+      std::ranges::min_element(full.trials, {}, [](const Trial& t) { return t.fit.chi2; });
+  Contest contest(full, {}, data, segment_count(full, data, own), options.threads);
+  return sets_of_laws(nominal_fit, contest.needed_of(*best), data, options, all);
 }
 
 // Sets the finding and its probability, corrected for as many tests as there are candidates.
 void decide_with_discrepancy(Answer& a) {
   a.rest_is_noise = true;
+  a.depends_on.clear();  // laws in place of the names
   a.decision.finding = inference::Finding::unknown;
   a.decision.beside_law.clear();
   const double least = *std::ranges::min_element(a.beside->sigma);
@@ -286,6 +361,15 @@ void decide_with_discrepancy(Answer& a) {
 }
 
 }  // namespace
+
+bool is_of_textbook(const Candidates& all) {
+  return std::ranges::none_of(all.list, [](const Candidate& c) {
+    const Requirement needs = c.effect.how.needs;
+    return needs == Requirement::command || needs == Requirement::charge ||
+           needs == Requirement::field || needs == Requirement::wheel ||
+           needs == Requirement::lamps || c.effect.how.of_experiment != nullptr;
+  });
+}
 
 Among among_with_discrepancy(const NominalModel& nominal, const RecordedData& data) {
   const Vec3& axis = nominal.model.platform.axis;
@@ -317,9 +401,16 @@ std::optional<Answer> identify_with_discrepancy(const NominalModel& nominal, Rec
     if (round > 0 && !is_quieter(noise, data.train.front().noise)) break;
     use_noise(noise, data);
     tell(options, "naming effects, with the residual counted as noise");
-    Answer next = searched(nominal, fit_nominal(nominal, data.train, options.limits), data, options,
-                           among_with_discrepancy(nominal, data), laws);
-    Contest contest(next, data, segment_count(next, data, own), options.threads);
+    const Among among = among_with_discrepancy(nominal, data);
+    const Candidates all = candidates_among(among, nominal, data.train, options.limits);
+    const Fit nominal_fit = fit_nominal(nominal, data.train, options.limits);
+    const bool tries_sets = laws != nullptr && is_of_textbook(all);
+    Answer next = tries_sets ? sets_of_needed_laws(nominal_fit, *laws, data, own, options, all)
+                             : searched(nominal, nominal_fit, data, options, among, laws);
+    std::vector<size_t> compared(next.trials.size());
+    std::iota(compared.begin(), compared.end(), size_t{0});
+    if (!tries_sets) compared = likely_of(next);
+    Contest contest(next, compared, data, segment_count(next, data, own), options.threads);
     Contender won = contest.winner();
     Trial fitted = refit_with_discrepancy(won.trial, next.all, own, data);
     for (;;) {

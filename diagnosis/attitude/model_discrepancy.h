@@ -20,6 +20,9 @@ Candidates candidates_among(Among among, const NominalModel& nominal,
 // are both measured, each reveals errors of the other instrument independently of the torque.
 Among among_with_discrepancy(const NominalModel& nominal, const RecordedData& data);
 
+// Whether the machine has no torques but those of a textbook: no commands, fields, wheels or light.
+bool is_of_textbook(const Candidates& all);
+
 // One search and its decision with the noise of `data`. It starts from `near`, a trial with no more
 // candidates, unless that is null.
 Answer searched(const NominalModel& nominal, const Fit& nominal_fit, const RecordedData& data,

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <ranges>
 
+#include "core/parallel.h"
 #include "diagnosis/attitude/domain.h"
 #include "diagnosis/attitude/laws_of_curve.h"
 #include "diagnosis/attitude/model_discrepancy.h"
@@ -202,6 +204,62 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
     return by_curve;
   }
   return found;
+}
+
+std::vector<Trial> fit_sets_of_brakes(const Trial& nominal, const Trial& found,
+                                      const Candidates& all, const RecordedData& data,
+                                      int threads) {
+  const AttitudeDomain domain(all);
+  const AttitudeModel& model = found.fit.best.model;
+  inference::Members<Start> others;
+  std::map<double, inference::Member<Start>> brakes;  // by the power of the rate
+  const auto power_of = [&](size_t c) -> std::optional<double> {
+    const auto power = all[c].is_linear() ? braking_power(all[c], model) : std::nullopt;
+    return power ? std::optional(0.5 * std::round(2.0 * *power)) : std::nullopt;
+  };
+  for (size_t c = 0; c < all.size(); ++c) {
+    const inference::Member<Start> brake{{c, domain.start_of(c)}, {}};
+    if (const auto power = power_of(c)) brakes.emplace(*power, brake);
+  }
+  for (const auto& term : domain.terms_of(found)) {
+    const auto power = power_of(term.candidate);
+    (power ? brakes[*power] : others.emplace_back()) = {term, {}};
+  }
+  // Sets of powers; 1.5 is an empirical mean of 1 and 2, which no sum needs.
+  std::vector<inference::Members<Start>> sets;
+  for (const auto& [power, brake] : brakes) sets.push_back({brake});
+  std::erase_if(brakes, [](const auto& b) { return b.first != std::round(b.first); });
+  const size_t count = brakes.size();
+  for (size_t bits = 1; bits < (size_t{1} << count); ++bits) {
+    inference::Members<Start> set;
+    size_t bit = 0;
+    for (const auto& [power, brake] : brakes) {
+      if ((bits >> bit++ & 1) != 0) set.push_back(brake);
+    }
+    if (set.size() > 1) sets.push_back(std::move(set));
+  }
+  std::vector<Trial> trials(sets.size());
+  parallel_for(sets.size(), threads, [&](size_t i) {
+    inference::Members<Start> members = others;
+    members.insert(members.end(), sets[i].begin(), sets[i].end());
+    const inference::Effort growing{.windows = all.limits.fitting.diverged_windows};
+    trials[i] = domain.assemble(found, members, data.train, growing);
+    std::vector<size_t> laws;
+    for (const auto& member : members) laws.push_back(member.term.candidate);
+    const LawsOfCurve curve = laws_of_curve(nominal, all, laws, data.train);
+    if (curve.members.size() != members.size()) return;
+    const Trial stated = domain.with_begins(as_stated(nominal), curve.begins);
+    Trial by_curve = domain.assemble(stated, curve.members, data.train, {});
+    if (by_curve.fit.chi2 < trials[i].fit.chi2) trials[i] = std::move(by_curve);
+  });
+  double best = inference::infinity;
+  for (const Trial& t : trials) {
+    if (t.objection.empty()) best = std::min(best, t.fit.chi2);
+  }
+  constexpr double far = 3.0;
+  std::erase_if(trials,
+                [&](const Trial& t) { return !t.objection.empty() || !(t.fit.chi2 < far * best); });
+  return trials;
 }
 
 }  // namespace photorque

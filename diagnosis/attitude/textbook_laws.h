@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "diagnosis/attitude/answer.h"
 
@@ -15,5 +16,13 @@ namespace photorque {
 // if the fit is no nearer to the readings than the nominal model.
 std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates& all,
                                        const RecordedData& data);
+
+// Fits every set of friction and drag laws in place of those of `found`, whose other laws remain:
+// each power of the rate alone, and dry, viscous and quadratic together and in pairs. A search that
+// adds laws one by one misses sets: friction and drag stand for each other. Fits start from `found`
+// and from the strengths by the recorded curve (laws_of_curve.h). Sets that physics forbids, and
+// those whose χ² is far above that of the best, are omitted. `nominal`: fitted to the same runs.
+std::vector<Trial> fit_sets_of_brakes(const Trial& nominal, const Trial& found,
+                                      const Candidates& all, const RecordedData& data, int threads);
 
 }  // namespace photorque

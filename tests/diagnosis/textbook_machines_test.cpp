@@ -94,6 +94,39 @@ TEST(TextbookMachines, AFlywheelThatAMotorSpinsUp) {
   }
 }
 
+// Correlated errors of a camera, of a scale of time [s], as of a lens or a hand: e^(−Δt/scale) of
+// each remains at the next reading.
+std::vector<double> drifting(double sigma, double scale_s, double interval_s, size_t rows,
+                             uint64_t seed) {
+  const double kept = std::exp(-interval_s / scale_s);
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> fresh(0.0, sigma * std::sqrt(1.0 - kept * kept));
+  std::vector<double> all = {0.0};
+  while (all.size() < rows) all.push_back(kept * all.back() + fresh(random));
+  return all;
+}
+
+// Dry and viscous friction together, whose sum neither replaces, beside errors of the readings that
+// are far above their scatter. One law alone predicts five times worse.
+TEST(TextbookMachines, DryAndViscousFrictionBesideAResidual) {
+  constexpr double k = 120.3, dry = 2.3, viscous = 0.19, interval_s = 0.005;
+  std::vector<NamedRecording> runs;
+  for (uint64_t run = 0; run < 3; ++run) {
+    std::vector<double> angle_rad =
+        Swing{k, dry, viscous, 0.0}.from(1.3 - 0.1 * static_cast<double>(run), interval_s, 800);
+    const std::vector<double> off = drifting(0.01, 0.1, interval_s, angle_rad.size(), 20 + run);
+    for (size_t i = 0; i < angle_rad.size(); ++i) angle_rad[i] += off[i];
+    runs.push_back({"run" + std::to_string(run) + ".csv",
+                    recording_of(interval_s, {noisy("angle_rad", angle_rad, 5e-4, 30 + run)})});
+  }
+  const Diagnosis d = diagnose(machine(about("x", "angle]\nnoise_arcsec = 103")),
+                               {runs[0], runs[1]}, {runs[2]});
+  EXPECT_THAT(kinds_of(d), UnorderedElementsAre("static_unbalance", "dry_friction", "bearing_drag"))
+      << d.sentence;
+  expect_number(d, "dry_friction", "torque_N_m", 0, dry);
+  expect_number(d, "bearing_drag", "coefficient_N_m_s", 0, viscous);
+}
+
 // Readings six times a period, with a noise of 3 degrees that no file states.
 TEST(TextbookMachines, APendulumInSixReadingsAPeriod) {
   constexpr double k = 8.06, viscous = 0.023, interval_s = 0.4167, noise_rad = 0.052;
