@@ -1,6 +1,6 @@
 #include "diagnosis/verdict.h"
 
-#include <cstdio>
+#include "core/text/format.h"
 
 namespace photorque {
 
@@ -17,12 +17,10 @@ Verdict verdict_of(inference::Finding finding) {
 }
 
 std::string untested_names(const Holdout& holdout) {
-  char text[240];
-  std::snprintf(text, sizeof text,
-                "the held-out data do not test the names: the nominal model predicts it as well "
-                "(χ² per sample %.3g, with the names %.3g)",
-                holdout.chi2_per_sample_before, holdout.chi2_per_sample_after);
-  return text;
+  return printed(
+      "the held-out data do not test the names: the nominal model predicts it as well "
+      "(χ² per sample %.3g, with the names %.3g)",
+      holdout.chi2_per_sample_before, holdout.chi2_per_sample_after);
 }
 
 }  // namespace photorque

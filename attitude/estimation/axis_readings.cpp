@@ -7,10 +7,10 @@ AxisReadings angles_about(const Observation& rows, const Vec3& axis, size_t firs
   double angle_rad = 0.0;
   for (size_t i = first; i < last; ++i) {
     if (!(rows.attitude_rows[i] > 0.0)) continue;
-    angle_rad += read.row.empty()
-                     ? axis.dot(rotation_vector(rows.attitude[i]))
-                     : axis.dot(rotation_vector(rows.attitude[i] *
-                                                rows.attitude[read.row.back()].conjugate()));
+    angle_rad +=
+        read.row.empty()
+            ? axis.dot(turn_vector(rows.attitude[i]))
+            : axis.dot(turn_vector(rows.attitude[i] * rows.attitude[read.row.back()].conjugate()));
     read.row.push_back(i);
     read.time_s.push_back(rows.time_s[i]);
     read.value.push_back(angle_rad);

@@ -8,6 +8,9 @@
 
 namespace photorque {
 
+// Values as std::printf() writes them.
+[[gnu::format(printf, 1, 2)]] std::string printed(const char* format, ...);
+
 // Valid UTF-8 without control characters: others become U+FFFD or a space. Names come from users'
 // files, and one bad byte would stop cairo from drawing and a JSON file from being read.
 std::string clean_text(std::string_view text);

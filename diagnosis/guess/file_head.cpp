@@ -21,11 +21,10 @@ std::string clock_unit(const FileHead& head, size_t column) {
     if (std::isfinite(step)) steps.push_back(step);
   }
   if (steps.empty()) return "s";
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
+  const double usual = upper_median(steps);
   const bool whole =
       std::all_of(steps.begin(), steps.end(), [](double s) { return s == std::round(s); });
-  return whole && *middle >= 200.0 ? "us" : whole && *middle >= 2.0 ? "ms" : "s";
+  return whole && usual >= 200.0 ? "us" : whole && usual >= 2.0 ? "ms" : "s";
 }
 
 namespace {

@@ -177,10 +177,7 @@ RigidTransform displaced_pose(const Beam& beam, const Vec2& aim, const Vec3& shi
 }
 
 Quat biased_attitude(const Quat& lab_from_body, const Vec2& bias_rad) {
-  const double angle = bias_rad.norm();
-  if (angle == 0.0) return lab_from_body;
-  const Vec3 axis(bias_rad.x() / angle, bias_rad.y() / angle, 0.0);
-  return Quat(Eigen::AngleAxisd(angle, axis)) * lab_from_body;
+  return turn_by({bias_rad.x(), bias_rad.y(), 0.0}) * lab_from_body;
 }
 
 LightState stated_effects(const Experiment& experiment, const LightParts& parts) {

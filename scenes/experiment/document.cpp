@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "core/text/format.h"
@@ -42,9 +41,7 @@ std::string quoted_text(std::string_view text) {
     if (character == "\n") return std::string("\\n");
     if (character == "\t") return std::string("\\t");
     // For control characters from U+0080 on, the second UTF-8 byte is the code.
-    char code[8];
-    std::snprintf(code, sizeof code, "\\u%04x", static_cast<unsigned char>(character.back()));
-    return std::string(code);
+    return printed("\\u%04x", static_cast<unsigned char>(character.back()));
   };
   return '"' + for_each_character(text, escaped) + '"';
 }

@@ -75,9 +75,8 @@ Steps steps_of(const std::vector<double>& values, size_t readings) {
   if (all.size() == 1) return {all.front(), 0.01, 1};
   std::vector<double> gaps;
   for (size_t i = 1; i < all.size(); ++i) gaps.push_back(all[i] - all[i - 1]);
-  std::ranges::nth_element(gaps, gaps.begin() + static_cast<ptrdiff_t>(gaps.size() / 2));
   const double span = all.back() - all.front();
-  double step = gaps[gaps.size() / 2];
+  double step = upper_median(gaps);
   const double most =
       std::min(static_cast<double>(most_bins_across), static_cast<double>(readings));
   if (!(span / step < most)) step = span / std::sqrt(static_cast<double>(readings));

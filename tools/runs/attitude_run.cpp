@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 
 #include "core/files.h"
+#include "core/text/format.h"
 #include "raytrace/tracing/shadow.h"
 #include "scenes/experiment/named_files.h"
 #include "scenes/gltf/reader.h"
@@ -37,9 +37,7 @@ bool is_optical(const std::string& key) {
 
 std::string brief(double value) {
   if (std::isnan(value)) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
+  return printed("%.3g", value);
 }
 
 // Smallest height above a marker at which its light starts, for models without thickness.

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <numeric>
 
 #include "core/numerics/quadrature.h"
 #include "core/numerics/random.h"
 #include "core/numerics/root.h"
+#include "core/text/format.h"
 #include "scenes/experiment/document.h"
 #include "tools/sweeps/keys.h"
 
@@ -77,9 +77,7 @@ WeightedValues weighted_list(const Settings& axis) {
 }  // namespace
 
 std::string toml_number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.15g", value);
-  return text;
+  return printed("%.15g", value);
 }
 
 std::string toml_text(const SettingsNode& node) {

@@ -1,12 +1,12 @@
 // photorque new: a first experiment, commented, for a model of one's own or for a platform alone.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <set>
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 #include "receivers/surface_grid.h"
 #include "scenes/cad/model.h"
@@ -71,9 +71,7 @@ std::string quoted(const std::string& text) {
 }
 
 std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
+  return printed("%.3g", value);
 }
 
 // Around all parts of that name, or around the whole scene.

@@ -8,6 +8,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/text/format.h"
 #include "receivers/wrench/table_product.h"
 #include "tools/coupling/direction_map.h"
 #include "tools/pages/pages.h"
@@ -76,10 +77,8 @@ void print_torques(const WrenchTable& wrenches, const AttitudeGrid& grid, const 
   for (size_t h = 0; h < grid.heading_rad.size(); ++h) {
     for (size_t t = 0; t < grid.tilt_rad.size(); ++t) {
       const size_t node = wrenches.node(h, t);
-      char angles[64];
-      std::snprintf(angles, sizeof angles, "  %10g  %13g", grid.tilt_rad[t] / degree_rad,
-                    grid.heading_rad[h] / degree_rad);
-      std::string line = angles;
+      std::string line =
+          printed("  %10g  %13g", grid.tilt_rad[t] / degree_rad, grid.heading_rad[h] / degree_rad);
       for (int i = 0; i < 3; ++i) {
         line += in_column(show(Estimate{rounded_N_m(wrenches.torque_body_N_m[node][i]),
                                         rounded_N_m(wrenches.torque_error_N_m[node][i])},

@@ -1,9 +1,9 @@
 #include "attitude/disturbances/unknown/shape.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "core/errors.h"
+#include "core/text/format.h"
 
 namespace photorque {
 
@@ -158,15 +158,9 @@ std::string yaw_key(const Settings& settings) {
   return settings.has("heading_orders") ? "heading_orders" : "yaw_orders";
 }
 
-std::string print(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.15g", x);
-  return text;
-}
-
 std::string array_of(const std::vector<double>& values_SI, double unit) {
   std::string text;
-  for (const double x : values_SI) text += (text.empty() ? "" : ", ") + print(x / unit);
+  for (const double x : values_SI) text += (text.empty() ? "" : ", ") + printed("%.15g", x / unit);
   return "[" + text + "]";
 }
 
@@ -266,11 +260,11 @@ std::vector<std::pair<std::string, std::string>> shape_as_written(const Empirica
       keys.emplace_back(key, value);
     };
     const bool is_power = f.form == FunctionForm::power || f.form == FunctionForm::powers;
-    if (is_power) add(with_unit(f.of, "reference"), print(f.reference / unit));
+    if (is_power) add(with_unit(f.of, "reference"), printed("%.15g", f.reference / unit));
     if (f.form == FunctionForm::powers) add(name_of(f.of) + "_powers", array_of(f.orders));
     if (f.form == FunctionForm::harmonics) add(name_of(f.of) + "_orders", array_of(f.orders));
     if (f.form == FunctionForm::cosines) {
-      add("time_span_s", print(f.reference));
+      add("time_span_s", printed("%.15g", f.reference));
       add("time_cosines", array_of(f.orders));
     }
     if (f.form == FunctionForm::table) {
