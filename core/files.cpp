@@ -1,5 +1,6 @@
 #include "core/files.h"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/random.h>
@@ -232,6 +233,16 @@ void write_file_whole(const fs::path& path, const std::string& bytes) {
     out.close();
     if (!out) throw InputError({path.string()}, "", "a write that failed", "space and permission");
   });
+}
+
+std::filesystem::path own_file() {
+  Dl_info info = {};
+  if (dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0) {
+    const std::filesystem::path holder = info.dli_fname;
+    if (holder.filename().string().find(".so") != std::string::npos) return holder;
+  }
+  // The loader identifies a program by the word with which it was started.
+  return std::filesystem::read_symlink("/proc/self/exe");
 }
 
 }  // namespace photorque

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/numerics/median.h"
 #include "raytrace/receiver.h"
 #include "receivers/kind.h"
 #include "receivers/surface_grid.h"

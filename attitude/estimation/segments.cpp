@@ -7,7 +7,6 @@
 
 #include "attitude/estimation/axis_readings.h"
 #include "attitude/estimation/rates_of_angles.h"
-#include "attitude/estimation/rest.h"
 #include "attitude/estimation/swing.h"
 #include "attitude/recordings/columns.h"
 #include "core/errors.h"

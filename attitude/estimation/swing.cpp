@@ -6,6 +6,7 @@
 #include "attitude/estimation/axis_readings.h"
 #include "core/constants.h"
 #include "core/numerics/linear.h"
+#include "core/numerics/median.h"
 
 namespace photorque {
 namespace {

@@ -158,4 +158,9 @@ KeyUnit unit_of_key(std::string_view key);
 // The candidate nearest to `word` by edit distance, or empty if none is similar.
 std::string nearest(std::string_view word, const std::set<std::string>& candidates);
 
+// The names that a message offers instead of `wanted`: "perhaps \"b\", of \"a\", \"b\" and 7 more",
+// at most 12 of them, the nearest by nearest() first. Empty names are left out; "none" if there is
+// no other.
+std::string listed_names(std::set<std::string> names, std::string_view wanted);
+
 }  // namespace photorque

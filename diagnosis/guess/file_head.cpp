@@ -8,6 +8,7 @@
 #include "attitude/recordings/named_columns.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/errors.h"
+#include "core/numerics/median.h"
 #include "core/settings/settings.h"
 #include "core/text/parse.h"
 

@@ -9,7 +9,7 @@
 #include <map>
 
 #include "core/errors.h"
-#include "core/own_file.h"
+#include "core/files.h"
 #include "core/text/format.h"
 
 namespace photorque {

@@ -5,8 +5,8 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/settings/settings.h"
 #include "core/text/format.h"
-#include "core/text/names.h"
 #include "scenes/effects/kind.h"
 #include "sources/lamps/kind.h"
 

@@ -7,7 +7,7 @@
 
 #include "core/constants.h"
 #include "core/files.h"
-#include "core/text/names.h"
+#include "core/settings/settings.h"
 #include "core/transform.h"
 #include "scenes/gltf/nodes.h"
 #include "scenes/gltf/validation.h"

@@ -5,7 +5,7 @@
 #include <set>
 #include <sstream>
 
-#include "core/text/names.h"
+#include "core/settings/settings.h"
 #include "raytrace/surfaces/bsdf.h"
 #include "raytrace/surfaces/glass.h"
 #include "scenes/gltf/file/fault.h"

@@ -10,8 +10,8 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/parallel.h"
+#include "core/settings/settings.h"
 #include "core/text/format.h"
-#include "core/text/names.h"
 #include "tools/coupling/table_cache.h"
 
 namespace photorque {

@@ -1,7 +1,6 @@
 #include "tools/coupling/table_cache.h"
 
 #include "core/files.h"
-#include "core/own_file.h"
 #include "core/provenance.h"
 #include "core/text/format.h"
 

@@ -1,4 +1,4 @@
-#include "tools/keys/descriptions.h"
+#include "tools/keys/registry.h"
 
 #include <cmath>
 #include <sstream>

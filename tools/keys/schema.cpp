@@ -1,11 +1,9 @@
-#include "tools/keys/schema.h"
+#include "tools/keys/registry.h"
 
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-
-#include "tools/keys/descriptions.h"
 
 namespace photorque {
 namespace {

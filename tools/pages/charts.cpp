@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/constants.h"
+#include "core/numerics/median.h"
 #include "core/text/format.h"
 #include "images/drawing/canvas.h"
 

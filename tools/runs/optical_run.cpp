@@ -8,8 +8,8 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/settings/settings.h"
 #include "core/text/format.h"
-#include "core/text/names.h"
 #include "images/writers/image_file.h"
 #include "receivers/gather/bodies/wrench.h"
 #include "receivers/kind.h"

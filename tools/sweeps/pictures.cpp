@@ -1,4 +1,4 @@
-#include "tools/sweeps/pictures.h"
+#include "tools/sweeps/report.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,6 @@
 #include "core/settings/settings.h"
 #include "core/text/parse.h"
 #include "tools/sweeps/labels.h"
-#include "tools/sweeps/pictures.h"
 #include "tools/sweeps/tolerances.h"
 
 namespace photorque {

@@ -3,10 +3,7 @@
 
 #include "core/errors.h"
 #include "core/files.h"
-#include "tools/keys/descriptions.h"
-#include "tools/keys/document.h"
 #include "tools/keys/registry.h"
-#include "tools/keys/schema.h"
 #include "tools/verbs/verb.h"
 
 namespace photorque::verbs::schema {
