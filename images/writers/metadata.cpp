@@ -41,20 +41,16 @@ Json map_json(const Map& map, const Provenance& provenance) {
           {"unit", clean_text(map.unit)},
           {"x_label", clean_text(map.x_label)},
           {"y_label", clean_text(map.y_label)},
-          {"x_low", json_number(map.x_low)},
-          {"x_high", json_number(map.x_high)},
-          {"y_low", json_number(map.y_low)},
-          {"y_high", json_number(map.y_high)},
+          {"x_low", map.x_low},
+          {"x_high", map.x_high},
+          {"y_low", map.y_low},
+          {"y_high", map.y_high},
           {"rows", "top row is the largest y"},
           {"provenance", provenance_json(provenance)}};
 }
 
 std::string ascii_line(const Json& json) {
   return json.dump(-1, ' ', true);
-}
-
-Json json_number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
 std::vector<ImageChannel> map_channels(const Map& map) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <set>
@@ -272,7 +271,7 @@ std::shared_ptr<const RotationTable> LightModel::make_table(const Console& conso
       options.group_of_channel.push_back(kind);
     }
   }
-  const auto start = std::chrono::steady_clock::now();
+  const WallTime wall;
   std::atomic<size_t> traced = 0;
   std::string stage;
   const auto trace_all = [&](std::span<const Quat> attitudes) {
@@ -292,9 +291,8 @@ std::shared_ptr<const RotationTable> LightModel::make_table(const Console& conso
   *table = make_rotation_table(trace_all, options,
                                [&](size_t, const std::string& what) { stage = what; });
   console.done();
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   console.line(what + ": " + std::to_string(traced) + " attitudes traced in " +
-               show(std::round(10 * wall.count()) / 10) + " s");
+               show(std::round(10 * wall.elapsed_s()) / 10) + " s");
   if (settings_.cache && !write_cached_table(*settings_.cache, key, *table)) {
     console.line("note: the table could not be stored in " + settings_.cache->string());
   }

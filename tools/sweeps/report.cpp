@@ -21,10 +21,6 @@ constexpr const char* error_suffix = "_standard_error";
 constexpr const char* cell_temperature = "cell_temperature_K";
 constexpr const char* above_rated = "cell_temperature_above_rated_K";
 
-double not_a_number() {
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
 // The value of an axis as a column: numbers where all are numbers.
 void add_axis(Table& table, const SweepPlan& plan, size_t axis) {
   std::vector<double> numbers;
@@ -44,7 +40,7 @@ void add_axis(Table& table, const SweepPlan& plan, size_t axis) {
 void add_figure(Table& table, const std::vector<Design>& designs, const std::string& name) {
   std::vector<double> values, errors;
   for (const Design& design : designs) {
-    const Estimate none{not_a_number(), not_a_number()};
+    const Estimate none{std::nan(""), std::nan("")};
     const Estimate estimate = figure_of(design, name).value_or(none);
     values.push_back(estimate.value);
     errors.push_back(estimate.standard_error);
