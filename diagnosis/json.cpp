@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/text/format.h"
+
 namespace photorque {
 namespace {
 
@@ -107,8 +109,7 @@ Json holdout_json(const Holdout& holdout) {
 // "kind" joins several with " + ". It is "none" if nothing is missing, and the label if an
 // explanation is not only physics.
 Json alternative_json(const Alternative& alternative) {
-  std::string kind;
-  for (const std::string& k : alternative.kinds) kind += (kind.empty() ? "" : " + ") + k;
+  std::string kind = joined_text(alternative.kinds, " + ");
   if (!alternative.label.empty()) kind = alternative.label;
   if (kind.empty()) kind = "none";
   Json json = {{"kind", kind}, {"log_evidence_relative", alternative.log_evidence_relative}};

@@ -426,8 +426,7 @@ CameraStudy read_camera_study(const Settings& root, const TrackingCamera& camera
   study.focal_length_m = {0.75 * camera.focal_length_m, 1.5 * camera.focal_length_m};
   study.board_scale = {0.5, 2.0};
   if (!root.has(study_key::camera_study)) return study;
-  const Settings own(std::make_shared<const SettingsNode>(root.raw(study_key::camera_study)),
-                     root.get(study_key::camera_study).name());
+  const Settings own(root.raw(study_key::camera_study), root.get(study_key::camera_study).name());
   study.max_tilt_rad = own.get_or(study_key::max_tilt, study.max_tilt_rad);
   study.rate_body_rad_s = own.get(study_key::rate);
   study.calibration_px = own.get_or(study_key::calibration, study.calibration_px);

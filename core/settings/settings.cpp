@@ -210,6 +210,10 @@ Settings Settings::table(std::string_view key) const {
   return {&node, root_, log_, full_name(key)};
 }
 
+Settings Settings::table_or_empty(std::string_view key) const {
+  return has(key) ? table(key) : Settings(SettingsNode{}, full_name(key));
+}
+
 std::vector<Settings> Settings::tables(std::string_view key) const {
   double factor = 1.0;
   const SettingsNode* node = find(key, &factor);

@@ -109,6 +109,15 @@ std::string xml_text(std::string_view text) {
   return escaped;
 }
 
+std::string shell_word(const std::string& word) {
+  static constexpr const char* plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=:,+-";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
 std::string round_trip_number(double value) {
   if (std::isnan(value)) return "";
   if (value == 0.0) value = 0.0;  // no "-0"

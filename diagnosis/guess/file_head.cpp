@@ -10,6 +10,7 @@
 #include "core/errors.h"
 #include "core/numerics/median.h"
 #include "core/settings/settings.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 
 namespace photorque {
@@ -128,18 +129,6 @@ std::string proposed_names(const FileHead& table, char separator) {
     }
   }
   return names;
-}
-
-// A name that a shell reads as one word.
-std::string shell_word(const std::string& name) {
-  const bool is_plain = std::ranges::all_of(name, [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_' || c == '-' ||
-           c == '/' || c == '+';
-  });
-  if (is_plain) return name;
-  std::string word = "'";
-  for (const char c : name) word += c == '\'' ? "'\\''" : std::string(1, c);
-  return word + "'";
 }
 
 InputError without_header(const std::filesystem::path& path, const FileHead& table,

@@ -167,8 +167,8 @@ void add_noise(TomlDocument& document, const std::vector<Observation>& runs,
   const auto [least, most] = std::minmax_element(levels.begin(), levels.end());
   constexpr double alike = 2.0;
   if (*most > alike * *least) {
-    std::string all;
-    for (const double level : levels) all += (all.empty() ? "" : ", ") + digits(level);
+    const std::string all =
+        joined_text(levels, ", ", [&](const double level) { return digits(level); });
     return document.comment(
         "Neighbouring readings scatter by " + all + " (sensors." + key +
         "), which differs from axis to axis: it is left out, and diagnose finds it.");

@@ -1,3 +1,4 @@
+#include "core/text/format.h"
 #include "diagnosis/guess/guess.h"
 
 #include <algorithm>
@@ -488,11 +489,8 @@ GuessedCurve guess_curve(const std::filesystem::path& path) {
 }
 
 std::string names_in(const std::filesystem::path& path) {
-  std::string names;
-  for (const std::string& name : head_of(path).header) {
-    names += (names.empty() ? "" : ", ") + in_quotes(header_cell_text(name));
-  }
-  return names;
+  return joined_text(head_of(path).header, ", ",
+                     [&](const std::string& name) { return in_quotes(header_cell_text(name)); });
 }
 
 }  // namespace photorque

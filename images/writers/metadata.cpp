@@ -61,10 +61,10 @@ std::vector<ImageChannel> map_channels(const Map& map) {
 }
 
 ImageMetadata map_metadata(const Map& map, const Provenance& provenance) {
-  std::string inputs;
-  for (const auto& [file, hash] : provenance.inputs) {
-    inputs += (inputs.empty() ? "" : " ") + file + ":" + hash;
-  }
+  const std::string inputs = joined_text(provenance.inputs, " ", [&](const auto& item) {
+    const auto& [file, hash] = item;
+    return file + ":" + hash;
+  });
   return {.description = ascii_line(map_json(map, provenance)),
           .title = clean_text(map.title),
           .program = clean_text(provenance.program + " " + provenance.version),

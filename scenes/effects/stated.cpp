@@ -156,7 +156,7 @@ std::vector<Beam> beams_with_divergence(const Experiment& experiment, double sca
     SourceContext context;
     context.scene_radius_m = experiment.scene.radius_m();
     context.folder = experiment.file.path.parent_path();
-    const Settings source(std::make_shared<const SettingsNode>(std::move(node)), written.name());
+    const Settings source(std::move(node), written.name());
     for (Beam& beam : kind->make(source, context)) beams.push_back(std::move(beam));
   }
   return beams;

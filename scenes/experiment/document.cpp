@@ -105,15 +105,12 @@ struct ValueWriter {
   std::string operator()(double value) const { return real_text(value); }
   std::string operator()(const std::string& value) const { return quoted_text(value); }
   std::string operator()(const SettingsNode::Array& items) const {
-    std::string all;
-    for (const SettingsNode& item : items) all += (all.empty() ? "" : ", ") + toml_value(item);
-    return "[" + all + "]";
+    return "[" + joined_text(items, ", ", toml_value) + "]";
   }
   std::string operator()(const SettingsNode::Table& table) const {
-    std::string all;
-    for (const auto* entry : in_order(table)) {
-      all += (all.empty() ? "" : ", ") + key_text(entry->first) + " = " + toml_value(entry->second);
-    }
+    const std::string all = joined_text(in_order(table), ", ", [&](const auto* entry) {
+      return key_text(entry->first) + " = " + toml_value(entry->second);
+    });
     return all.empty() ? "{}" : "{ " + all + " }";
   }
 };

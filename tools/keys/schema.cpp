@@ -1,3 +1,4 @@
+#include "core/text/format.h"
 #include "tools/keys/registry.h"
 
 #include <algorithm>
@@ -163,10 +164,7 @@ std::vector<std::string> names_of(const Key& key) {
 std::string pattern_of(const Key& key) {
   const KeyUnit own = unit_of_key(key.name);
   if (own.unit.empty()) return key.name;
-  std::string units;
-  for (const KeyUnit& unit : units_of(own.dimension)) {
-    units += (units.empty() ? "" : "|") + unit.unit;
-  }
+  const std::string units = joined_text(units_of(own.dimension), "|", &KeyUnit::unit);
   return own.stem + "_(" + units + ")";
 }
 

@@ -19,10 +19,7 @@ namespace {
 
 std::string name_of(const Alternative& alternative) {
   if (!alternative.label.empty()) return spoken(alternative.label);
-  std::string name;
-  for (const std::string& kind : alternative.kinds) {
-    name += (name.empty() ? "" : " + ") + spoken(kind);
-  }
+  const std::string name = joined_text(alternative.kinds, " + ", spoken);
   return name.empty() ? "nothing missing" : name;
 }
 

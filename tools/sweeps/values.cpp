@@ -84,9 +84,7 @@ std::string toml_text(const SettingsNode& node) {
   if (const auto* real = std::get_if<double>(&node.value)) return toml_number(*real);
   const auto* array = std::get_if<SettingsNode::Array>(&node.value);
   if (array == nullptr) return toml_value(node);
-  std::string items;
-  for (const SettingsNode& item : *array) items += (items.empty() ? "" : ", ") + toml_text(item);
-  return "[" + items + "]";
+  return "[" + joined_text(*array, ", ", toml_text) + "]";
 }
 
 std::vector<std::string> grid_values(const Settings& axis) {

@@ -150,7 +150,7 @@ SceneWords scene_words(const Options& options) {
   for (const std::string& assignment : options.overrides) {
     if (assignment.starts_with("scene.")) apply_override(root, assignment);
   }
-  const Settings settings(std::make_shared<const SettingsNode>(std::move(root)));
+  const Settings settings(std::move(root));
   if (!settings.has("scene") || !settings.table("scene").has("unit")) {
     throw InputError({options.scene->string()}, "scene.unit", "nothing",
                      "a unit of length, because the file contains none: --set scene.unit=mm");

@@ -3,6 +3,7 @@
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/format.h"
 #include "tools/keys/registry.h"
 #include "tools/verbs/verb.h"
 
@@ -44,8 +45,7 @@ void print_keys(const Key& table) {
   }
   for (const Key& key : table.keys) {
     for (const Key::Choice& choice : key.choices) {
-      std::string names;
-      for (const Key& own : choice.keys) names += (names.empty() ? "" : ", ") + own.name;
+      const std::string names = joined_text(choice.keys, ", ", &Key::name);
       if (names.empty()) continue;
       std::printf("  with %s = \"%s\": %s\n", key.name.c_str(), choice.name.c_str(), names.c_str());
     }

@@ -159,15 +159,12 @@ std::string yaw_key(const Settings& settings) {
 }
 
 std::string array_of(const std::vector<double>& values_SI, double unit) {
-  std::string text;
-  for (const double x : values_SI) text += (text.empty() ? "" : ", ") + printed("%.15g", x / unit);
-  return "[" + text + "]";
+  const auto number = [unit](double x) { return printed("%.15g", x / unit); };
+  return "[" + joined_text(values_SI, ", ", number) + "]";
 }
 
 std::string array_of(const std::vector<int>& values) {
-  std::string text;
-  for (const int x : values) text += (text.empty() ? "" : ", ") + std::to_string(x);
-  return "[" + text + "]";
+  return "[" + joined_text(values, ", ", [](int x) { return std::to_string(x); }) + "]";
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "core/errors.h"
 #include "core/text/format.h"
 #include "tools/runs/attitude_run.h"
+#include "tools/runs/optical_run.h"
 #include "tools/verbs/verb.h"
 
 namespace photorque {
@@ -26,9 +27,7 @@ void append_numbered(Product& into, Product one, size_t number, size_t count) {
       quantity.name.insert(unit, end);
     }
   }
-  for (auto& item : one.quantities) into.quantities.push_back(std::move(item));
-  for (auto& item : one.tables) into.tables.push_back(std::move(item));
-  for (auto& item : one.plots) into.plots.push_back(std::move(item));
+  append(into, std::move(one));
 }
 
 RunFile file_of(const std::string& name, const std::vector<AttitudeEstimate>& estimates,
