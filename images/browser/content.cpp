@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numerics/extremes.h"
 #include "core/text/format.h"
 #include "images/drawing/colour.h"
 #include "images/drawing/plot.h"
@@ -66,30 +67,9 @@ Json table_json(const Table& table, size_t most_rows) {
           {"columns", std::move(columns)}};
 }
 
-// Of every interval of points the lowest and the highest, so that no peak is lost.
-std::vector<size_t> kept_points(const std::vector<double>& y, size_t most) {
-  std::vector<size_t> kept;
-  const size_t intervals = std::max<size_t>(1, most / 2);
-  if (y.size() <= most) {
-    for (size_t i = 0; i < y.size(); ++i) kept.push_back(i);
-    return kept;
-  }
-  for (size_t s = 0; s < intervals; ++s) {
-    const size_t from = s * y.size() / intervals, to = (s + 1) * y.size() / intervals;
-    size_t low = from, high = from;
-    for (size_t i = from; i < to; ++i) {
-      if (y[i] < y[low] || !std::isfinite(y[low])) low = i;
-      if (y[i] > y[high] || !std::isfinite(y[high])) high = i;
-    }
-    kept.push_back(std::min(low, high));
-    if (low != high) kept.push_back(std::max(low, high));
-  }
-  return kept;
-}
-
 Json curve_json(const Plot::Curve& curve, size_t most_points) {
   static constexpr const char* colours[] = {"", "blue", "vermilion", "green", "grey"};
-  const std::vector<size_t> kept = kept_points(curve.y, most_points);
+  const std::vector<size_t> kept = lows_and_highs(curve.y, most_points);
   const auto pick = [&](const std::vector<double>& of) {
     std::vector<double> picked;
     for (const size_t i : kept) {
