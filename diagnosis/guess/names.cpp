@@ -1,4 +1,3 @@
-#include "core/text/format.h"
 #include "diagnosis/guess/guess.h"
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include "attitude/recordings/text_lines.h"
 #include "core/errors.h"
 #include "core/settings/settings.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 #include "diagnosis/guess/file_head.h"
 #include "diagnosis/guess/header.h"

@@ -1,9 +1,9 @@
-#include "core/text/format.h"
 #include "tools/keys/registry.h"
 
 #include <cmath>
 #include <sstream>
 
+#include "core/text/format.h"
 #include "core/text/parse.h"
 #include "scenes/experiment/document.h"
 

@@ -1,10 +1,11 @@
-#include "core/text/format.h"
 #include "tools/keys/registry.h"
 
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
