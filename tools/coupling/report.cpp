@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/constants.h"
-
 #include "core/numerics/extremes.h"
 
 namespace photorque {
