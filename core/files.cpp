@@ -10,11 +10,11 @@
 #include <cctype>
 #include <cerrno>
 #include <charconv>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 
 #include "core/errors.h"
-#include "core/text/format.h"
 
 namespace photorque {
 
@@ -39,7 +39,9 @@ std::string unpredictable() {
   if (::getrandom(&bits, sizeof bits, 0) != static_cast<ssize_t>(sizeof bits)) {
     throw NumericalError("the system returned no random bytes for the names of temporary files");
   }
-  return printed("%016llx", static_cast<unsigned long long>(bits));
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(bits));
+  return text;
 }
 
 // Creates a new file; fails at a link or an existing file.

@@ -2,9 +2,9 @@
 
 #include <xxhash.h>
 
-#include "core/build_info.h"  // generated: build_version, build_git_hash
+#include <cstdio>
 
-#include "core/text/format.h"
+#include "core/build_info.h"  // generated: build_version, build_git_hash
 
 namespace photorque {
 
@@ -25,8 +25,10 @@ Provenance build_provenance() {
 
 std::string content_hash(const std::string& bytes) {
   const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
-  return printed("%016llx%016llx", static_cast<unsigned long long>(hash.high64),
-                 static_cast<unsigned long long>(hash.low64));
+  char text[33];
+  std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(hash.high64),
+                static_cast<unsigned long long>(hash.low64));
+  return text;
 }
 
 }  // namespace photorque
