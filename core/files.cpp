@@ -1,5 +1,6 @@
 #include "core/files.h"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/random.h>
@@ -9,11 +10,11 @@
 #include <cctype>
 #include <cerrno>
 #include <charconv>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 
 #include "core/errors.h"
+#include "core/text/format.h"
 
 namespace photorque {
 
@@ -38,9 +39,7 @@ std::string unpredictable() {
   if (::getrandom(&bits, sizeof bits, 0) != static_cast<ssize_t>(sizeof bits)) {
     throw NumericalError("the system returned no random bytes for the names of temporary files");
   }
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(bits));
-  return text;
+  return printed("%016llx", static_cast<unsigned long long>(bits));
 }
 
 // Creates a new file; fails at a link or an existing file.
@@ -234,6 +233,16 @@ void write_file_whole(const fs::path& path, const std::string& bytes) {
     out.close();
     if (!out) throw InputError({path.string()}, "", "a write that failed", "space and permission");
   });
+}
+
+std::filesystem::path own_file() {
+  Dl_info info = {};
+  if (dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0) {
+    const std::filesystem::path holder = info.dli_fname;
+    if (holder.filename().string().find(".so") != std::string::npos) return holder;
+  }
+  // The loader identifies a program by the word with which it was started.
+  return std::filesystem::read_symlink("/proc/self/exe");
 }
 
 }  // namespace photorque

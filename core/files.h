@@ -1,4 +1,4 @@
-// Whole files in and out.
+// Whole files in and out, and the file that holds this code.
 #pragma once
 
 #include <filesystem>
@@ -51,5 +51,10 @@ void write_file_whole(const std::filesystem::path& path,
 
 // Writes given bytes.
 void write_file_whole(const std::filesystem::path& path, const std::string& bytes);
+
+// The file that holds this code, from which its fonts and modules are found: the program
+// ("/proc/self/exe" resolved), or the shared library that another program, such as Python, has
+// loaded. Absolute where the loader was given an absolute path.
+std::filesystem::path own_file();
 
 }  // namespace photorque

@@ -2,9 +2,9 @@
 
 #include <xxhash.h>
 
-#include <cstdio>
-
 #include "core/build_info.h"  // generated: build_version, build_git_hash
+
+#include "core/text/format.h"
 
 namespace photorque {
 
@@ -25,10 +25,8 @@ Provenance build_provenance() {
 
 std::string content_hash(const std::string& bytes) {
   const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
-  char text[33];
-  std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(hash.high64),
-                static_cast<unsigned long long>(hash.low64));
-  return text;
+  return printed("%016llx%016llx", static_cast<unsigned long long>(hash.high64),
+                 static_cast<unsigned long long>(hash.low64));
 }
 
 }  // namespace photorque

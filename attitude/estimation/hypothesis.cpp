@@ -61,7 +61,7 @@ size_t first_block(const Observation& seen, size_t from, const Read& is_read) {
 // The mean rate between the first attitude and the next.
 Vec3 rate_between_attitudes_rad_s(const Observation& seen, size_t first, size_t next) {
   if (next >= seen.blocks()) return Vec3::Zero();
-  const Vec3 rate_lab = rotation_vector(seen.attitude[next] * seen.attitude[first].conjugate()) /
+  const Vec3 rate_lab = turn_vector(seen.attitude[next] * seen.attitude[first].conjugate()) /
                         (seen.time_s[next] - seen.time_s[first]);
   return seen.attitude[first].conjugate() * rate_lab;
 }
@@ -114,12 +114,7 @@ PlatformState first_state(const AttitudeModel& model, const Observation& seen) {
     return state;
   }
   const double back_s = seen.time_s.front() - seen.time_s[first];
-  const Vec3 turn = back_s * rate;
-  state.lab_from_body = seen.attitude[first];
-  if (turn.norm() > 0.0) {
-    state.lab_from_body =
-        state.lab_from_body * Quat(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
-  }
+  state.lab_from_body = seen.attitude[first] * turn_by(back_s * rate);
   return state;
 }
 

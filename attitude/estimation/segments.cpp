@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "attitude/estimation/axis_readings.h"
 #include "attitude/estimation/rates_of_angles.h"
-#include "attitude/estimation/rest.h"
 #include "attitude/estimation/swing.h"
 #include "attitude/recordings/columns.h"
 #include "core/errors.h"
@@ -89,8 +87,8 @@ std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   std::vector<Change> changes;
   const auto moved = [&](size_t from, size_t to) -> Vec3 {
     if (!slides) {
-      return platform.axis * platform.axis.dot(rotation_vector(rows.attitude[to] *
-                                                               rows.attitude[from].conjugate()));
+      return platform.axis *
+             platform.axis.dot(turn_vector(rows.attitude[to] * rows.attitude[from].conjugate()));
     }
     Vec3 by = Vec3::Zero();
     for (int k = 0; k < 2; ++k) {
@@ -226,11 +224,9 @@ void refuse_jump_of_clock(const Recording& recording, const std::string& name) {
   if (recording.rows() < 2) return;
   const double recorded_s = recording.time_s.back() - recording.time_s.front() - gaps_s;
   if (!(longest_s > longest_gap * recorded_s)) return;
-  char found[160];
-  std::snprintf(found, sizeof found,
-                "nothing from t_s = %.10g to %.10g, of a recording of %.4g s in all",
-                longest.from_s, longest.to_s, recorded_s);
-  throw InputError({name, 0}, "t_s", found,
+  throw InputError({name, 0}, "t_s",
+                   printed("nothing from t_s = %.10g to %.10g, of a recording of %.4g s in all",
+                           longest.from_s, longest.to_s, recorded_s),
                    "a clock that does not jump; with several segments a file each");
 }
 

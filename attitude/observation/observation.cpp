@@ -26,12 +26,6 @@ void unwind(std::vector<double>& angle_rad) {
 
 }  // namespace
 
-Vec3 rotation_vector(const Quat& rotation) {
-  const double sine = rotation.vec().norm(), side = std::copysign(1.0, rotation.w());
-  if (sine < 1e-12) return 2.0 * side * rotation.vec();
-  return 2.0 * side * std::atan2(sine, std::abs(rotation.w())) / sine * rotation.vec();
-}
-
 ChannelNoise NoiseLevels::of(int channel) const {
   if (channel >= vector_channels) {
     return scalar[static_cast<size_t>(channel - vector_channels)];

@@ -6,6 +6,7 @@
 
 #include "attitude/model/platform.h"
 #include "core/constants.h"
+#include "core/numerics/extremes.h"
 #include "core/numerics/order.h"
 #include "core/snapshot.h"
 
@@ -45,34 +46,16 @@ constexpr const char* fixed_names[fixed] = {"t_s",
                                             "battery_current_A",
                                             "array_power_W"};
 
-// Reduces a curve to about 1600 points, the number of columns of a picture: the minimum and the
-// maximum of every interval, in order of time.
-void thin(const std::vector<double>& x, const std::vector<double>& y, Plot::Curve& curve) {
-  constexpr size_t most = 1600;
-  if (x.size() <= most) {
-    curve.x = x;
-    curve.y = y;
-    return;
-  }
-  const size_t intervals = most / 2;
-  for (size_t s = 0; s < intervals; ++s) {
-    const size_t begin = s * x.size() / intervals, end = (s + 1) * x.size() / intervals;
-    const auto [low, high] = std::minmax_element(y.begin() + static_cast<std::ptrdiff_t>(begin),
-                                                 y.begin() + static_cast<std::ptrdiff_t>(end));
-    for (const auto at : {std::min(low, high), std::max(low, high)}) {
-      const size_t i = static_cast<size_t>(at - y.begin());
-      if (!curve.x.empty() && curve.x.back() == x[i]) continue;
-      curve.x.push_back(x[i]);
-      curve.y.push_back(y[i]);
-    }
-  }
-}
-
+// About 1600 points, the number of columns of a picture.
 Plot::Curve curve(const std::string& label, const std::vector<double>& x,
                   const std::vector<double>& y) {
+  constexpr size_t most = 1600;
   Plot::Curve c;
   c.label = label;
-  thin(x, y, c);
+  for (const size_t i : lows_and_highs(y, most)) {
+    c.x.push_back(x[i]);
+    c.y.push_back(y[i]);
+  }
   return c;
 }
 

@@ -207,7 +207,7 @@ std::vector<AirPart> read_own_air_parts(const Settings& root) {
   if (!root.has("disturbance")) return all;
   SettingsNode holder;
   holder.value = SettingsNode::Table{{"disturbance", root.raw("disturbance")}};
-  const Settings own(std::make_shared<const SettingsNode>(std::move(holder)));
+  const Settings own(std::move(holder));
   for (const Settings& disturbance : own.tables("disturbance")) {
     if (!disturbance.has("part")) continue;
     const std::vector<AirPart> parts = read_air_parts(disturbance.tables("part"));

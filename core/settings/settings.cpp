@@ -86,6 +86,23 @@ std::string nearest(std::string_view word, const std::set<std::string>& candidat
   return best;
 }
 
+std::string listed_names(std::set<std::string> names, std::string_view wanted) {
+  constexpr size_t most = 12;
+  names.erase("");
+  if (names.empty()) return "none";
+  const std::string likest = nearest(wanted, names);
+  std::string text = likest.empty() ? "" : "perhaps \"" + likest + "\"";
+  if (!likest.empty() && names.size() == 1) return text;
+  if (!likest.empty()) text += ", of ";
+  size_t count = 0;
+  for (const std::string& name : names) {
+    if (++count > most) break;
+    text += (count == 1 ? "\"" : ", \"") + name + "\"";
+  }
+  if (names.size() > most) text += " and " + std::to_string(names.size() - most) + " more";
+  return text;
+}
+
 // The most similar of the known ones, else the first of them all.
 std::string known_instead_of(std::string_view key, const std::set<std::string>& known) {
   constexpr size_t most = 12;
@@ -191,6 +208,10 @@ Settings Settings::table(std::string_view key) const {
   const SettingsNode& node = require(key, &factor, "a table [" + full_name(key) + "]");
   if (!node.is_table()) throw InputError(node.where, full_name(key), describe(node), "a table");
   return {&node, root_, log_, full_name(key)};
+}
+
+Settings Settings::table_or_empty(std::string_view key) const {
+  return has(key) ? table(key) : Settings(SettingsNode{}, full_name(key));
 }
 
 std::vector<Settings> Settings::tables(std::string_view key) const {

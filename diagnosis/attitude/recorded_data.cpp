@@ -116,7 +116,7 @@ double value_at(const Observation& seen, int channel, size_t block) {
     return seen.scalar[static_cast<size_t>(channel - vector_channels)].value[block];
   }
   if (channel >= 3) return seen.gyro_rad_s[block][channel - 3];
-  return rotation_vector(seen.attitude[block])[channel];
+  return turn_vector(seen.attitude[block])[channel];
 }
 
 void leave_out_block(int channel, size_t block, Observation& seen) {

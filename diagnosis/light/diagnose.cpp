@@ -8,7 +8,6 @@
 #include "diagnosis/light/domain.h"
 #include "diagnosis/light/findings.h"
 #include "diagnosis/light/segments.h"
-#include "diagnosis/verdict.h"
 #include "inference/decide.h"
 #include "inference/search.h"
 #include "inference/weigh.h"

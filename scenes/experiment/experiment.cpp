@@ -121,7 +121,7 @@ std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
   }
   require_sunlight_to_land(file, scene, beams);
   for (const Beam& beam : file.further_beams) {
-    const Settings lamp(std::make_shared<const SettingsNode>(), "lamp \"" + beam.name + "\"");
+    const Settings lamp(SettingsNode{}, "lamp \"" + beam.name + "\"");
     require_spectrum_inside(lamp, beam, scene.bands);
     require_traceable(lamp, beam);
     beams.push_back(beam);

@@ -75,7 +75,7 @@ Camera camera_framing(double radius_m);
 struct ExperimentFile {
   std::filesystem::path path;
   // The whole file, overrides included.
-  Settings settings{std::make_shared<const SettingsNode>()};
+  Settings settings{SettingsNode{}};
   std::vector<std::pair<std::string, std::string>> inputs;  // for Provenance: this file, overrides
 
   // Of an optical run; empty when the file has no [scene].

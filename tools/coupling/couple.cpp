@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 
 #include "attitude/propagation/recorded.h"
@@ -169,10 +168,8 @@ std::optional<PowerSupply> supply_of(const ExperimentFile& file, const LightMode
 }
 
 std::string vector_override(size_t disturbance, const Vec3& v) {
-  char text[160];
-  std::snprintf(text, sizeof text, "disturbance[%zu].sun_direction=[%.17g,%.17g,%.17g]",
-                disturbance, v.x(), v.y(), v.z());
-  return text;
+  return printed("disturbance[%zu].sun_direction=[%.17g,%.17g,%.17g]", disturbance, v.x(), v.y(),
+                 v.z());
 }
 
 std::optional<Vec3> direction_of_sun_source(const ExperimentFile& file) {

@@ -35,7 +35,11 @@ class CheckpointFile {
   // InputError when it cannot be written; the previous file stays.
   void write(const std::string& identity, double table_tilt_rad, const std::string& state);
 
-  const std::filesystem::path& path() const { return path_; }
+  // Once the results are complete it is not needed; never throws.
+  void remove() const {
+    std::error_code stays;
+    std::filesystem::remove(path_, stays);
+  }
 
  private:
   void wait();

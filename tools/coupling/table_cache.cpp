@@ -1,10 +1,8 @@
 #include "tools/coupling/table_cache.h"
 
-#include <cstdio>
-
 #include "core/files.h"
-#include "core/own_file.h"
 #include "core/provenance.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -34,11 +32,7 @@ std::string written_out(const SettingsNode& node, const std::set<std::string>& w
     }
     std::string operator()(bool value) const { return value ? "true" : "false"; }
     std::string operator()(int64_t value) const { return (*this)(static_cast<double>(value)); }
-    std::string operator()(double value) const {
-      char text[40];
-      std::snprintf(text, sizeof text, "%.17g", value);
-      return text;
-    }
+    std::string operator()(double value) const { return printed("%.17g", value); }
     std::string operator()(const std::string& value) const {
       return counted(value) + (behind ? behind(value) : "");
     }

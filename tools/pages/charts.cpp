@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/constants.h"
+#include "core/numerics/median.h"
 #include "core/text/format.h"
 #include "images/drawing/canvas.h"
 
@@ -18,10 +19,7 @@ namespace {
 
 std::string name_of(const Alternative& alternative) {
   if (!alternative.label.empty()) return spoken(alternative.label);
-  std::string name;
-  for (const std::string& kind : alternative.kinds) {
-    name += (name.empty() ? "" : " + ") + spoken(kind);
-  }
+  const std::string name = joined_text(alternative.kinds, " + ", spoken);
   return name.empty() ? "nothing missing" : name;
 }
 
@@ -75,9 +73,8 @@ Steps steps_of(const std::vector<double>& values, size_t readings) {
   if (all.size() == 1) return {all.front(), 0.01, 1};
   std::vector<double> gaps;
   for (size_t i = 1; i < all.size(); ++i) gaps.push_back(all[i] - all[i - 1]);
-  std::ranges::nth_element(gaps, gaps.begin() + static_cast<ptrdiff_t>(gaps.size() / 2));
   const double span = all.back() - all.front();
-  double step = gaps[gaps.size() / 2];
+  double step = upper_median(gaps);
   const double most =
       std::min(static_cast<double>(most_bins_across), static_cast<double>(readings));
   if (!(span / step < most)) step = span / std::sqrt(static_cast<double>(readings));

@@ -14,12 +14,6 @@ namespace {
 
 constexpr size_t most_states = 2000;
 
-const std::vector<double>* column_of(const Table* table, const std::string& name) {
-  if (table == nullptr) return nullptr;
-  const auto at = std::ranges::find(table->columns, name, &Table::Column::name);
-  return at == table->columns.end() ? nullptr : &at->values;
-}
-
 // The value of a column at the row nearest to a time.
 double at_time(const Table& table, const std::vector<double>& values, double time_s) {
   return values[nearest_instant(table.column("t_s").values, time_s)];
@@ -59,8 +53,8 @@ std::vector<Shown> shown_figures(const Product& product) {
   const Table* power = find_table(product, "power");
   std::vector<Shown> shown;
   const auto add = [&](const char* label, const char* unit, const Table* table, const char* name) {
-    if (const auto* values = column_of(table, name))
-      shown.push_back({{label, unit}, table, values});
+    const Table::Column* const column = table == nullptr ? nullptr : table->find(name);
+    if (column != nullptr) shown.push_back({{label, unit}, table, &column->values});
   };
   add("tilt", "deg", history, "tilt_deg");
   add("yaw", "deg", history, "yaw_deg");

@@ -56,9 +56,7 @@ std::string estimate_text(const Estimate& number) {
 }
 
 std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + xml_text(spoken(name));
-  return text;
+  return joined_text(names, ", ", [](const std::string& name) { return xml_text(spoken(name)); });
 }
 
 std::string percent(double probability) {
@@ -213,11 +211,9 @@ std::string empirical(const Diagnosis& d) {
 std::string where_section(const Where& where) {
   std::string facts;
   if (!where.intervals_s.empty()) {
-    std::string text;
-    for (const auto& i : where.intervals_s) {
-      text += (text.empty() ? "" : ", ") + readable_number(i.from) + " to " +
-              readable_number(i.to) + " s";
-    }
+    const std::string text = joined_text(where.intervals_s, ", ", [&](const auto& i) {
+      return readable_number(i.from) + " to " + readable_number(i.to) + " s";
+    });
     facts += tag("li", "Strongest between " + text + ".");
   }
   if (where.band_Hz) {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 
 #include "core/files.h"
+#include "core/text/format.h"
 #include "raytrace/tracing/shadow.h"
 #include "scenes/experiment/named_files.h"
 #include "scenes/gltf/reader.h"
@@ -37,9 +37,7 @@ bool is_optical(const std::string& key) {
 
 std::string brief(double value) {
   if (std::isnan(value)) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
+  return printed("%.3g", value);
 }
 
 // Smallest height above a marker at which its light starts, for models without thickness.
@@ -111,9 +109,8 @@ void print_table(const Console& console, const Table& table,
   std::vector<std::vector<std::string>> cells;
   std::vector<bool> is_text;
   for (const PrintedColumn& wanted : columns) {
-    const auto column = std::find_if(table.columns.begin(), table.columns.end(),
-                                     [&](const auto& c) { return c.name == wanted.name; });
-    if (column == table.columns.end()) continue;
+    const Table::Column* const column = table.find(wanted.name);
+    if (column == nullptr) continue;
     std::vector<std::string> texts = {wanted.title};
     is_text.push_back(!column->texts.empty());
     texts.insert(texts.end(), column->texts.begin(), column->texts.end());
@@ -132,6 +129,13 @@ void print_table(const Console& console, const Table& table,
     line.erase(line.find_last_not_of(' ') + 1);
     (row <= most_rows ? console : console.details()).line(line);
   }
+}
+
+void print_reasons(const Console& console, const Table& figures) {
+  const auto& quantity = figures.column("quantity").texts;
+  const auto& why = figures.column("why").texts;
+  console.heading("Why");
+  for (size_t i = 0; i < quantity.size(); ++i) console.line("  " + quantity[i] + ": " + why[i]);
 }
 
 }  // namespace photorque

@@ -44,4 +44,7 @@ struct PrintedColumn {
 void print_table(const Console& console, const Table& table,
                  const std::vector<PrintedColumn>& columns, size_t most_rows = 1000000);
 
+// The columns "quantity" and "why" of a table of published figures.
+void print_reasons(const Console& console, const Table& figures);
+
 }  // namespace photorque

@@ -516,8 +516,7 @@ Product list_module(const ListedModule& module, const Console& console) {
 FitTask task_of(const RunOptions& options, const std::string& text) {
   SettingsNode root = parse_toml(text, options.experiment.string());
   for (const std::string& assignment : options.overrides) apply_override(root, assignment);
-  return read_fit_task(Settings(std::make_shared<const SettingsNode>(std::move(root))),
-                       options.experiment.parent_path());
+  return read_fit_task(Settings(std::move(root)), options.experiment.parent_path());
 }
 
 }  // namespace

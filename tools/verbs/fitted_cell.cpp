@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "core/constants.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -97,9 +97,7 @@ void print_bounds(const Console& console, const std::vector<BoundReached>& bound
 }
 
 void print_key(const Console& console, const char* name, double value, const std::string& comment) {
-  char text[80];
-  std::snprintf(text, sizeof text, "  %s = %.9g", name, value);
-  console.line(text + (comment.empty() ? "" : "   # " + comment));
+  console.line(printed("  %s = %.9g", name, value) + (comment.empty() ? "" : "   # " + comment));
 }
 
 void print_cell(const Console& console, const SingleDiode& d, const FitTask& task,

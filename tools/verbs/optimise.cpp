@@ -4,7 +4,7 @@
 
 #include "core/text/parse.h"
 #include "tools/sweeps/optimiser.h"
-#include "tools/sweeps/pictures.h"
+#include "tools/sweeps/report.h"
 #include "tools/sweeps/values.h"
 #include "tools/verbs/studies.h"
 

@@ -49,7 +49,7 @@ Vec3 rate_at(const Observation& seen, size_t i, size_t reach) {
     const size_t from = i - std::min(i, reach), to = std::min(seen.blocks() - 1, i + reach);
     if (seen.attitude_rows[from] > 0.0 && seen.attitude_rows[to] > 0.0 && to > from) {
       const Quat turn = seen.attitude[from].conjugate() * seen.attitude[to];
-      rate = rotation_vector(turn) / (seen.time_s[to] - seen.time_s[from]);
+      rate = turn_vector(turn) / (seen.time_s[to] - seen.time_s[from]);
     }
   }
   if (seen.rows_of(i, vector_channels + static_cast<int>(Scalar::rate_magnitude)) > 0.0) {
@@ -299,7 +299,7 @@ bool turns(const std::vector<Observation>& runs) {
     for (size_t i = first; i < seen.blocks(); ++i) {
       if (!(seen.attitude_rows[i] > 0.0)) continue;
       const Quat turn = seen.attitude[first].conjugate() * seen.attitude[i];
-      if (rotation_vector(turn).norm() > far_rad) return true;
+      if (turn_vector(turn).norm() > far_rad) return true;
     }
     return false;
   });
@@ -321,7 +321,7 @@ std::vector<double> rates_about(const Observation& seen, const Vec3& axis) {
     const double turned_rad =
         before == seen.blocks()
             ? 0.0
-            : axis.dot(rotation_vector(seen.attitude[i] * seen.attitude[before].conjugate()));
+            : axis.dot(turn_vector(seen.attitude[i] * seen.attitude[before].conjugate()));
     angle_rad.push_back((angle_rad.empty() ? 0.0 : angle_rad.back()) + turned_rad);
     time_s.push_back(seen.time_s[i]);
     before = i;
@@ -406,7 +406,7 @@ bool swings_little(const std::vector<Observation>& runs) {
       if (!(seen.attitude_rows[i] > 0.0)) continue;
       if (!sees) first = seen.attitude[i];
       sees = true;
-      const Vec3 turn_rad = rotation_vector(seen.attitude[i] * first.conjugate());
+      const Vec3 turn_rad = turn_vector(seen.attitude[i] * first.conjugate());
       least_rad = std::min(least_rad, turn_rad.minCoeff());
       most_rad = std::max(most_rad, turn_rad.maxCoeff());
     }

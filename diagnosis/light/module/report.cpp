@@ -6,8 +6,6 @@
 #include <filesystem>
 #include <iterator>
 
-#include "diagnosis/verdict.h"
-
 namespace photorque {
 namespace {
 
