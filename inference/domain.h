@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "core/numerics/order.h"
 #include "inference/estimator/evidence.h"
 #include "inference/estimator/thresholds.h"
 #include "inference/subsets.h"
@@ -168,12 +169,9 @@ concept Domain = std::derived_from<typename D::Trial, Explanation> &&
 // Indices of trials on the same runs, the largest evidence first.
 template <std::derived_from<Explanation> T>
 std::vector<size_t> by_evidence(const std::vector<T>& trials) {
-  std::vector<size_t> order(trials.size());
-  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+  return sorted_indices(trials.size(), [&](size_t a, size_t b) {
     return trials[a].log_evidence > trials[b].log_evidence;
   });
-  return order;
 }
 
 // Whether two lists contain the same candidates in any order.

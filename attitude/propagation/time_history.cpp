@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "attitude/model/platform.h"
 #include "core/constants.h"
 #include "core/numerics/extremes.h"
+#include "core/numerics/order.h"
 #include "core/snapshot.h"
 
 namespace photorque {
@@ -143,9 +143,8 @@ std::vector<Plot::Curve> stacked_fractions(const std::vector<double>& t,
       of[k] += fractions[k][p];
     }
   }
-  std::vector<size_t> order(kinds);
-  std::iota(order.begin(), order.end(), size_t{0});
-  std::ranges::stable_sort(order, [&](size_t a, size_t b) { return of[a] > of[b]; });
+  const std::vector<size_t> order =
+      sorted_indices(kinds, [&](size_t a, size_t b) { return of[a] > of[b]; });
   std::vector<Plot::Curve> curves;
   std::vector<double> top(parts);
   for (size_t place = 0; place < kinds; ++place) {

@@ -509,5 +509,20 @@ TEST(Machines, WhatIsLeftCountsAsNoiseAsCorrelatedAsItIs) {
   EXPECT_TRUE(is_quieter(own, noise));
 }
 
+// A wheel that speeds up as if its drag were −5e-4 N m s, which no experiment can state.
+TEST(Machines, FittedPriorsStayWithinTheRangeOfTheirKeys) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0.0, 0.003);
+  Channel rate{"gyro_z_rad_s", {}};
+  for (int i = 0; i < 1200; ++i) {
+    rate.values.push_back(3.0 * std::exp(5e-4 * 0.25 * i) + noise(random));
+  }
+  const Diagnosis d =
+      diagnose(machine(wheel_toml), {{"wheel.csv", recording_of(0.25, {rate})}}, {});
+  ASSERT_EQ(d.priors_refined.size(), 1u) << d.sentence;
+  EXPECT_EQ(d.priors_refined[0].key, "disturbance[0].coefficient_N_m_s");
+  EXPECT_EQ(d.priors_refined[0].value[0], 0.0) << d.sentence;
+}
+
 }  // namespace
 }  // namespace photorque
