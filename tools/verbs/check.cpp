@@ -196,12 +196,8 @@ class Checker {
   }
 
   void check_motion() {
-    RunOptions full = options_;
-    attempt([&] {
-      for (const std::string& one : orbit_overrides(*file_)) full.overrides.push_back(one);
-    });
     std::unique_ptr<AttitudeExperiment> experiment;
-    if (!attempt([&] { experiment = std::make_unique<AttitudeExperiment>(full); })) return;
+    if (!attempt([&] { experiment = std::make_unique<AttitudeExperiment>(options_); })) return;
     const Settings& settings = experiment->settings();
     if (!attempt([&] { read_attitude_model(settings); })) return;
     attempt([&] { say_propagation(read_propagation(settings)); });
@@ -211,7 +207,7 @@ class Checker {
     });
     add("fmu", "a unit for co-simulation by FMI 3.0 or 2.0");
     if (settings.has("supply_trade")) {
-      attempt([&] { add("supply", supply_in_words(full)); });
+      attempt([&] { add("supply", supply_in_words(options_)); });
     }
     attempt([&] {
       const EstimateStudy study = read_estimate(settings);
