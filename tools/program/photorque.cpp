@@ -75,6 +75,11 @@ int run(int argc, char** argv, Interruption& interruption) {
   const CommandLine line = read_command_line(argc, argv, verbs);
   if (line.status) return *line.status;
   const CommandOptions& options = *line.command.options;
+  std::error_code failure;
+  if (std::filesystem::current_path(failure).empty()) {
+    throw InputError({"photorque"}, "", "a working directory that was removed",
+                     "an existing one (cd)");
+  }
   if (options.out && options.out->empty()) throw InputError({"--out"}, "", "nothing", "a folder");
   hold_memory(options.max_memory_GB);
   return run_command(line.command, {verbs, &interruption});
@@ -151,6 +156,10 @@ int main(int argc, char** argv) {
   } catch (const photorque::NumericalError& error) {
     photorque::print_error(std::string("numerical failure: ") + error.what());
     return 3;
+  } catch (const std::filesystem::filesystem_error& error) {
+    photorque::print_error(error.path1().string() + ": found \"" + error.code().message() +
+                           "\", expected a file or folder that exists and is accessible");
+    return 2;
   } catch (const std::bad_alloc&) {
     // Threads of libraries that are short of memory may never be ready to be joined.
     std::fputs("numerical failure: not enough memory\n", stderr);
