@@ -146,8 +146,9 @@ int main(int argc, char** argv) {
     photorque::Interruption interruption;
     const int status = photorque::run(argc, argv, interruption);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      std::fprintf(stderr, "photorque: standard output could not be written\n");
-      return 3;
+      std::fputs("standard output: found a write that failed, expected space and permission\n",
+                 stderr);
+      return status == 0 ? 2 : status;
     }
     return status;
   } catch (const photorque::InputError& error) {
