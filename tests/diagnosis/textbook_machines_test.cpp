@@ -178,7 +178,7 @@ TEST(TextbookMachines, APendulumByItsRateAlone) {
   expect_number(d, "bearing_drag", "coefficient_N_m_s", 0, c);
 }
 
-// A rate that is computed from the angle is no second reading; one with errors of its own is.
+// A rate that is computed from the angle is no second reading; one with separate errors is.
 TEST(TextbookMachines, ARateComputedFromTheAngleIsLeftOut) {
   constexpr double k = 21.5, viscous = 0.16, interval_s = 0.01;
   const std::vector<double> angle_rad =
