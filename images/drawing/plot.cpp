@@ -369,8 +369,7 @@ constexpr TimeUnit long_units[] = {
     {"d", 86400.0, 259200.0}, {"h", 3600.0, 7200.0}, {"min", 60.0, 600.0}};
 
 bool is_time_in(const std::string& label, std::string_view unit) {
-  const std::string end = "[" + std::string(unit) + "]";
-  return label.ends_with("Time " + end) || label.ends_with("time " + end);
+  return label.ends_with("time [" + std::string(unit) + "]");
 }
 
 }  // namespace

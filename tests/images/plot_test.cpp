@@ -352,13 +352,13 @@ TEST(TimeAxis, HasTheUnitOfItsLength) {
     return in_readable_time(plot);
   };
   const std::vector<std::tuple<double, const char*, double>> known = {
-      {599.0, "Time [s]", 599.0},
-      {600.0, "Time [min]", 10.0},
-      {7199.0, "Time [min]", 7199.0 / 60},
-      {86400.0, "Time [h]", 24.0},
-      {259200.0, "Time [d]", 3.0}};
+      {599.0, "time [s]", 599.0},
+      {600.0, "time [min]", 10.0},
+      {7199.0, "time [min]", 7199.0 / 60},
+      {86400.0, "time [h]", 24.0},
+      {259200.0, "time [d]", 3.0}};
   for (const auto& [duration_s, label, end] : known) {
-    const Plot plot = drawn(duration_s, "Time [s]");
+    const Plot plot = drawn(duration_s, "time [s]");
     EXPECT_EQ(plot.x_label, label);
     EXPECT_DOUBLE_EQ(plot.curves[0].x[1], end);
     EXPECT_DOUBLE_EQ(plot.below[0].curves[0].x[1], end);
