@@ -199,7 +199,10 @@ void make_folders(const fs::path& folder, const std::string& key) {
   }
   fs::create_directories(folder, failure);
   if (failure) {
-    throw InputError({folder.string()}, key, failure.message(), "a folder that can be made");
+    const bool through_file = failure == std::errc::not_a_directory;
+    throw InputError({folder.string()}, key,
+                     through_file ? "a path through a file" : failure.message(),
+                     "a folder that can be made");
   }
   for (const fs::path& place : above) sync_folder(place);
 }

@@ -364,7 +364,7 @@ ConsistencyResult consistency_of(const EstimateStudy& study, const PropagationRu
   plot.name = "normalised_errors";
   plot.title = "Normalised errors squared, mean of " + std::to_string(study.runs) +
                " runs, and their 95 % band";
-  plot.x_label = "Time [s]";
+  plot.x_label = "time [s]";
   plot.y_label = "NEES of attitude and rate";
   plot.levels = {ensemble.band().low, ensemble.band().high};
   Plot::Curve f, s, ef, es;

@@ -245,7 +245,7 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
     Plot plot;
     plot.name = name;
     plot.title = title;
-    plot.x_label = "Time [s]";
+    plot.x_label = "time [s]";
     plot.y_label = y;
     plot.curves = std::move(curves);
     product.plots.push_back(std::move(plot));
@@ -257,15 +257,15 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
     product.plots.back().below = {{"y [" + unit + "]", {curve("", t, values(x + 1))}, false},
                                   {"z [" + unit + "]", {curve("", t, values(x + 2))}, false}};
   };
-  add_plot("tilt", "Tilt", "Tilt [deg]", {curve("", t, values(tilt))});
-  add_plot("yaw", "Yaw", "Yaw [deg]", {curve("", t, unwrapped_deg(values(yaw)))});
+  add_plot("tilt", "Tilt", "tilt [deg]", {curve("", t, values(tilt))});
+  add_plot("yaw", "Yaw", "yaw [deg]", {curve("", t, unwrapped_deg(values(yaw)))});
   add_vector_plot("rates", "Body rates", "rad/s", rate_x);
   if (any_nonzero(values(charge))) {
-    add_plot("charge", "Charge missing from the battery", "Charge [Ah]",
+    add_plot("charge", "Charge missing from the battery", "charge [Ah]",
              {curve("", t, values(charge))});
   }
   if (any_nonzero(values(power))) {
-    add_plot("array_power", "Power of the solar array", "Power [W]", {curve("", t, values(power))});
+    add_plot("array_power", "Power of the solar array", "power [W]", {curve("", t, values(power))});
   }
   std::vector<size_t> shown;
   std::vector<std::vector<double>> sizes;
@@ -292,9 +292,9 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
     std::vector<std::string> names;
     for (const size_t i : shown) names.push_back(labels_[i]);
     add_plot("torque_fractions", "Fraction of every torque in the sum of their sizes",
-             "Fraction [%]", stacked_fractions(t, names, sizes));
+             "fraction [%]", stacked_fractions(t, names, sizes));
     add_plot("torques", "Size of every torque, largest within each 240th of the run",
-             "Torque [N m]", std::move(all));
+             "torque [N m]", std::move(all));
     product.plots.back().y_log = true;
   }
 

@@ -342,7 +342,7 @@ Product balance_product(const BalanceRun& run, const BalanceResult& result) {
   Plot plot;
   plot.name = "balance_residuals";
   plot.title = "Camera minus fitted trajectory, about lab axes";
-  plot.x_label = "Time [s]";
+  plot.x_label = "time [s]";
   // More points would only cover each other.
   constexpr size_t max_points = 2000;
   const size_t rows = result.residual_time_s.size();
@@ -357,10 +357,10 @@ Product balance_product(const BalanceRun& run, const BalanceResult& result) {
     }
     return curve;
   };
-  plot.y_label = "About x [arcsec]";
+  plot.y_label = "about x [arcsec]";
   plot.curves = {residuals(0)};
-  plot.below = {{"About y [arcsec]", {residuals(1)}, false},
-                {"About z [arcsec]", {residuals(2)}, false}};
+  plot.below = {{"about y [arcsec]", {residuals(1)}, false},
+                {"about z [arcsec]", {residuals(2)}, false}};
   product.plots.push_back(std::move(plot));
   return product;
 }

@@ -41,10 +41,10 @@ PlotLayout plot_layout(const Plot& plot, const PlotRoom& room);
 // Shaded intervals, grids, curves, levels, frames, axes and legends.
 void draw_plot(Canvas& canvas, const Plot& plot, const PlotLayout& layout);
 
-// A plot whose x is "Time [s]", in minutes from ten minutes on, hours from two hours, days from
+// A plot whose x is "time [s]", in minutes from ten minutes on, hours from two hours, days from
 // three days.
 Plot in_readable_time(Plot plot);
-// Seconds in the unit of its x axis: 60 of "Time [min]", 1 where it is no other time.
+// Seconds in the unit of its x axis: 60 of "time [min]", 1 where it is no other time.
 double seconds_of_unit(const Plot& plot);
 
 // Panels are stacked and share the x axis, of time as by in_readable_time(). Errors are drawn as ±1

@@ -121,9 +121,9 @@ std::optional<std::string> coarseness_notice(const PhotometricLamp& lamp) {
   // Both errors are of second order in the step.
   const double enough_deg = step_deg * std::sqrt(allowed / std::abs(straight));
   return printed(
-      "angles %.3g deg apart are coarse for a beam of %.4g deg FWHM: read with straight "
-      "lines between them the flux would be %+.2f %%, as a sum of zones %+.2f %%, beside "
-      "the smooth curve used here; steps of %.2g deg would do",
+      "steps of %.3g deg are coarse for a beam of %.4g deg FWHM: compared with the smooth "
+      "interpolation used here, linear interpolation changes the flux by %+.2f %%, a sum "
+      "of zones by %+.2f %%; steps of %.2g deg suffice",
       step_deg, fwhm_rad / degree_rad, 100.0 * straight, 100.0 * zonal, enough_deg);
 }
 

@@ -62,10 +62,6 @@ struct CoupledResult {
   std::vector<std::string> warnings;  // where the table is further off than light.tolerance
 };
 
-// Overrides that an experiment in light needs before its platform is read: an orbit takes the
-// direction of the sun of [[source]]. InputError where both name a direction and differ.
-std::vector<std::string> orbit_overrides(const ExperimentFile& file);
-
 // InputError for light or power that an experiment states twice: as a disturbance beside a scene.
 void require_light_once(const ExperimentFile& file);
 

@@ -64,19 +64,19 @@ Plot::Curve curve(const std::string& label, const std::vector<double>& x,
 Plot together(const Table& power, const Table& history) {
   const std::vector<double>& t = power.column("t_s").values;
   const std::vector<double>& moved = history.column("t_s").values;
-  Plot plot{"power_and_attitude", "Power, charge, attitude and torque", "Time [s]", "Power [W]"};
+  Plot plot{"power_and_attitude", "Power, charge, attitude and torque", "time [s]", "power [W]"};
   Plot::Curve load = curve("load served", t, power.column("load_power_W").values);
   load.colour = Plot::Colour::grey;
   plot.curves = {load, curve("array", t, power.column("array_power_W").values)};
   if (power.find("battery_charge_Wh") != nullptr) {
     plot.below.push_back(
-        {"Battery [Wh]", {curve("", t, power.column("battery_charge_Wh").values)}});
+        {"battery [Wh]", {curve("", t, power.column("battery_charge_Wh").values)}});
   }
-  plot.below.push_back({"Cells [K]", {curve("", t, power.column("cell_temperature_K").values)}});
-  plot.below.push_back({"Tilt [deg]", {curve("", moved, history.column("tilt_deg").values)}});
+  plot.below.push_back({"cells [K]", {curve("", t, power.column("cell_temperature_K").values)}});
+  plot.below.push_back({"tilt [deg]", {curve("", moved, history.column("tilt_deg").values)}});
   if (history.find("torque_radiation_pressure_x_N_m") != nullptr) {
     plot.below.push_back(
-        {"Light [N m]", {curve("", moved, sizes_of(history, "torque_radiation_pressure"))}});
+        {"light [N m]", {curve("", moved, sizes_of(history, "torque_radiation_pressure"))}});
   }
   return plot;
 }

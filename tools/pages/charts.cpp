@@ -288,7 +288,7 @@ Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_
   Plot plot{"sweep_" + std::to_string(sweep) + "_of_" + recording.recording,
             "Curve " + (is_only ? "" : std::to_string(sweep) + " ") + "of " + recording.recording +
                 (recording.is_held_out ? ", never fitted" : ""),
-            "Voltage [V]", "Current [A]"};
+            "voltage [V]", "current [A]"};
   Plot::Curve measured, before, after, off_before, off_after;
   measured.dots = true;
   measured.colour = Plot::Colour::grey;
@@ -316,7 +316,7 @@ Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_
     off_after.y.push_back(light.measured[i] - light.after[i]);
   }
   plot.curves = {std::move(measured), std::move(before)};
-  Plot::Panel residual{"Difference [A]", {std::move(off_before)}};
+  Plot::Panel residual{"difference [A]", {std::move(off_before)}};
   if (something_was_found) {
     plot.curves.push_back(std::move(after));
     residual.curves.push_back(std::move(off_after));

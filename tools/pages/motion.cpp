@@ -156,7 +156,7 @@ StagePart rod_along_x(double length_m) {
 RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageHead& head) {
   RunPage page = page_of(run.result, head,
                          {"largest_tilt_deg", "final_yaw_deg", "final_rate_rad_s",
-                          "mean_array_power_W", "battery_left_J", "pointing_rms_deg"});
+                          "mean_array_power_W", "load_unserved_Wh", "battery_left_Wh"});
   const std::optional<OpticalRun> light = optical_run(run, options);
   SceneStage stage =
       light ? stage_of(*light, StageMaps::own) : platform_stage(run.run->model.platform);
@@ -196,7 +196,7 @@ RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageH
   }
   page.stage = std::move(stage);
   for (const Plot& plot : run.result.product.plots) {
-    if (plot.x_label == "Time [s]") page.cursors.push_back({plot.name, 0, 1.0});
+    if (plot.x_label == "time [s]") page.cursors.push_back({plot.name, 0, 1.0});
   }
   // A page draws no areas.
   std::erase_if(page.product.plots,

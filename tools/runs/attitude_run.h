@@ -13,8 +13,9 @@
 
 namespace photorque {
 
-// An experiment file with its overrides. InputError for tables that no command
-// reads; those of optical commands are left alone.
+// An experiment file with its overrides; an orbit without `sun_direction` has that of the sun of
+// [[source]], and `planet_light` that of the orbit. InputError for tables that no command reads;
+// those of optical commands are left alone.
 class AttitudeExperiment {
  public:
   explicit AttitudeExperiment(const RunOptions& options);

@@ -95,6 +95,8 @@ RunOutcome RunEngine::make(const Changes& changes) {
     return {task_.run(run), 0, ""};
   } catch (const InputError& error) {
     return {{}, 2, without_origin(error.what())};
+  } catch (const std::filesystem::filesystem_error& error) {
+    return {{}, 2, error.what()};
   } catch (const NumericalError& error) {
     return {{}, 3, std::string("numerical failure: ") + error.what()};
   }

@@ -7,6 +7,7 @@
 
 #include "core/errors.h"
 #include "core/settings/settings.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 #include "tools/sweeps/labels.h"
 #include "tools/sweeps/tolerances.h"
@@ -284,10 +285,10 @@ void print_best(const Console& console, const SweepPlan& plan, const SweepResult
     if (!best) return;
     std::string text = "  " + what + "  " + shown(*best);
     if (nominal) {
-      text += ", of the nominal experiment " + shown(*nominal);
+      text += "; nominal experiment " + shown(*nominal);
       const double percent = 100.0 * (best->value / nominal->value - 1.0);
       if (std::isfinite(percent)) {
-        text += " (" + std::string(percent < 0.0 ? "" : "+") + show(percent) + " %)";
+        text += " (" + std::string(percent < 0.0 ? "" : "+") + readable_number(percent, 3) + " %)";
       }
     }
     console.line(text);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "attitude/camera/study.h"
@@ -196,12 +197,8 @@ class Checker {
   }
 
   void check_motion() {
-    RunOptions full = options_;
-    attempt([&] {
-      for (const std::string& one : orbit_overrides(*file_)) full.overrides.push_back(one);
-    });
     std::unique_ptr<AttitudeExperiment> experiment;
-    if (!attempt([&] { experiment = std::make_unique<AttitudeExperiment>(full); })) return;
+    if (!attempt([&] { experiment = std::make_unique<AttitudeExperiment>(options_); })) return;
     const Settings& settings = experiment->settings();
     if (!attempt([&] { read_attitude_model(settings); })) return;
     attempt([&] { say_propagation(read_propagation(settings)); });
@@ -211,7 +208,7 @@ class Checker {
     });
     add("fmu", "a unit for co-simulation by FMI 3.0 or 2.0");
     if (settings.has("supply_trade")) {
-      attempt([&] { add("supply", supply_in_words(full)); });
+      attempt([&] { add("supply", supply_in_words(options_)); });
     }
     attempt([&] {
       const EstimateStudy study = read_estimate(settings);
@@ -378,9 +375,32 @@ void print_lacking(const Console& console, const CheckReport& report,
   }
 }
 
+void print_json(const CheckReport& report) {
+  using Json = nlohmann::ordered_json;
+  const auto listed = [](const std::vector<CheckReport::Command>& commands) {
+    Json list = Json::array();
+    for (const CheckReport::Command& one : commands) {
+      list.push_back({{"name", one.name}, {"what", clean_text(one.what)}});
+    }
+    return list;
+  };
+  Json json = {{"schema", "photorque.check/1"},
+               {"commands", listed(report.commands)},
+               {"impossible", listed(report.impossible)},
+               {"tables", report.tables},
+               {"mistakes", Json::array()},
+               {"notes", Json::array()}};
+  for (const InputError& mistake : report.mistakes) {
+    json["mistakes"].push_back(clean_text(mistake.what()));
+  }
+  for (const std::string& note : report.notes) json["notes"].push_back(clean_text(note));
+  std::puts(json.dump(2).c_str());
+}
+
 void run(const CommandOptions& options, const Program& program) {
   const Console console = terminal(options);
   const CheckReport report = run_check(options);
+  if (options.json) print_json(report);
   print_commands(console, report, program.verbs);
   if (report.mistakes.empty()) print_lacking(console, report, program.verbs);
   for (const CheckReport::Command& command : report.impossible) {

@@ -91,8 +91,8 @@ void print_undetermined(const Console& console, const std::vector<CellRow>& rows
 
 void print_bounds(const Console& console, const std::vector<BoundReached>& bounds) {
   for (const BoundReached& bound : bounds) {
-    console.line("  warning: " + bound.key + " ended on its bound, " + show(bound.value) + ": " +
-                 bound.meaning);
+    console.line("  warning: " + bound.key + " is at its bound, " +
+                 readable_number(bound.value, 3) + ": " + bound.meaning);
   }
 }
 
@@ -179,7 +179,7 @@ void add_fit_plot(const FitTask& task, const std::vector<ArrayPoint>& fitted,
   plot.curves = {measured, line};
   plot.below.push_back(power);
   if (line.x.size() > 1) {
-    plot.below.push_back({"left [A]", {residuals_of(measured, line)}, false, {0.0}});
+    plot.below.push_back({"residual [A]", {residuals_of(measured, line)}, false, {0.0}});
   }
   product.plots.push_back(plot);
 }
