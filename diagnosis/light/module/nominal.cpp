@@ -300,7 +300,7 @@ ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& de
 }
 
 ModuleWiring wiring_of(const ModuleDesign& design) {
-  return {design.cells, design.bypass_every, design.bypass_drop_V};
+  return {design.cells, design.bypass_every, design.bypass_drop_V, design.chains};
 }
 
 ModuleCell moved(const ModuleNominal& nominal, const ModuleNominal::Numbers& z) {
