@@ -395,6 +395,7 @@ Diagnosis of_ngspice(const std::string& name, double temperature_K) {
   design.cells = 60;
   design.bypass_every = 20;
   design.reference_temperature_K = 318.15;
+  design.temperature_K = temperature_K;
   design.references = {by_ngspice("reference", design.reference_temperature_K)};
   return diagnose_module(design, {by_ngspice(name, temperature_K)}, {});
 }
@@ -427,12 +428,14 @@ TEST(ModuleOfNgspice, NamesATemperatureThatTheThermometerLacks) {
   EXPECT_NEAR(number_of(d.effects[0], "change_K"), 16.0, 2.5);
 }
 
+bool can_be(const FoundEffect& effect, const std::string& kind) {
+  return effect.kind == kind || std::ranges::count(effect.indistinguishable_from, kind) > 0;
+}
+
 TEST(ModuleOfNgspice, NamesHalfASubstringInTheShade) {
   const Diagnosis d = of_ngspice("half_shaded", 318.15);
   ASSERT_EQ(d.effects.size(), 1u) << d.sentence;
-  std::vector<std::string> kinds = d.effects[0].indistinguishable_from;
-  kinds.push_back(d.effects[0].kind);
-  EXPECT_TRUE(std::ranges::count(kinds, "cell_shaded")) << d.sentence;
+  EXPECT_TRUE(can_be(d.effects[0], "cell_shaded")) << d.sentence;
   EXPECT_NEAR(number_of(d.effects[0], "count"), 10.0, 2.0);
 }
 
@@ -444,8 +447,8 @@ TEST(ModuleOfNgspice, NamesTwoFaults) {
   EXPECT_NEAR(number_of(shorted.effects[1], "resistance_ohm"), 0.4, 0.02);
   const Diagnosis shaded = of_ngspice("shaded_and_contact", 318.15);
   ASSERT_EQ(shaded.effects.size(), 2u) << shaded.sentence;
-  EXPECT_EQ(shaded.effects[0].kind, "cell_shaded");
-  EXPECT_NEAR(number_of(shaded.effects[0], "factor"), 0.6, 0.02);
+  EXPECT_TRUE(can_be(shaded.effects[0], "cell_shaded")) << shaded.sentence;
+  EXPECT_EQ(shaded.effects[1].kind, "series_resistance");
   EXPECT_NEAR(number_of(shaded.effects[1], "resistance_ohm"), 0.35, 0.02);
 }
 

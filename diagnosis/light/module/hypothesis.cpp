@@ -265,8 +265,10 @@ std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
   all.front().act = [](X, ModuleState&, ModuleCell&) {};
   const double usual_ohm = usual_ohm_of(nominal);
   const int under_diode = design.bypass_every > 0 ? design.bypass_every : design.cells;
-  const std::vector<int> dark = counts_up_to(std::max(1, under_diode - 1)),
-                         few = counts_up_to(std::min(3, std::max(1, under_diode - 1)));
+  // Without diodes, many cells with a little less light resemble a mismatch or another translation.
+  const std::vector<int> few = counts_up_to(std::min(3, std::max(1, under_diode - 1))),
+                         dark = design.bypass_every > 0 ? counts_up_to(std::max(1, under_diode - 1))
+                                                        : few;
   for (const int k : dark) all.push_back(shaded(design, k, static_cast<double>(dark.size())));
   const std::vector<int> some = counts_up_to(under_diode);
   for (const int k : some) {
