@@ -178,7 +178,7 @@ void remove_leftovers(const fs::path& folder, int process) {
   remove_where(folder, [&](pid_t writer) { return writer == process; });
 }
 
-void remove_leftovers_of_the_dead(const fs::path& folder) {
+void remove_leftovers_of_ended_processes(const fs::path& folder) {
   remove_where(folder, [](pid_t writer) { return ::kill(writer, 0) != 0 && errno == ESRCH; });
 }
 

@@ -30,7 +30,7 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path);
 // Removes what one process of this machine left in `folder` under such names, or what all did that
 // are no more. Never throws.
 void remove_leftovers(const std::filesystem::path& folder, int process);
-void remove_leftovers_of_the_dead(const std::filesystem::path& folder);
+void remove_leftovers_of_ended_processes(const std::filesystem::path& folder);
 
 // Writes the names in a folder to the disk: new and renamed files there survive a power cut.
 // InputError when that fails, but not where a file system cannot do it or the folder may not be

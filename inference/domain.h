@@ -135,13 +135,13 @@ concept Domain = std::derived_from<typename D::Trial, Explanation> &&
   { domain.refit_near(trial, trial, runs, effort) } -> std::same_as<typename D::Trial>;
   // Predicts runs that the trial has not been fitted to; only nuisance parameters are fitted.
   { domain.predict(trial, runs) } -> std::same_as<typename D::Trial>;
-  { domain.begins_of(trial) } -> std::same_as<std::vector<typename D::Begin>>;
+  { domain.initial_conditions_of(trial) } -> std::same_as<std::vector<typename D::Begin>>;
   // Initial conditions from the first readings of each run.
   {
     domain.initial_conditions_from_data(trial, runs)
     } -> std::same_as<std::vector<typename D::Begin>>;
   // Returns the trial with these initial conditions for its next fit.
-  { domain.with_begins(trial, begins) } -> std::same_as<typename D::Trial>;
+  { domain.with_initial_conditions(trial, begins) } -> std::same_as<typename D::Trial>;
 
   // Predicted fall of χ² for each candidate (0 for candidates that are not linear).
   { domain.gains(trial, candidates, runs) } -> std::same_as<std::vector<double>>;

@@ -123,7 +123,7 @@ size_t first_after_rest(const AxisReadings& read, bool is_rate) {
 
 }  // namespace
 
-size_t sets_off_at(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
+size_t start_of_motion(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
   size_t sets_off = last;
   const auto limit_to = [&](const AxisReadings& read, bool is_rate) {
     if (read.row.empty()) return;

@@ -24,6 +24,6 @@ AxisReadings rates_about(const Observation& rows, const Vec3& axis, size_t first
 // the next are further away than five times that scatter, on one side, and with their slope the
 // body would have moved by ten times the scatter within the rest. `first` where there is no such
 // rest.
-size_t sets_off_at(const Observation& rows, const Vec3& axis, size_t first, size_t last);
+size_t start_of_motion(const Observation& rows, const Vec3& axis, size_t first, size_t last);
 
 }  // namespace photorque

@@ -19,7 +19,7 @@ AttitudeModel Hypothesis::model_of(size_t run, const Observation& seen) const {
   return result;
 }
 
-void suit_to_runs(Hypothesis& h, const std::vector<Observation>& runs) {
+void adapt_to_runs(Hypothesis& h, const std::vector<Observation>& runs) {
   const bool in_pieces =
       std::any_of(runs.begin(), runs.end(), [](const Observation& seen) { return seen.is_piece; });
   const std::vector<Free> before = h.free;
@@ -118,7 +118,7 @@ PlatformState first_state(const AttitudeModel& model, const Observation& seen) {
   return state;
 }
 
-std::vector<RunStart> seen_starts(const Hypothesis& h, const std::vector<Observation>& runs) {
+std::vector<RunStart> starts_from_data(const Hypothesis& h, const std::vector<Observation>& runs) {
   std::vector<double> own;
   for (const Free& f : h.free) {
     if (f.per_run) own.push_back(f.mean);

@@ -146,26 +146,28 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
   const auto close = [&](size_t end) {
     size_t last = end;
     if (turns_alone && !is_commanded(rows.schedule)) {
-      const size_t sets_off = sets_off_at(rows, platform.axis, first, last);
+      const size_t sets_off = start_of_motion(rows, platform.axis, first, last);
       if (sets_off > first) {
-        result.lawless.push_back("until " + readable_number(rows.time_s[sets_off], 4) +
-                                 " s it rests and then sets off at once: a drive or a hand begins "
-                                 "to act");
+        result.exclusions.push_back(
+            "until " + readable_number(rows.time_s[sets_off], 4) +
+            " s it rests and then sets off at once: a drive or a hand begins "
+            "to act");
       }
       first = sets_off;
     }
     if (turns_alone && rows.has_gyro) {
-      LawfulSegment lawful = lawful_segment(rows, platform.axis, first, last);
+      ConsistentSegment lawful = consistent_segment(rows, platform.axis, first, last);
       first = lawful.first;
       last = lawful.last;
-      if (!lawful.left_out.empty()) result.lawless.push_back(std::move(lawful.left_out));
+      if (!lawful.left_out.empty()) result.exclusions.push_back(std::move(lawful.left_out));
     }
     if (turns_alone && rows.sees_some_attitude() && !is_commanded(rows.schedule)) {
       const size_t released = released_at(rows, platform.axis, first, last);
       if (released > first) {
-        result.lawless.push_back("until " + readable_number(rows.time_s[released], 4) +
-                                 " s the angle does not follow the law of the rest: a hand holds "
-                                 "it, or something else acts");
+        result.exclusions.push_back(
+            "until " + readable_number(rows.time_s[released], 4) +
+            " s the angle does not follow the law of the rest: a hand holds "
+            "it, or something else acts");
       }
       first = released;
     }
@@ -350,8 +352,9 @@ std::vector<Break> breaks_of(const AxisReadings& read, size_t window) {
 
 }  // namespace
 
-LawfulSegment lawful_segment(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
-  LawfulSegment whole = {first, last, ""};
+ConsistentSegment consistent_segment(const Observation& rows, const Vec3& axis, size_t first,
+                                     size_t last) {
+  ConsistentSegment whole = {first, last, ""};
   if (is_commanded(rows.schedule)) return whole;
   const AxisReadings read = smoothed_rates(rows, axis, first, last);
   std::vector<Break> breaks;
@@ -360,7 +363,7 @@ LawfulSegment lawful_segment(const Observation& rows, const Vec3& axis, size_t f
     breaks = breaks_of(read, window);
   }
   if (breaks.empty()) return whole;
-  LawfulSegment longest = {first, first, ""};
+  ConsistentSegment longest = {first, first, ""};
   size_t begin = first;
   const Break* since = nullptr;
   const auto close = [&](size_t end, const Break* until) {

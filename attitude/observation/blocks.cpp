@@ -404,7 +404,7 @@ void append_mean(const Observation& from, size_t first, size_t last, Observation
   BlockRows{from, first, last}.append_to(to);
 }
 
-void straighten_first(const Observation& all, size_t block, Observation& to) {
+void correct_first_block(const Observation& all, size_t block, Observation& to) {
   Straightened(all, block).put_into(to);
 }
 

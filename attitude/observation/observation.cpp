@@ -248,7 +248,7 @@ Observation Observation::part(size_t first, size_t last) const {
     cut(result.scalar[s].value, scalar[s].value);
     cut(result.scalar[s].rows, scalar[s].rows);
   }
-  if (result.spread_of(0).readings_s > 0.0) straighten_first(*this, first, result);
+  if (result.spread_of(0).readings_s > 0.0) correct_first_block(*this, first, result);
   const double start_s = result.time_s.front();
   double from_s = time_s.front();
   for (size_t i = 0; i < schedule.time_s.size() && from_s < start_s; ++i) {

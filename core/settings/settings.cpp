@@ -104,7 +104,7 @@ std::string listed_names(std::set<std::string> names, std::string_view wanted) {
 }
 
 // The most similar of the known ones, else the first of them all.
-std::string known_instead_of(std::string_view key, const std::set<std::string>& known) {
+std::string expected_keys(std::string_view key, const std::set<std::string>& known) {
   constexpr size_t most = 12;
   if (const std::string likest = nearest(key, known); !likest.empty()) {
     return "a known key, perhaps \"" + likest + "\"";
@@ -256,7 +256,7 @@ void Settings::finish() const {
       const auto asked = log_->asked.find(node_);
       throw InputError(
           node.where, full_name(key), "an unknown key",
-          asked == log_->asked.end() ? "only known keys" : known_instead_of(key, asked->second));
+          asked == log_->asked.end() ? "only known keys" : expected_keys(key, asked->second));
     }
     if (node.is_table()) Settings(&node, root_, log_, full_name(key)).finish();
     if (const auto* array = std::get_if<SettingsNode::Array>(&node.value)) {

@@ -233,7 +233,7 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
         nominal_fit,
         candidates_among(among_with_discrepancy(nominal, data), nominal, data.train, limits), data);
   }
-  if (laws && leaves_only_noise(laws->fit, data)) {
+  if (laws && is_consistent_with_noise(laws->fit, data)) {
     fine = at_noise_of_readings(nominal, data, options, nominal_fit, &*laws);
     if (!fine.decision.leaves_more) {
       describe(data, options, fine);
@@ -243,7 +243,7 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
   RecordedData rough = data;
   std::optional<Answer> named =
       identify_with_discrepancy(nominal, rough, options, laws ? &*laws : nullptr);
-  if (named && is_far && leaves_only_noise(named->chosen().fit, data)) {
+  if (named && is_far && is_consistent_with_noise(named->chosen().fit, data)) {
     return at_noise_of_readings(nominal, data, options, nominal_fit, &named->chosen());
   }
   if (named) return std::move(*named);

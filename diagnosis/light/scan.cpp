@@ -94,11 +94,11 @@ std::vector<LightStart> best_of_grid(const LightCandidate& c, const std::vector<
 
 }  // namespace
 
-std::vector<std::vector<LightStart>> scanned_starts(const LightTrial& parent,
-                                                    const LightCandidates& all,
-                                                    const std::vector<size_t>& candidates,
-                                                    const std::vector<FittedRun>& runs,
-                                                    int threads) {
+std::vector<std::vector<LightStart>> starts_from_scan(const LightTrial& parent,
+                                                      const LightCandidates& all,
+                                                      const std::vector<size_t>& candidates,
+                                                      const std::vector<FittedRun>& runs,
+                                                      int threads) {
   std::vector<std::vector<LightStart>> result(candidates.size());
   const std::vector<LeftOfRun> left = left_of(parent, all, runs);
   parallel_for(candidates.size(), threads, [&](size_t i) {

@@ -105,7 +105,7 @@ Json panel_json(const Plot::Panel& panel, const PageLimits& limits) {
 }
 
 Json plot_json(const Plot& of, const RunPage& page, const PageLimits& limits) {
-  const Plot plot = in_readable_time(of);
+  const Plot plot = with_readable_time_unit(of);
   Json panels = Json::array();
   for (const Plot::Panel& panel : panels_of(plot)) panels.push_back(panel_json(panel, limits));
   Json shaded = Json::array();

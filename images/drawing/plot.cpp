@@ -257,7 +257,7 @@ struct PlotPage {
 PlotPage page_of(const Plot& plot, const Provenance& provenance, PictureStyle style) {
   require_consistent(plot);
   PlotPage page;
-  page.plot = in_readable_time(plot);
+  page.plot = with_readable_time_unit(plot);
   page.width = std::round(page_width * page_scale(style));
   page.text = page_text(plot.title, caption_of(plot), provenance, page.width, style);
   page.layout = plot_layout(page.plot, {.left = page_margin,
@@ -374,7 +374,7 @@ bool is_time_in(const std::string& label, std::string_view unit) {
 
 }  // namespace
 
-Plot in_readable_time(Plot plot) {
+Plot with_readable_time_unit(Plot plot) {
   if (plot.x_log || !is_time_in(plot.x_label, "s")) return plot;
   const AxisRange range = x_range(panels_of(plot), false);
   const auto* const unit = std::ranges::find_if(
@@ -425,7 +425,7 @@ std::string pdf_of(const Plot& plot, const Provenance& provenance, const PdfText
 
 std::string plot_html(const Plot& of) {
   require_consistent(of);
-  const Plot plot = in_readable_time(of);
+  const Plot plot = with_readable_time_unit(of);
   // Half of the last tick's label is beyond the frame.
   constexpr double half_label = 12.0;
   const PlotLayout layout = plot_layout(plot, {.left = 2.0,

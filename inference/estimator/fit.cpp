@@ -85,7 +85,7 @@ class Outlook {
     return std::log(sums.chi2 / worth_chi2_) > acceleration * fall() * left;
   }
   // Call after is_out_of_reach(). A good fit is iterated to convergence.
-  bool creeps(const SumsOfRuns& sums) const {
+  bool is_stalling(const SumsOfRuns& sums) const {
     constexpr double misfit_per_sample = 1.2;
     if (fallen_.size() <= memory || fall() >= creep_) return false;
     return sums.chi2 > misfit_per_sample * static_cast<double>(sums.samples);
@@ -207,7 +207,7 @@ class Fitter {
         if (damping > options_.max_damping) return Termination::no_step_lowers;
         was_refused = true;
         if (outlook.is_out_of_reach(now.sums, iteration)) return Termination::out_of_reach;
-        if (outlook.creeps(now.sums)) return Termination::max_iterations;
+        if (outlook.is_stalling(now.sums)) return Termination::max_iterations;
         continue;
       }
       now_ = std::move(tried);
@@ -219,7 +219,7 @@ class Fitter {
       was_refused = false;
       now = at_once ? std::move(at) : evaluate(model_, now_, {true, window});
       if (outlook.is_out_of_reach(now.sums, iteration)) return Termination::out_of_reach;
-      if (outlook.creeps(now.sums)) return Termination::max_iterations;
+      if (outlook.is_stalling(now.sums)) return Termination::max_iterations;
     }
     return Termination::max_iterations;
   }

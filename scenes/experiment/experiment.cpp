@@ -258,7 +258,8 @@ Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture)
   experiment.lab_from_body =
       lab_from_body_at(experiment.file.attitude.tilt_rad, experiment.file.attitude.heading_rad);
   experiment.camera = camera;
-  experiment.warnings = doubts_about(experiment.scene, experiment.beams, experiment.lab_from_body);
+  experiment.warnings =
+      geometry_warnings(experiment.scene, experiment.beams, experiment.lab_from_body);
   experiment.notices = std::move(model.notices);
   experiment.inputs = experiment.file.inputs;
   experiment.inputs.insert(experiment.inputs.end(), model.inputs.begin(), model.inputs.end());

@@ -280,8 +280,8 @@ TEST(Machines, WhatADriveDidBeforeItLetGoIsLeftOut) {
   EXPECT_GT(cut.all[0].time_s.front(), 59.9);
   EXPECT_LT(cut.all[0].time_s.front(), 62.0);
   EXPECT_DOUBLE_EQ(cut.all[0].time_s.back(), recording.time_s.back());
-  ASSERT_EQ(cut.lawless.size(), 1u);
-  EXPECT_THAT(cut.lawless[0], HasSubstr("something else acts before"));
+  ASSERT_EQ(cut.exclusions.size(), 1u);
+  EXPECT_THAT(cut.exclusions[0], HasSubstr("something else acts before"));
 
   const Diagnosis d = diagnose(wheel, {{"wheel.csv", recording}}, {});
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("dry_friction", "air_pressure_drag"));
@@ -305,7 +305,7 @@ TEST(Machines, WhatFollowsOneLawIsNotCut) {
   for (const std::vector<Channel>& channels :
        {std::vector<Channel>{stops}, {swings}, {commanded, command}, {even}}) {
     const Segments cut = observe_segments(recording_of(0.25, channels), "axle.csv", axle);
-    EXPECT_TRUE(cut.lawless.empty()) << cut.lawless.front();
+    EXPECT_TRUE(cut.exclusions.empty()) << cut.exclusions.front();
     EXPECT_EQ(cut.all.size(), 1U);
     EXPECT_EQ(cut.all.front().blocks(), 1500U);
   }

@@ -138,7 +138,7 @@ TEST(TextbookMachines, WhatMovesFromTheFirstRowIsNotTakenForARest) {
   }
   const Platform upright = machine(about("z", "gyro]\nnoise_rad_s = 1")).model.platform;
   const auto notes = [&](const Channel& channel) {
-    return observe_segments(recording_of(0.02, {channel}), "run.csv", upright).lawless;
+    return observe_segments(recording_of(0.02, {channel}), "run.csv", upright).exclusions;
   };
   EXPECT_THAT(notes(noisy("rate_rad_s", run_up, 0.5, 1)), testing::IsEmpty());
   EXPECT_THAT(notes(noisy("angle_rad", swing, 0.01, 2)), testing::IsEmpty());

@@ -349,7 +349,7 @@ TEST(TimeAxis, HasTheUnitOfItsLength) {
     plot.curves = {{"", {0.0, duration_s}, {1.0, 2.0}}};
     plot.below = {{"y", {{"", {0.0, duration_s}, {1.0, 2.0}}}}};
     plot.shaded = {{0.5 * duration_s, duration_s}};
-    return in_readable_time(plot);
+    return with_readable_time_unit(plot);
   };
   const std::vector<std::tuple<double, const char*, double>> known = {
       {599.0, "time [s]", 599.0},

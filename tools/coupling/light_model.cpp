@@ -230,12 +230,12 @@ std::string LightModel::content_key(const ExperimentFile& file) const {
   std::string text = table_cache_version();
   for (const char* table : {"scene", "material", "source", "receiver", "joint", "trace"}) {
     if (file.settings.has(table))
-      text += std::string(table) + written_out(file.settings.raw(table));
+      text += std::string(table) + canonical_text(file.settings.raw(table));
   }
   if (file.settings.has("array")) {
     // Keys behind the cells do not change the light.
-    text += "array" + written_out(file.settings.raw("array"),
-                                  {"day", "thermal", "tracker", "target", "layout", "chain"});
+    text += "array" + canonical_text(file.settings.raw("array"),
+                                     {"day", "thermal", "tracker", "target", "layout", "chain"});
   }
   for (const auto& [name, hash] : inputs_) {
     if (name != file.path.filename().string() && !name.starts_with("--set ")) text += hash;

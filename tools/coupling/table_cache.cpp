@@ -21,8 +21,8 @@ std::string table_cache_version() {
   return format + build_provenance().version + " " + content_hash(read_file(own_file())) + "\n";
 }
 
-std::string written_out(const SettingsNode& node, const std::set<std::string>& without,
-                        const std::function<std::string(const std::string& text)>& behind) {
+std::string canonical_text(const SettingsNode& node, const std::set<std::string>& without,
+                           const std::function<std::string(const std::string& text)>& behind) {
   struct Writer {
     const std::set<std::string>& without;
     const std::function<std::string(const std::string& text)>& behind;
@@ -38,14 +38,14 @@ std::string written_out(const SettingsNode& node, const std::set<std::string>& w
     }
     std::string operator()(const SettingsNode::Array& items) const {
       std::string text = "[";
-      for (const SettingsNode& item : items) text += written_out(item, {}, behind) + ",";
+      for (const SettingsNode& item : items) text += canonical_text(item, {}, behind) + ",";
       return text + "]";
     }
     std::string operator()(const SettingsNode::Table& table) const {
       std::string text = "{";
       for (const auto& [key, value] : table) {
         if (without.contains(key)) continue;
-        text += counted(key) + "=" + written_out(value, {}, behind) + ";";
+        text += counted(key) + "=" + canonical_text(value, {}, behind) + ";";
       }
       return text + "}";
     }

@@ -10,7 +10,7 @@
 
 namespace photorque {
 
-std::string spoken(std::string name) {
+std::string name_in_text(std::string name) {
   std::ranges::replace(name, '_', ' ');
   return name;
 }
@@ -18,14 +18,14 @@ std::string spoken(std::string name) {
 namespace {
 
 std::string name_of(const Alternative& alternative) {
-  if (!alternative.label.empty()) return spoken(alternative.label);
-  const std::string name = joined_text(alternative.kinds, " + ", spoken);
+  if (!alternative.label.empty()) return name_in_text(alternative.label);
+  const std::string name = joined_text(alternative.kinds, " + ", name_in_text);
   return name.empty() ? "nothing missing" : name;
 }
 
 // Beside a bar of the length of the best one, only the difference is informative.
 std::string note_on(const Alternative& alternative, double best_log_evidence) {
-  if (!alternative.remark.empty()) return spoken(alternative.remark);
+  if (!alternative.remark.empty()) return name_in_text(alternative.remark);
   const double behind = best_log_evidence - alternative.log_evidence_relative;
   std::string note = behind > 0.0 ? "−" + readable_number(behind, 3) + " to the best" : "";
   if (alternative.holdout_chi2_per_sample) {
@@ -97,8 +97,8 @@ const std::vector<ScanView>& scan_views() {
 }  // namespace
 
 Plot empirical_plot(const EmpiricalTorque& torque) {
-  Plot plot{"empirical_torque", "Empirical torque over " + spoken(torque.variable),
-            spoken(torque.variable) + " [" + torque.unit + "]", "torque [N m]"};
+  Plot plot{"empirical_torque", "Empirical torque over " + name_in_text(torque.variable),
+            name_in_text(torque.variable) + " [" + torque.unit + "]", "torque [N m]"};
   plot.levels = {0.0};
   const std::string axes = torque.about_lab_axes ? "about lab " : "about body ";
   constexpr std::array colours = {Plot::Colour::blue, Plot::Colour::vermilion, Plot::Colour::green};
@@ -131,7 +131,7 @@ BarChart dependence_chart(const Where& where) {
                  {}};
   for (const Where::Dependence& d : where.depends_on) {
     if (!(d.strength > 0.0)) continue;
-    chart.bars.push_back({spoken(d.variable), 100.0 * d.strength, "", chart.bars.empty()});
+    chart.bars.push_back({name_in_text(d.variable), 100.0 * d.strength, "", chart.bars.empty()});
   }
   return chart;
 }

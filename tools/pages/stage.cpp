@@ -113,7 +113,7 @@ std::vector<StageLamp> lamps_of(const std::vector<Beam>& beams, double radius_m)
         {beam.name, beam.lab_from_emitter.translation_m,
          beam.lab_from_emitter.direction(Vec3::UnitZ()),
          beam.aperture && std::isfinite(beam.aperture->radius_m) ? beam.aperture->radius_m : 0.0,
-         stands_far(beam, radius_m)});
+         is_too_far_to_draw(beam, radius_m)});
   }
   return lamps;
 }

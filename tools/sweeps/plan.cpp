@@ -164,7 +164,7 @@ SearchPlan read_search(const Settings& sweep) {
 
 }  // namespace
 
-std::string lacks_for_search(const SweepPlan& plan) {
+std::string missing_search_keys(const SweepPlan& plan) {
   if (plan.objectives.empty()) return "maximise or minimise";
   for (const SweepAxis& axis : plan.axes) {
     if (!axis.low || !axis.high || !(*axis.low < *axis.high)) {

@@ -134,7 +134,7 @@ class Checker {
     report_.notes = run->experiment().notices;
     for (const std::string& doubt : run->experiment().warnings) report_.notes.push_back(doubt);
     attempt([&] { read_published(file_->others("published")); });
-    for (const InputError& mistake : light_mistakes(*run)) add_mistake(mistake);
+    for (const InputError& mistake : unlit_receiver_errors(*run)) add_mistake(mistake);
     say_light(*run);
     if (file_->settings.has("array")) attempt([&] { check_array(*run); });
     check_recordings_of_light(*run);
@@ -254,7 +254,7 @@ class Checker {
   }
 
   void check_fit() {
-    attempt([&] { add("fit-cell", what_fit_asks(options_)); });
+    attempt([&] { add("fit-cell", describe_fit(options_)); });
   }
 
   void check_module() {
@@ -272,7 +272,7 @@ class Checker {
   void check_sweep() {
     attempt([&] {
       const SweepPlan plan = read_sweep_plan(file_->others("sweep").front());
-      const std::string lacks = lacks_for_search(plan);
+      const std::string lacks = missing_search_keys(plan);
       const bool can_run = check_designs(plan);
       const std::string over = counted(plan.designs(), "design") + " by " + plan.verb;
       std::string no_search, no_sweep;

@@ -524,7 +524,7 @@ FitTask task_of(const RunOptions& options, const std::string& text) {
 
 }  // namespace
 
-std::string what_fit_asks(const RunOptions& options) {
+std::string describe_fit(const RunOptions& options) {
   const FitTask task = task_of(options, options.experiment_text());
   const std::string cells = std::to_string(task.cells_in_series) + " in series";
   if (task.module) return "a module of a library: " + task.module->name;

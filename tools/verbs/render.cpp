@@ -45,7 +45,7 @@ std::vector<DrawnLamp> drawn_lamps(const Experiment& experiment) {
   const double radius_m = experiment.scene.radius_m();
   std::vector<DrawnLamp> lamps;
   for (const Beam& beam : experiment.beams) {
-    if (stands_far(beam, radius_m)) continue;
+    if (is_too_far_to_draw(beam, radius_m)) continue;
     // A lamp without an opening is drawn as a dot.
     lamps.push_back({beam.lab_from_emitter.translation_m,
                      beam.lab_from_emitter.direction(Vec3::UnitZ()),

@@ -417,7 +417,7 @@ bool swings_little(const std::vector<Observation>& runs) {
 // Rates alone do not show where the angle is zero: the zero is where a restoring torque vanishes.
 // The components of such a torque with an effect there are excluded.
 void set_zero_at_rest(const AttitudeModel& nominal, Candidate& c) {
-  if (!pulls_back(c, nominal)) return;
+  if (!is_restoring(c, nominal)) return;
   AttitudeModel model = nominal;
   for (size_t p = 0; p < c.start.parameters.size(); ++p) {
     if (!c.is_strength(p)) continue;
@@ -529,11 +529,11 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     // A sliding body has no known line.
     const bool has_weight =
         context.platform.slides() || std::ranges::any_of(all.list, [&](const Candidate& c) {
-          return c.effect.how.needs == Requirement::gravity && pulls_back(c, nominal.model);
+          return c.effect.how.needs == Requirement::gravity && is_restoring(c, nominal.model);
         });
     std::erase_if(all.list, [&](const Candidate& c) {
       return has_weight && c.effect.how.needs == Requirement::bearing &&
-             pulls_back(c, nominal.model);
+             is_restoring(c, nominal.model);
     });
     const bool sees_angle = std::ranges::any_of(
         runs, [](const Observation& seen) { return seen.sees_some_attitude(); });
@@ -558,7 +558,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
         });
     std::erase_if(all.list, [&](const Candidate& c) {
       return !states_weight && c.effect.how.needs == Requirement::gravity && !c.lowest.empty() &&
-             c.lowest.front() == 0.0 && pulls_back(c, nominal.model);
+             c.lowest.front() == 0.0 && is_restoring(c, nominal.model);
     });
   }
   // While the rate keeps its sign, friction equals a steady torque, and its sign is known.

@@ -156,7 +156,8 @@ void add_crack_like_shade(const ModuleFitter& fitter, const ModuleDesign& design
       shaded->hypotheses[static_cast<size_t>(&trial - shaded->trials.data())];
   const size_t own = h.parameters.size();
   const double* first = trial.shared.data() + trial.shared.size() - own;
-  Family like{{cracked_like(design, nominal, h, {first, own}, cracked->hypotheses.front())}, {}};
+  Family like{{cracked_hypothesis(design, nominal, h, {first, own}, cracked->hypotheses.front())},
+              {}};
   like.trials.push_back(fitter.fit(like.hypotheses.front(), runs));
   families.push_back(std::move(like));
 }

@@ -47,9 +47,9 @@ std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
 // Without light on a part of the cell or without its connection, the curves differ by n kT/q
 // ln(factor) and by the series resistance of one cell. `any_cracked`: one of the other hypotheses
 // of cracks.
-ModuleHypothesis cracked_like(const ModuleDesign& design, const ModuleNominal& nominal,
-                              const ModuleHypothesis& shaded, std::span<const double> own,
-                              const ModuleHypothesis& any_cracked);
+ModuleHypothesis cracked_hypothesis(const ModuleDesign& design, const ModuleNominal& nominal,
+                                    const ModuleHypothesis& shaded, std::span<const double> own,
+                                    const ModuleHypothesis& any_cracked);
 
 // Two effects together; the parameters of `a` come first.
 ModuleHypothesis both(const ModuleHypothesis& a, const ModuleHypothesis& b);

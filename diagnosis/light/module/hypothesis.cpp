@@ -226,9 +226,9 @@ ModuleHypothesis other_diode() {
 
 }  // namespace
 
-ModuleHypothesis cracked_like(const ModuleDesign& design, const ModuleNominal& nominal,
-                              const ModuleHypothesis& shaded, std::span<const double> own,
-                              const ModuleHypothesis& any_cracked) {
+ModuleHypothesis cracked_hypothesis(const ModuleDesign& design, const ModuleNominal& nominal,
+                                    const ModuleHypothesis& shaded, std::span<const double> own,
+                                    const ModuleHypothesis& any_cracked) {
   const double usual_ohm = usual_ohm_of(nominal);
   ModuleHypothesis h =
       cracked(design, shaded.count, any_cracked.alternatives, usual_ohm, /*reverse=*/true);

@@ -72,7 +72,7 @@ bool are_of_light(const std::vector<fs::path>& recordings, const std::vector<fs:
 }
 
 std::vector<LightRecording> read_light(const std::vector<fs::path>& paths,
-                                       const UsualCircumstances& usual, const LightColumns& columns,
+                                       const DefaultConditions& usual, const LightColumns& columns,
                                        Provenance& provenance) {
   std::vector<LightRecording> all;
   for (const fs::path& path : paths) {
@@ -136,7 +136,7 @@ std::unique_ptr<LightInput> read_light_input(const RunOptions& options,
   input->provenance.inputs = input->experiment.inputs;
   input->nominal = nominal_light(
       input->lab, uncertain_keys(options.experiment, text, options.all_overrides()), reread);
-  const UsualCircumstances usual{
+  const DefaultConditions usual{
       input->experiment.lab_from_body.rotation,
       input->lab.has_array() ? input->lab.design().temperature_K : 298.15};
   input->recordings = read_light(paths, usual, columns, input->provenance);
