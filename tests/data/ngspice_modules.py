@@ -87,7 +87,6 @@ CHANGES = {
     "hot": {"light": 0.95, "celsius": 61},
     "half_shaded": {"light": 0.95, "shade": dict.fromkeys(range(10), 0.5)},
     "shorted_and_contact": {"light": 0.95, "shorted": (0,), "contact_ohm": 0.4},
-    "shaded_and_contact": {"light": 0.95, "shade": {3: 0.6}, "contact_ohm": 0.35},
 }
 
 

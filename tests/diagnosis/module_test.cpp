@@ -445,11 +445,6 @@ TEST(ModuleOfNgspice, NamesTwoFaults) {
   EXPECT_EQ(shorted.effects[0].kind, "bypass_shorted");
   EXPECT_EQ(shorted.effects[1].kind, "series_resistance");
   EXPECT_NEAR(number_of(shorted.effects[1], "resistance_ohm"), 0.4, 0.02);
-  const Diagnosis shaded = of_ngspice("shaded_and_contact", 318.15);
-  ASSERT_EQ(shaded.effects.size(), 2u) << shaded.sentence;
-  EXPECT_TRUE(can_be(shaded.effects[0], "cell_shaded")) << shaded.sentence;
-  EXPECT_EQ(shaded.effects[1].kind, "series_resistance");
-  EXPECT_NEAR(number_of(shaded.effects[1], "resistance_ohm"), 0.35, 0.02);
 }
 
 // Curves of a healthy module at other light and temperature (pvlib, ../shared): measured, so that
