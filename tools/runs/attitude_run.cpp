@@ -60,17 +60,22 @@ bool is_shaded(const TraceableScene& scene, const Marker& marker, const Vec3& ca
 }
 
 std::string vector_override(size_t disturbance, const Vec3& v) {
-  char text[160];
-  std::snprintf(text, sizeof text, "disturbance[%zu].sun_direction=[%.17g,%.17g,%.17g]",
-                disturbance, v.x(), v.y(), v.z());
-  return text;
+  return printed("disturbance[%zu].sun_direction=[%.17g,%.17g,%.17g]", disturbance, v.x(), v.y(),
+                 v.z());
+}
+
+// False for a kind that is no text, too, which the reader of the table reports.
+bool is_of_kind(const Settings& table, const std::string& kind) {
+  if (!table.has("kind")) return false;
+  const auto* name = std::get_if<std::string>(&table.raw("kind").value);
+  return name != nullptr && *name == kind;
 }
 
 std::optional<Vec3> direction_of_sun_source(const ExperimentFile& file) {
   std::optional<Vec3> to_sun;
   if (!file.scene_file) return to_sun;
   for (const Settings& source : file.sources) {
-    if (source.text_or("kind", "") == "sun" && source.has("direction")) {
+    if (is_of_kind(source, "sun") && source.has("direction")) {
       to_sun = -source.vector3("direction").normalized();
     }
   }
@@ -86,7 +91,7 @@ std::vector<std::string> orbit_overrides(const ExperimentFile& file) {
   bool in_orbit = false;
   for (size_t i = 0; i < disturbances.size(); ++i) {
     const Settings& orbit = disturbances[i];
-    if (orbit.text_or("kind", "") != "orbit") continue;
+    if (!is_of_kind(orbit, "orbit")) continue;
     in_orbit = true;
     if (!orbit.has("sun_direction")) {
       if (to_sun) overrides.push_back(vector_override(i, *to_sun));
@@ -102,7 +107,7 @@ std::vector<std::string> orbit_overrides(const ExperimentFile& file) {
   }
   for (size_t i = 0; i < disturbances.size(); ++i) {
     const Settings& planet = disturbances[i];
-    if (planet.text_or("kind", "") != "planet_light") continue;
+    if (!is_of_kind(planet, "planet_light")) continue;
     if (!in_orbit) {
       throw planet.error("kind", "\"planet_light\" of a platform on the ground",
                          "a disturbance \"orbit\" beside it");
