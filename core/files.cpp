@@ -1,5 +1,6 @@
 #include "core/files.h"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/random.h>
@@ -177,7 +178,7 @@ void remove_leftovers(const fs::path& folder, int process) {
   remove_where(folder, [&](pid_t writer) { return writer == process; });
 }
 
-void remove_leftovers_of_the_dead(const fs::path& folder) {
+void remove_leftovers_of_ended_processes(const fs::path& folder) {
   remove_where(folder, [](pid_t writer) { return ::kill(writer, 0) != 0 && errno == ESRCH; });
 }
 
@@ -198,7 +199,10 @@ void make_folders(const fs::path& folder, const std::string& key) {
   }
   fs::create_directories(folder, failure);
   if (failure) {
-    throw InputError({folder.string()}, key, failure.message(), "a folder that can be made");
+    const bool through_file = failure == std::errc::not_a_directory;
+    throw InputError({folder.string()}, key,
+                     through_file ? "a path through a file" : failure.message(),
+                     "a folder that can be made");
   }
   for (const fs::path& place : above) sync_folder(place);
 }
@@ -234,6 +238,16 @@ void write_file_whole(const fs::path& path, const std::string& bytes) {
     out.close();
     if (!out) throw InputError({path.string()}, "", "a write that failed", "space and permission");
   });
+}
+
+std::filesystem::path own_file() {
+  Dl_info info = {};
+  if (dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0) {
+    const std::filesystem::path holder = info.dli_fname;
+    if (holder.filename().string().find(".so") != std::string::npos) return holder;
+  }
+  // The loader identifies a program by the word with which it was started.
+  return std::filesystem::read_symlink("/proc/self/exe");
 }
 
 }  // namespace photorque

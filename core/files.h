@@ -1,4 +1,4 @@
-// Whole files in and out.
+// Whole files in and out, and the file that holds this code.
 #pragma once
 
 #include <filesystem>
@@ -30,7 +30,7 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path);
 // Removes what one process of this machine left in `folder` under such names, or what all did that
 // are no more. Never throws.
 void remove_leftovers(const std::filesystem::path& folder, int process);
-void remove_leftovers_of_the_dead(const std::filesystem::path& folder);
+void remove_leftovers_of_ended_processes(const std::filesystem::path& folder);
 
 // Writes the names in a folder to the disk: new and renamed files there survive a power cut.
 // InputError when that fails, but not where a file system cannot do it or the folder may not be
@@ -51,5 +51,10 @@ void write_file_whole(const std::filesystem::path& path,
 
 // Writes given bytes.
 void write_file_whole(const std::filesystem::path& path, const std::string& bytes);
+
+// The file that holds this code, from which its fonts and modules are found: the program
+// ("/proc/self/exe" resolved), or the shared library that another program, such as Python, has
+// loaded. Absolute where the loader was given an absolute path.
+std::filesystem::path own_file();
 
 }  // namespace photorque

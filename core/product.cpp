@@ -99,6 +99,10 @@ Table::Row Table::row() {
   return {*this, rows};
 }
 
+const Table::Column* Table::find(std::string_view column_name) const {
+  return column_in(*this, column_name);
+}
+
 const Table::Column& Table::column(std::string_view column_name) const {
   return required_column(*this, column_name);
 }

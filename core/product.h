@@ -90,6 +90,8 @@ struct Table {
   // A new last row.
   Row row();
 
+  // Null if there is none of this name.
+  const Column* find(std::string_view column_name) const;
   // NumericalError if there is none of this name.
   const Column& column(std::string_view column_name) const;
   Column& column(std::string_view column_name);

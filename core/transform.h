@@ -68,7 +68,7 @@ inline Quat turn_by(const Vec3& rotation_rad) {
 // The rotation vector of a rotation, at most π long [rad]; exact for small ones too.
 inline Vec3 turn_vector(const Quat& rotation) {
   const double half_sine = rotation.vec().norm();
-  if (!(half_sine > 0.0)) return Vec3::Zero();
+  if (half_sine == 0.0) return Vec3::Zero();
   const double sign = rotation.w() < 0.0 ? -1.0 : 1.0;
   return sign * 2.0 * std::atan2(half_sine, std::abs(rotation.w())) / half_sine * rotation.vec();
 }

@@ -15,6 +15,10 @@
 
 namespace photorque {
 
+namespace inference {
+enum class Finding;
+}
+
 enum class Verdict {
   consistent,       // differences are noise, or within the stated uncertainty
   missing_physics,  // the named effects explain all differences
@@ -22,6 +26,7 @@ enum class Verdict {
 };
 // Name as in diagnosis.json.
 std::string name_of(Verdict verdict);
+Verdict verdict_of(inference::Finding finding);
 
 // One key of an experiment file with fitted numbers, in the unit in its name.
 struct FittedParameter {
@@ -259,5 +264,8 @@ struct Diagnosis {
   std::optional<DrawnArray> array = {};
   std::optional<Replay> replay;
 };
+
+// Sentence for held-out data that do not distinguish the named effects from the nominal model.
+std::string untested_names(const Holdout& holdout);
 
 }  // namespace photorque

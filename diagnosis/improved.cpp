@@ -1,11 +1,11 @@
 #include "diagnosis/improved.h"
 
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <optional>
 
 #include "core/settings/settings.h"
+#include "core/text/format.h"
 #include "scenes/experiment/toml.h"
 
 namespace photorque {
@@ -13,15 +13,9 @@ namespace {
 
 using TomlTable = SettingsNode::Table;
 
-std::string print(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 // The number rounded to the digits of a format; integers without a decimal point.
 SettingsNode number(double value, const char* format) {
-  const double rounded = std::strtod(print(format, value).c_str(), nullptr);
+  const double rounded = std::strtod(printed(format, value).c_str(), nullptr);
   constexpr double largest_written_whole = 1e6;
   if (std::trunc(rounded) == rounded && std::abs(rounded) < largest_written_whole) {
     return {static_cast<int64_t>(rounded)};
@@ -64,7 +58,7 @@ void add_kind(TomlDocument& document, TomlTable& table, const std::string& kind)
 void add_effect(TomlDocument& document, const FoundEffect& effect, const std::string& table_name,
                 bool with_begin) {
   if (!effect.explanation.empty()) document.comment(effect.explanation);
-  document.comment("Probability " + print("%.3f", effect.probability) + ".");
+  document.comment("Probability " + printed("%.3f", effect.probability) + ".");
   for (const std::string& other : effect.indistinguishable_from) {
     document.comment("The recordings do not distinguish it from " + other + ".");
   }

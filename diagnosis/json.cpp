@@ -1,35 +1,23 @@
 #include "diagnosis/json.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
+
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
+// One number stands alone. (What is not finite is written as null.)
 Json numbers(const std::vector<double>& values) {
-  if (values.size() == 1) return number(values.front());
-  Json array = Json::array();
-  for (const double value : values) array.push_back(number(value));
-  return array;
+  return values.size() == 1 ? Json(values.front()) : Json(values);
 }
 
 Json vectors(const std::vector<Vec3>& values) {
   Json array = Json::array();
   for (const Vec3& v : values) array.push_back(numbers({v.x(), v.y(), v.z()}));
   return array;
-}
-
-template <class Value>
-Json object(const std::map<std::string, Value>& values) {
-  Json table = Json::object();
-  for (const auto& [key, value] : values) table[key] = value;
-  return table;
 }
 
 Json parameters_json(const std::vector<FittedParameter>& parameters) {
@@ -49,8 +37,8 @@ Json list(const std::vector<Item>& items, const Convert& convert) {
 }
 
 Json misfit_json(const Where::ChannelMisfit& channel) {
-  Json json = {{"name", channel.name}, {"chi2_per_sample", number(channel.chi2_per_sample)}};
-  if (channel.chi2_of_median > 0.0) json["chi2_of_median"] = number(channel.chi2_of_median);
+  Json json = {{"name", channel.name}, {"chi2_per_sample", channel.chi2_per_sample}};
+  if (channel.chi2_of_median > 0.0) json["chi2_of_median"] = channel.chi2_of_median;
   return json;
 }
 
@@ -60,7 +48,7 @@ Json where_json(const Where& where) {
   Json depends = Json::array();
   for (const auto& d : where.depends_on) {
     Json one = {{"variable", d.variable}};
-    if (d.strength > 0.0) one["strength"] = number(d.strength);
+    if (d.strength > 0.0) one["strength"] = d.strength;
     // This schema calls the yaw "heading".
     if (d.variable == "yaw") {
       one["variable"] = "heading";
@@ -78,7 +66,7 @@ Json effect_json(const FoundEffect& effect) {
   Json parameters = parameters_json(effect.parameters);
   for (const auto& [key, text] : effect.texts) parameters[key] = {{"value", text}};
   return {{"kind", effect.kind},
-          {"probability", number(effect.probability)},
+          {"probability", effect.probability},
           {"parameters", parameters},
           {"indistinguishable_from", effect.indistinguishable_from},
           {"explanation", effect.explanation},
@@ -88,7 +76,7 @@ Json effect_json(const FoundEffect& effect) {
 Json domain_json(const DomainAnswer& answer) {
   return {{"of", answer.of},
           {"verdict", name_of(answer.verdict)},
-          {"confidence", number(answer.confidence)},
+          {"confidence", answer.confidence},
           {"sentence", answer.sentence}};
 }
 
@@ -106,29 +94,27 @@ Json empirical_json(const EmpiricalTorque& torque) {
 
 Json holdout_json(const Holdout& holdout) {
   const auto& predictive = holdout.predictive;
-  return {{"predictive_chi2_per_sample", predictive ? number(predictive->chi2_per_sample) : Json()},
+  return {{"predictive_chi2_per_sample", predictive ? Json(predictive->chi2_per_sample) : Json()},
           {"expected_chi2_per_sample",
-           predictive ? number(predictive->expected_chi2_per_sample) : Json()},
-          {"predictive_sigma", predictive ? number(predictive->sigma) : Json()},
-          {"explained_fraction", number(holdout.explained_fraction)},
-          {"rms_before", object(holdout.rms_before)},
-          {"rms_after", object(holdout.rms_after)},
-          {"chi2_per_sample_before", number(holdout.chi2_per_sample_before)},
-          {"chi2_per_sample_after", number(holdout.chi2_per_sample_after)},
+           predictive ? Json(predictive->expected_chi2_per_sample) : Json()},
+          {"predictive_sigma", predictive ? Json(predictive->sigma) : Json()},
+          {"explained_fraction", holdout.explained_fraction},
+          {"rms_before", holdout.rms_before},
+          {"rms_after", holdout.rms_after},
+          {"chi2_per_sample_before", holdout.chi2_per_sample_before},
+          {"chi2_per_sample_after", holdout.chi2_per_sample_after},
           {"samples", holdout.samples}};
 }
 
 // "kind" joins several with " + ". It is "none" if nothing is missing, and the label if an
 // explanation is not only physics.
 Json alternative_json(const Alternative& alternative) {
-  std::string kind;
-  for (const std::string& k : alternative.kinds) kind += (kind.empty() ? "" : " + ") + k;
+  std::string kind = joined_text(alternative.kinds, " + ");
   if (!alternative.label.empty()) kind = alternative.label;
   if (kind.empty()) kind = "none";
-  Json json = {{"kind", kind},
-               {"log_evidence_relative", number(alternative.log_evidence_relative)}};
+  Json json = {{"kind", kind}, {"log_evidence_relative", alternative.log_evidence_relative}};
   json["holdout_chi2_per_sample"] =
-      alternative.holdout_chi2_per_sample ? number(*alternative.holdout_chi2_per_sample) : Json();
+      alternative.holdout_chi2_per_sample ? Json(*alternative.holdout_chi2_per_sample) : Json();
   if (!alternative.remark.empty()) json["remark"] = alternative.remark;
   if (!alternative.of.empty()) json["of"] = alternative.of;
   return json;
@@ -147,14 +133,14 @@ Json provenance_json(const Provenance& provenance) {
 Json manoeuvre_json(const Manoeuvre& manoeuvre) {
   return {{"separates", manoeuvre.separates},
           {"text", manoeuvre.text},
-          {"log_evidence_expected", number(manoeuvre.log_evidence_expected)}};
+          {"log_evidence_expected", manoeuvre.log_evidence_expected}};
 }
 
 Json instrument_json(const InstrumentFinding& finding) {
   return {{"channel", finding.channel},
           {"what", finding.what},
-          {"value", number(finding.value)},
-          {"sigma", number(finding.sigma)},
+          {"value", finding.value},
+          {"sigma", finding.sigma},
           {"text", finding.text}};
 }
 
@@ -171,14 +157,14 @@ std::string diagnosis_json(const Diagnosis& d, const Provenance& provenance) {
   Json json;
   json["schema"] = "photorque.diagnosis/1";
   json["verdict"] = name_of(d.verdict);
-  json["confidence"] = number(d.confidence);
+  json["confidence"] = d.confidence;
   json["sentence"] = d.sentence;
   json["because"] = d.because;
   if (!d.domains.empty()) json["domains"] = list(d.domains, domain_json);
   json["where"] = where_json(d.where);
   json["effects"] = list(d.effects, effect_json);
-  json["fit"] = {{"chi2_per_sample_before", number(d.chi2_per_sample_before)},
-                 {"chi2_per_sample_after", number(d.chi2_per_sample_after)},
+  json["fit"] = {{"chi2_per_sample_before", d.chi2_per_sample_before},
+                 {"chi2_per_sample_after", d.chi2_per_sample_after},
                  {"samples", d.samples},
                  {"channels", list(d.channels_after, misfit_json)}};
   json["holdout"] = d.holdout ? holdout_json(*d.holdout) : Json();
@@ -191,11 +177,11 @@ std::string diagnosis_json(const Diagnosis& d, const Provenance& provenance) {
   json["warnings"] = d.warnings;
   json["data"] = {{"rows", d.data.rows},
                   {"used", d.data.used},
-                  {"rejected", object(d.data.rejected)},
-                  {"mended", object(d.data.repaired)},
-                  {"median_interval_s", number(d.data.median_interval_s)},
-                  {"jitter_s", number(d.data.jitter_s)},
-                  {"longest_gap_s", number(d.data.max_gap_s)}};
+                  {"rejected", d.data.rejected},
+                  {"mended", d.data.repaired},
+                  {"median_interval_s", d.data.median_interval_s},
+                  {"jitter_s", d.data.jitter_s},
+                  {"longest_gap_s", d.data.max_gap_s}};
   json["provenance"] = provenance_json(provenance);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "core/numerics/order.h"
 #include "inference/estimator/evidence.h"
 #include "inference/estimator/thresholds.h"
 #include "inference/subsets.h"
@@ -134,13 +135,13 @@ concept Domain = std::derived_from<typename D::Trial, Explanation> &&
   { domain.refit_near(trial, trial, runs, effort) } -> std::same_as<typename D::Trial>;
   // Predicts runs that the trial has not been fitted to; only nuisance parameters are fitted.
   { domain.predict(trial, runs) } -> std::same_as<typename D::Trial>;
-  { domain.begins_of(trial) } -> std::same_as<std::vector<typename D::Begin>>;
+  { domain.initial_conditions_of(trial) } -> std::same_as<std::vector<typename D::Begin>>;
   // Initial conditions from the first readings of each run.
   {
     domain.initial_conditions_from_data(trial, runs)
     } -> std::same_as<std::vector<typename D::Begin>>;
   // Returns the trial with these initial conditions for its next fit.
-  { domain.with_begins(trial, begins) } -> std::same_as<typename D::Trial>;
+  { domain.with_initial_conditions(trial, begins) } -> std::same_as<typename D::Trial>;
 
   // Predicted fall of χ² for each candidate (0 for candidates that are not linear).
   { domain.gains(trial, candidates, runs) } -> std::same_as<std::vector<double>>;
@@ -168,12 +169,9 @@ concept Domain = std::derived_from<typename D::Trial, Explanation> &&
 // Indices of trials on the same runs, the largest evidence first.
 template <std::derived_from<Explanation> T>
 std::vector<size_t> by_evidence(const std::vector<T>& trials) {
-  std::vector<size_t> order(trials.size());
-  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+  return sorted_indices(trials.size(), [&](size_t a, size_t b) {
     return trials[a].log_evidence > trials[b].log_evidence;
   });
-  return order;
 }
 
 // Whether two lists contain the same candidates in any order.

@@ -63,7 +63,7 @@ class Rounds {
         return same_candidates(t.candidates, at.candidates);
       });
       Trial best = best_to_go_on(swinging);
-      if (is_first && scans && may_be_stand_ins(best)) {
+      if (is_first && scans && may_be_surrogates(best)) {
         const std::vector<size_t> fast = follow_what_swings(best);
         best = best_to_go_on(swinging);
         if (!fast.empty() && includes(best.candidates, fast)) return;
@@ -95,7 +95,8 @@ class Rounds {
     if (found.empty()) return {};
     sort_by_evidence(found);
     const Trial again =
-        domain_.refit(found.front(), set_.runs, domain_.begins_of(found.front()), patient(limits_));
+        domain_.refit(found.front(), set_.runs, domain_.initial_conditions_of(found.front()),
+                      until_convergence(limits_));
     if (again.log_evidence > found.front().log_evidence) found.front() = again;
     const Trial first = found.front();
     for (Trial& t : found) keep(std::move(t));
@@ -108,7 +109,7 @@ class Rounds {
   // Whether slow effects may take the place of one that swings: several together, one of which only
   // a combination is significant, or one that leaves something. What remains may cancel in means of
   // neighbours, but it raises χ².
-  bool may_be_stand_ins(const Trial& at) const {
+  bool may_be_surrogates(const Trial& at) const {
     const bool swings = std::ranges::any_of(
         at.candidates, [&](size_t c) { return domain_.candidates()[c].is_fast; });
     if (at.candidates.empty() || swings) return false;
@@ -322,7 +323,7 @@ class Rounds {
     const Effort effort{.max_iterations = limits_.fitting.trial_iterations};
     std::vector<Trial> found(chosen.size());
     if (found.empty()) return found;
-    const Trial rough = domain_.refit(at, averages, domain_.begins_of(at), {});
+    const Trial rough = domain_.refit(at, averages, domain_.initial_conditions_of(at), {});
     parallel_for(chosen.size(), threads_, [&](size_t i) {
       found[i] = domain_.assemble(at, chosen[i], averages, within_reach(effort, rough, limits_));
     });
@@ -338,7 +339,7 @@ class Rounds {
     }
     parallel_for(refits, threads_, [&](size_t i) {
       const Effort whole = set_.pieces == 1 ? within_reach(Effort{}, at, limits_) : Effort{};
-      found[i] = domain_.refit(found[i], set_.runs, domain_.begins_of(found[i]), whole);
+      found[i] = domain_.refit(found[i], set_.runs, domain_.initial_conditions_of(found[i]), whole);
     });
     keep_below(found, refits);
     return found;

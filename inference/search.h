@@ -71,7 +71,7 @@ class Search {
         t = domain_.refit(t, runs_, begins, growing);
       } else {
         t.log_evidence += nominal.log_evidence - near.log_evidence;
-        t = domain_.with_begins(t, begins);
+        t = domain_.with_initial_conditions(t, begins);
       }
     });
     keep_below(found, refits);

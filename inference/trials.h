@@ -12,7 +12,7 @@ namespace photorque::inference {
 // The best of many trials are fitted with more iterations than all of them could be.
 
 // Options to iterate until convergence: if a fit stops early, every extension of it seems to gain.
-inline Effort patient(const Thresholds& limits) {
+inline Effort until_convergence(const Thresholds& limits) {
   return {.max_iterations = limits.fitting.patient_iterations, .creep = limits.fitting.creep};
 }
 
@@ -38,7 +38,7 @@ void refit_from_best(const D& domain, const std::vector<typename D::Run>& runs,
   if (trial.fit.chi2 < best.fit.chi2 + limits.leaders.worth_a_fit) return;
   const Effort brief{.max_iterations = limits.fitting.brief_iterations};
   const Effort effort =
-      within_reach(is_near(trial, best, limits) ? patient(limits) : brief, best, limits);
+      within_reach(is_near(trial, best, limits) ? until_convergence(limits) : brief, best, limits);
   typename D::Trial again = domain.refit_near(trial, best, runs, effort);
   if (again.log_evidence > trial.log_evidence) trial = std::move(again);
 }
@@ -59,8 +59,8 @@ void settle_leaders(const D& domain, const std::vector<typename D::Run>& runs, i
   std::erase_if(leaders, [&](size_t i) { return !is_near(found[i], first, limits); });
   parallel_for(leaders.size(), threads, [&](size_t i) {
     Trial& trial = found[leaders[i]];
-    Trial again = domain.refit(trial, runs, domain.begins_of(trial),
-                               within_reach(patient(limits), first, limits));
+    Trial again = domain.refit(trial, runs, domain.initial_conditions_of(trial),
+                               within_reach(until_convergence(limits), first, limits));
     if (again.log_evidence > trial.log_evidence) trial = std::move(again);
   });
   const Trial best = found[by_evidence(found).front()];

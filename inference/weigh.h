@@ -57,7 +57,7 @@ class Weighing {
     search_on();
     add_without_each();
     exchange_places();
-    bring_to_one_minimum();
+    restart_from_joint_fit();
     for (const Leader& leader : leaders_) {
       Trial& train = trials_[leader.at];
       train.predictive = predictive_of(train, leader.joint);
@@ -69,7 +69,7 @@ class Weighing {
       trial.joint_significance = leader.joint.significance;
       if (trial.objection.empty()) trial.objection = leader.joint.objection;
     }
-    keep_others_below(found, nominal, gain);
+    limit_evidence_of_others(found, nominal, gain);
   }
 
  private:
@@ -89,8 +89,9 @@ class Weighing {
     for (size_t k = 0; k < places.size(); ++k) {
       (k == 0 || places[k] == 0 ? first : others).push_back(k);
     }
-    add_leaders(places, first, patient(limits_));
-    add_leaders(places, others, within_reach(patient(limits_), leaders_.front().joint, limits_));
+    add_leaders(places, first, until_convergence(limits_));
+    add_leaders(places, others,
+                within_reach(until_convergence(limits_), leaders_.front().joint, limits_));
     refit_from_best();
   }
 
@@ -101,15 +102,16 @@ class Weighing {
       const size_t at = places[which[i]];
       Trial& t = trials_[at];
       // Some trials have been fitted to averages or pieces only.
-      if (t.fit.samples != samples) t = domain_.refit(t, train_, domain_.begins_of(t), {});
+      if (t.fit.samples != samples)
+        t = domain_.refit(t, train_, domain_.initial_conditions_of(t), {});
       leaders_[which[i]] = {at, fit_together(t, effort)};
     });
   }
 
   Trial fit_together(Trial& t, const Effort& effort) const {
     const Trial held = predict_held(t);
-    auto begins = domain_.begins_of(t);
-    for (auto& begin : domain_.begins_of(held)) begins.push_back(std::move(begin));
+    auto begins = domain_.initial_conditions_of(t);
+    for (auto& begin : domain_.initial_conditions_of(held)) begins.push_back(std::move(begin));
     return domain_.refit(t, all_runs_, begins, effort);
   }
 
@@ -139,14 +141,14 @@ class Weighing {
   // lower χ²: if the joint χ² is lower, the train fit ended in another minimum and its held-out
   // prediction seems too good. If the prediction is far worse than its errors allow, the train runs
   // may have a second minimum as good. The train fit then restarts from the joint fit.
-  void bring_to_one_minimum() {
+  void restart_from_joint_fit() {
     constexpr double as_good_chi2 = 9.0;
     parallel_for(leaders_.size(), threads_, [&](size_t k) {
       const Trial& joint = leaders_[k].joint;
       Trial& train = trials_[leaders_[k].at];
       const bool is_lower = joint.fit.chi2 < train.fit.chi2 - limits_.leaders.worth_a_fit;
       if (!is_lower && !is_elsewhere(train, joint)) return;
-      Trial again = assembled(joint, domain_.terms_of(joint), patient(limits_));
+      Trial again = assembled(joint, domain_.terms_of(joint), until_convergence(limits_));
       if (!(again.fit.chi2 < train.fit.chi2 + (is_lower ? 0.0 : as_good_chi2))) return;
       predict_held(again);
       if (!is_lower && !(again.holdout_chi2_per_sample < train.holdout_chi2_per_sample)) return;
@@ -203,8 +205,8 @@ class Weighing {
     // The noise level is known to a few per cent; the train runs measure it.
     const double noise = noise_of(train);
     result.sigma = (result.chi2_per_sample - noise) / std::sqrt(2.0 / held + 2.0 / fitted);
-    const std::vector<typename D::Begin> begins = domain_.begins_of(joint);
-    const Trial on_held = domain_.with_begins(
+    const std::vector<typename D::Begin> begins = domain_.initial_conditions_of(joint);
+    const Trial on_held = domain_.with_initial_conditions(
         joint, {begins.end() - static_cast<std::ptrdiff_t>(held_.size()), begins.end()});
     result.sigma = std::max(result.sigma, domain_.excess_sigma(on_held, held_));
     return result;
@@ -234,9 +236,9 @@ class Weighing {
       if (!found[i].objection.empty()) continue;
       const bool is_elsewhere = has_place(found[i].candidates, domain_.candidates());
       if (leads(found[i].candidates) && !is_elsewhere) continue;
-      Trial joint =
-          domain_.refit(found[i], all_runs_, domain_.begins_of(found[i]), patient(limits_));
-      Trial train = assembled(joint, domain_.terms_of(joint), patient(limits_));
+      Trial joint = domain_.refit(found[i], all_runs_, domain_.initial_conditions_of(found[i]),
+                                  until_convergence(limits_));
+      Trial train = assembled(joint, domain_.terms_of(joint), until_convergence(limits_));
       add_leader(std::move(train), std::move(joint));
       ++added;
     }
@@ -307,7 +309,7 @@ class Weighing {
     for (const size_t k : by_evidence(tried)) {
       if (!(tried[k].log_evidence > from.joint.log_evidence)) return;
       if (!tried[k].objection.empty() || leads(tried[k].candidates)) continue;
-      Trial train = assembled(tried[k], domain_.terms_of(tried[k]), patient(limits_));
+      Trial train = assembled(tried[k], domain_.terms_of(tried[k]), until_convergence(limits_));
       add_leader(std::move(train), std::move(tried[k]));
       return;
     }
@@ -328,7 +330,7 @@ class Weighing {
     if (leads(candidates) && std::ranges::none_of(candidates, is_bent)) return;
     // Without the candidate the others may move far, in particular all nominal values that it
     // replaced.
-    Effort growing = patient(limits_);
+    Effort growing = until_convergence(limits_);
     growing.windows = limits_.fitting.diverged_windows;
     Trial joint = domain_.assemble(from.joint, members, all_runs_,
                                    within_reach(growing, from.joint, limits_));
@@ -339,15 +341,15 @@ class Weighing {
     Trial train =
         assembled(joint, domain_.terms_of(joint),
                   is_out_of_reach ? Effort{.max_iterations = limits_.fitting.brief_iterations}
-                                  : patient(limits_));
+                                  : until_convergence(limits_));
     add_leader(std::move(train), std::move(joint));
   }
 
   // Fits the terms to the train runs, starting from the end of a fit to all runs.
   Trial assembled(const Trial& joint, const std::vector<Term<typename D::Start>>& terms,
                   const Effort& effort) const {
-    const std::vector<typename D::Begin> begins = domain_.begins_of(joint);
-    const Trial start = domain_.with_begins(
+    const std::vector<typename D::Begin> begins = domain_.initial_conditions_of(joint);
+    const Trial start = domain_.with_initial_conditions(
         joint, {begins.begin(), begins.begin() + static_cast<std::ptrdiff_t>(train_.size())});
     Members<typename D::Start> members;
     for (const auto& term : terms) members.push_back({term});
@@ -381,7 +383,7 @@ class Weighing {
     const std::vector<size_t> candidates = worth_adding(joint, parent);
     const Leader& leader = best();
     const Effort of_train = within_reach(Effort{}, trials_[leader.at], limits_),
-                 of_all = within_reach(patient(limits_), leader.joint, limits_);
+                 of_all = within_reach(until_convergence(limits_), leader.joint, limits_);
     std::vector<Trial> on_train(candidates.size()), on_all(candidates.size());
     parallel_for(candidates.size(), threads_, [&](size_t k) {
       const size_t c = candidates[k];
@@ -447,7 +449,7 @@ class Weighing {
   }
 
   // Limits the evidence of those of the first `found` trials that are not leaders.
-  void keep_others_below(size_t found, double nominal, double gain) {
+  void limit_evidence_of_others(size_t found, double nominal, double gain) {
     // Over the leaders except the nominal model, which may diverge on the held-out runs.
     const double nominal_now = trials_.front().log_evidence;
     double lowest = std::numeric_limits<double>::infinity(), highest = nominal_now;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/numerics/median.h"
 #include "raytrace/receiver.h"
 #include "receivers/kind.h"
 #include "receivers/surface_grid.h"
@@ -18,11 +19,10 @@ std::vector<size_t> substantial_bins(const SurfaceGrid& grid) {
   for (const double area_m2 : grid.area_m2) {
     if (area_m2 > 0.0) covered.push_back(area_m2);
   }
-  const auto middle = covered.begin() + static_cast<std::ptrdiff_t>(covered.size() / 2);
-  std::nth_element(covered.begin(), middle, covered.end());
+  const double usual_m2 = upper_median(covered);
   std::vector<size_t> bins;
   for (size_t bin = 0; bin < grid.bins(); ++bin) {
-    if (grid.area_m2[bin] >= 0.1 * *middle) bins.push_back(bin);
+    if (grid.area_m2[bin] >= 0.1 * usual_m2) bins.push_back(bin);
   }
   return bins;
 }

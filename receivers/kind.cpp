@@ -1,5 +1,5 @@
 #include "receivers/kind.h"
-#include "core/text/names.h"
+#include "core/settings/settings.h"
 
 #include <cmath>
 #include <numeric>

@@ -8,6 +8,7 @@
 #include "core/constants.h"
 #include "core/parallel.h"
 #include "core/settings/typed_keys.h"
+#include "core/text/format.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -185,15 +186,11 @@ Plot tilt_plot(const CameraStudy& study, const Table& degradation) {
   Plot::Panel below;
   below.y_label = "out of plane [arcsec]";
   below.y_log = true;
-  char error[16];
-  std::snprintf(error, sizeof error, "%.3g px", study.calibration_px);
-  char radial[16];
-  std::snprintf(radial, sizeof radial, "%.3g", study.distortion_error.k1);
   const std::pair<const char*, std::string> curves[] = {
       {"all", "all markers"},
       {"one_dark", "the worst one dark"},
-      {"calibration", std::string("markers' images off by ") + error},
-      {"radial", std::string("k₁ off by ") + radial},
+      {"calibration", printed("markers' images off by %.3g px", study.calibration_px)},
+      {"radial", printed("k₁ off by %.3g", study.distortion_error.k1)},
       {"free", "centre not known"}};
   const std::vector<double>& tilt = degradation.column("tilt_deg").values;
   for (const auto& [name, label] : curves) {
@@ -429,8 +426,7 @@ CameraStudy read_camera_study(const Settings& root, const TrackingCamera& camera
   study.focal_length_m = {0.75 * camera.focal_length_m, 1.5 * camera.focal_length_m};
   study.board_scale = {0.5, 2.0};
   if (!root.has(study_key::camera_study)) return study;
-  const Settings own(std::make_shared<const SettingsNode>(root.raw(study_key::camera_study)),
-                     root.get(study_key::camera_study).name());
+  const Settings own(root.raw(study_key::camera_study), root.get(study_key::camera_study).name());
   study.max_tilt_rad = own.get_or(study_key::max_tilt, study.max_tilt_rad);
   study.rate_body_rad_s = own.get(study_key::rate);
   study.calibration_px = own.get_or(study_key::calibration, study.calibration_px);

@@ -5,9 +5,9 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 
 #include "core/constants.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -88,12 +88,9 @@ std::string epoch_text(const Epoch& epoch) {
   }
   const year_month_day date{sys_days{days{day}}};
   const long long seconds = microseconds / 1000000;
-  char text[64];
-  std::snprintf(text, sizeof text, "%04d-%02u-%02uT%02lld:%02lld:%02lld.%06lld",
-                static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
-                static_cast<unsigned>(date.day()), seconds / 3600, seconds / 60 % 60, seconds % 60,
-                microseconds % 1000000);
-  return text;
+  return printed("%04d-%02u-%02uT%02lld:%02lld:%02lld.%06lld", static_cast<int>(date.year()),
+                 static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                 seconds / 3600, seconds / 60 % 60, seconds % 60, microseconds % 1000000);
 }
 
 namespace {

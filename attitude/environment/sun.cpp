@@ -24,7 +24,8 @@ constexpr NumberKey distance("distance_au", astronomical_unit_m, Range::positive
 constexpr TextKey date("date",
                        "calendar time of t = 0, \"2015-04-27T03:00\": the Sun follows the orbit",
                        {.optional = true});
-constexpr NumberKey semi_major_axis("semi_major_axis_au", Range::positive(),
+// Not within the Sun.
+constexpr NumberKey semi_major_axis("semi_major_axis_au", {0.005 * astronomical_unit_m, 1e308},
                                     "semi-major axis of the orbit");
 constexpr NumberKey eccentricity("eccentricity", 0.0, {0.0, 1.0, false, true},
                                  "eccentricity of the orbit");

@@ -1,5 +1,8 @@
 #include "attitude/estimation/axis_readings.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace photorque {
 
 AxisReadings angles_about(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
@@ -7,10 +10,10 @@ AxisReadings angles_about(const Observation& rows, const Vec3& axis, size_t firs
   double angle_rad = 0.0;
   for (size_t i = first; i < last; ++i) {
     if (!(rows.attitude_rows[i] > 0.0)) continue;
-    angle_rad += read.row.empty()
-                     ? axis.dot(rotation_vector(rows.attitude[i]))
-                     : axis.dot(rotation_vector(rows.attitude[i] *
-                                                rows.attitude[read.row.back()].conjugate()));
+    angle_rad +=
+        read.row.empty()
+            ? axis.dot(turn_vector(rows.attitude[i]))
+            : axis.dot(turn_vector(rows.attitude[i] * rows.attitude[read.row.back()].conjugate()));
     read.row.push_back(i);
     read.time_s.push_back(rows.time_s[i]);
     read.value.push_back(angle_rad);
@@ -29,6 +32,107 @@ AxisReadings rates_about(const Observation& rows, const Vec3& axis, size_t first
     read.value.push_back(rows.gyro_rad_s[i][along]);
   }
   return read;
+}
+
+namespace {
+
+// A straight line through readings that are added one by one.
+class RestLine {
+ public:
+  void add(double t, double x) {
+    if (count_ == 0.0) {
+      first_t_ = t;
+      first_x_ = before_x_ = x;
+    }
+    steps_ += (x - before_x_) * (x - before_x_);
+    before_x_ = x;
+    t -= first_t_;
+    x -= first_x_;
+    count_ += 1.0;
+    t_ += t;
+    x_ += x;
+    tt_ += t * t;
+    tx_ += t * x;
+    xx_ += x * x;
+  }
+  double mean() const { return first_x_ + x_ / count_; }
+  double slope() const { return (tx_ - t_ * x_ / count_) / spread(); }
+  double slope_error() const {
+    const double left = square() - slope() * (tx_ - t_ * x_ / count_);
+    return std::sqrt(std::max(0.0, left) / (std::max(1.0, count_ - 2.0) * spread()));
+  }
+  double scatter() const { return std::sqrt(square() / std::max(1.0, count_ - 1.0)); }
+  // Mean square of the steps over that of independent readings of this scatter (J. von Neumann
+  // 1941): near 1 for noise, near 0 for a slow motion.
+  double roughness() const { return 0.5 * steps_ / std::max(1e-300, square()); }
+
+ private:
+  double spread() const { return tt_ - t_ * t_ / count_; }
+  double square() const { return std::max(0.0, xx_ - x_ * x_ / count_); }
+
+  double count_ = 0.0, first_t_ = 0.0, first_x_ = 0.0;
+  double before_x_ = 0.0, steps_ = 0.0, t_ = 0.0, x_ = 0.0, tt_ = 0.0, tx_ = 0.0, xx_ = 0.0;
+};
+
+// The first reading of the motion after a rest of `rest` readings, a few later at most; 0: the
+// readings do not leave the rest at once.
+size_t leaves_at(const AxisReadings& read, size_t rest, double mean, double scatter) {
+  constexpr size_t most_between = 12, least_after = 5;
+  constexpr double away = 5.0, sudden = 10.0;
+  const size_t after = std::clamp(rest, least_after, most_between);
+  for (size_t first = rest; first <= rest + most_between; ++first) {
+    if (first + after > read.value.size()) return 0;
+    const double side = read.value[first] > mean ? 1.0 : -1.0;
+    RestLine moving;
+    bool stays_away = true;
+    for (size_t i = first; i < first + after; ++i) {
+      stays_away = stays_away && side * (read.value[i] - mean) > away * scatter;
+      moving.add(read.time_s[i], read.value[i]);
+    }
+    if (!stays_away) continue;
+    const double duration_s = read.time_s[rest - 1] - read.time_s[0];
+    return std::abs(moving.slope()) * duration_s > sudden * scatter ? first : 0;
+  }
+  return 0;
+}
+
+// The first reading of the motion after a rest; 0 without one.
+size_t first_after_rest(const AxisReadings& read, bool is_rate) {
+  constexpr size_t fewest = 5, many = 24;
+  constexpr double no_slope = 3.0, clear_slope = 8.0, near_zero = 0.02, least_rough = 0.4,
+                   rounding = 1e-9;
+  if (read.value.size() < 4 * fewest) return 0;
+  const auto [least, most] = std::ranges::minmax_element(read.value);
+  const double range = *most - *least, largest = std::max(std::abs(*least), std::abs(*most));
+  RestLine line;
+  for (size_t rest = 1; rest + fewest < read.value.size(); ++rest) {
+    line.add(read.time_s[rest - 1], read.value[rest - 1]);
+    if (rest < fewest) continue;
+    const double scatter = std::max(line.scatter(), rounding * range);
+    if (is_rate && std::abs(line.mean()) > near_zero * largest + scatter) return 0;
+    const bool is_constant = line.scatter() <= rounding * range;
+    const double slope_sigma = is_constant || !(line.slope_error() > 0.0)
+                                   ? 0.0
+                                   : std::abs(line.slope()) / line.slope_error();
+    if (rest >= many && slope_sigma > clear_slope) return 0;
+    if (slope_sigma > no_slope || (!is_constant && line.roughness() < least_rough)) continue;
+    if (const size_t first = leaves_at(read, rest, line.mean(), scatter); first > 0) return first;
+  }
+  return 0;
+}
+
+}  // namespace
+
+size_t start_of_motion(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
+  size_t sets_off = last;
+  const auto limit_to = [&](const AxisReadings& read, bool is_rate) {
+    if (read.row.empty()) return;
+    const size_t moves = first_after_rest(read, is_rate);
+    sets_off = std::min(sets_off, moves == 0 ? first : read.row[moves]);
+  };
+  if (rows.sees_some_attitude()) limit_to(angles_about(rows, axis, first, last), false);
+  if (rows.has_gyro) limit_to(rates_about(rows, axis, first, last), true);
+  return sets_off == last ? first : sets_off;
 }
 
 }  // namespace photorque

@@ -43,7 +43,7 @@ double usual_rate_rad_s(const Observation& seen) {
   std::vector<double> rates;
   for (size_t i = 1; i < seen.blocks(); ++i) {
     if (seen.attitude_rows[i] == 0.0 || seen.attitude_rows[i - 1] == 0.0) continue;
-    rates.push_back(rotation_vector(seen.attitude[i - 1].conjugate() * seen.attitude[i]).norm() /
+    rates.push_back(turn_vector(seen.attitude[i - 1].conjugate() * seen.attitude[i]).norm() /
                     (seen.time_s[i] - seen.time_s[i - 1]));
   }
   return rates.empty() ? 0.0 : upper_median(std::move(rates));
@@ -80,7 +80,7 @@ double disagreement(const std::vector<Pair>& pairs, QuaternionReading reading,
   Vec3 mean = Vec3::Zero(), square = Vec3::Zero(), energy = Vec3::Zero();
   for (const Pair& p : pairs) {
     const Vec3 rate =
-        rotation_vector(read(p.from, reading).conjugate() * read(p.to, reading)) / p.interval_s;
+        turn_vector(read(p.from, reading).conjugate() * read(p.to, reading)) / p.interval_s;
     const Vec3 off = gyro_matrix * p.gyro_rad_s - rate;
     mean += off;
     square += off.cwiseAbs2();

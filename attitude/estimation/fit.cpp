@@ -163,10 +163,7 @@ struct Neighbours {
     Quat attitude(NAN, NAN, NAN, NAN);
     if (attitude_rows > 0.0) {
       const Vec3 turn = propagated.camera_offset_lab_rad[m] + attitude_sum / attitude_rows;
-      attitude = propagated.states[m].lab_from_body;
-      if (const double angle = turn.norm(); angle > 0.0) {
-        attitude = (Quat(Eigen::AngleAxisd(angle, turn / angle)) * attitude).normalized();
-      }
+      attitude = (turn_by(turn) * propagated.states[m].lab_from_body).normalized();
     }
     to.attitude.push_back(attitude);
     to.attitude_rows.push_back(attitude_rows);

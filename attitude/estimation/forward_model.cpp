@@ -45,13 +45,8 @@ std::vector<Variable> variables_of(const Hypothesis& h, const std::vector<Free>&
 
 // The step of an initial state along its tangent.
 void step_initial(const Eigen::VectorXd& step, PlatformState& initial) {
-  const Vec3 rotation = step.head<3>(), rate = step.segment<3>(3);
-  const double angle = rotation.norm();
-  if (angle > 0.0) {
-    initial.lab_from_body =
-        (initial.lab_from_body * Quat(Eigen::AngleAxisd(angle, rotation / angle))).normalized();
-  }
-  initial.rate_body_rad_s += rate;
+  initial.lab_from_body = (initial.lab_from_body * turn_by(step.head<3>())).normalized();
+  initial.rate_body_rad_s += step.segment<3>(3);
   for (size_t e = 0; e < initial.extra.size(); ++e) {
     initial.extra[e] += step[static_cast<Eigen::Index>(6 + e)];
   }

@@ -19,7 +19,7 @@ AttitudeModel Hypothesis::model_of(size_t run, const Observation& seen) const {
   return result;
 }
 
-void suit_to_runs(Hypothesis& h, const std::vector<Observation>& runs) {
+void adapt_to_runs(Hypothesis& h, const std::vector<Observation>& runs) {
   const bool in_pieces =
       std::any_of(runs.begin(), runs.end(), [](const Observation& seen) { return seen.is_piece; });
   const std::vector<Free> before = h.free;
@@ -61,7 +61,7 @@ size_t first_block(const Observation& seen, size_t from, const Read& is_read) {
 // The mean rate between the first attitude and the next.
 Vec3 rate_between_attitudes_rad_s(const Observation& seen, size_t first, size_t next) {
   if (next >= seen.blocks()) return Vec3::Zero();
-  const Vec3 rate_lab = rotation_vector(seen.attitude[next] * seen.attitude[first].conjugate()) /
+  const Vec3 rate_lab = turn_vector(seen.attitude[next] * seen.attitude[first].conjugate()) /
                         (seen.time_s[next] - seen.time_s[first]);
   return seen.attitude[first].conjugate() * rate_lab;
 }
@@ -114,16 +114,11 @@ PlatformState first_state(const AttitudeModel& model, const Observation& seen) {
     return state;
   }
   const double back_s = seen.time_s.front() - seen.time_s[first];
-  const Vec3 turn = back_s * rate;
-  state.lab_from_body = seen.attitude[first];
-  if (turn.norm() > 0.0) {
-    state.lab_from_body =
-        state.lab_from_body * Quat(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
-  }
+  state.lab_from_body = seen.attitude[first] * turn_by(back_s * rate);
   return state;
 }
 
-std::vector<RunStart> seen_starts(const Hypothesis& h, const std::vector<Observation>& runs) {
+std::vector<RunStart> starts_from_data(const Hypothesis& h, const std::vector<Observation>& runs) {
   std::vector<double> own;
   for (const Free& f : h.free) {
     if (f.per_run) own.push_back(f.mean);

@@ -48,13 +48,13 @@ struct Hypothesis {
 
 // Makes what is per recording of `h` per run, or shared by all where the runs are pieces; the
 // values go along. `h.runs` are the starts for `runs`, with what was per run until now.
-void suit_to_runs(Hypothesis& h, const std::vector<Observation>& runs);
+void adapt_to_runs(Hypothesis& h, const std::vector<Observation>& runs);
 
 // The initial conditions of every run from its first readings.
 PlatformState first_state(const AttitudeModel& model, const Observation& seen);
 
 // Such starts of all runs, their own parameters at the nominal model.
-std::vector<RunStart> seen_starts(const Hypothesis& h, const std::vector<Observation>& runs);
+std::vector<RunStart> starts_from_data(const Hypothesis& h, const std::vector<Observation>& runs);
 
 // How one coordinate of a recording begins.
 

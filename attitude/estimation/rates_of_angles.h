@@ -9,7 +9,7 @@ namespace photorque {
 
 // Whether every rate about the axis is the difference quotient of the angle: from the reading
 // before, to the reading after, or between both, to a twentieth of what neighbouring quotients
-// scatter. A second instrument would have errors of its own.
+// scatter. The errors of a second instrument would be independent.
 bool is_rate_of_angle(const Observation& rows, const Vec3& axis);
 void drop_rates(Observation& rows);
 

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "attitude/estimation/axis_readings.h"
 #include "attitude/estimation/rates_of_angles.h"
-#include "attitude/estimation/rest.h"
 #include "attitude/estimation/swing.h"
 #include "attitude/recordings/columns.h"
 #include "core/errors.h"
@@ -89,8 +87,8 @@ std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   std::vector<Change> changes;
   const auto moved = [&](size_t from, size_t to) -> Vec3 {
     if (!slides) {
-      return platform.axis * platform.axis.dot(rotation_vector(rows.attitude[to] *
-                                                               rows.attitude[from].conjugate()));
+      return platform.axis *
+             platform.axis.dot(turn_vector(rows.attitude[to] * rows.attitude[from].conjugate()));
     }
     Vec3 by = Vec3::Zero();
     for (int k = 0; k < 2; ++k) {
@@ -148,26 +146,28 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
   const auto close = [&](size_t end) {
     size_t last = end;
     if (turns_alone && !is_commanded(rows.schedule)) {
-      const size_t sets_off = sets_off_at(rows, platform.axis, first, last);
+      const size_t sets_off = start_of_motion(rows, platform.axis, first, last);
       if (sets_off > first) {
-        result.lawless.push_back("until " + readable_number(rows.time_s[sets_off], 4) +
-                                 " s it rests and then sets off at once: a drive or a hand begins "
-                                 "to act");
+        result.exclusions.push_back(
+            "until " + readable_number(rows.time_s[sets_off], 4) +
+            " s it rests and then sets off at once: a drive or a hand begins "
+            "to act");
       }
       first = sets_off;
     }
     if (turns_alone && rows.has_gyro) {
-      LawfulSegment lawful = lawful_segment(rows, platform.axis, first, last);
+      ConsistentSegment lawful = consistent_segment(rows, platform.axis, first, last);
       first = lawful.first;
       last = lawful.last;
-      if (!lawful.left_out.empty()) result.lawless.push_back(std::move(lawful.left_out));
+      if (!lawful.left_out.empty()) result.exclusions.push_back(std::move(lawful.left_out));
     }
     if (turns_alone && rows.sees_some_attitude() && !is_commanded(rows.schedule)) {
       const size_t released = released_at(rows, platform.axis, first, last);
       if (released > first) {
-        result.lawless.push_back("until " + readable_number(rows.time_s[released], 4) +
-                                 " s the angle does not follow the law of the rest: a hand holds "
-                                 "it, or something else acts");
+        result.exclusions.push_back(
+            "until " + readable_number(rows.time_s[released], 4) +
+            " s the angle does not follow the law of the rest: a hand holds "
+            "it, or something else acts");
       }
       first = released;
     }
@@ -226,11 +226,9 @@ void refuse_jump_of_clock(const Recording& recording, const std::string& name) {
   if (recording.rows() < 2) return;
   const double recorded_s = recording.time_s.back() - recording.time_s.front() - gaps_s;
   if (!(longest_s > longest_gap * recorded_s)) return;
-  char found[160];
-  std::snprintf(found, sizeof found,
-                "nothing from t_s = %.10g to %.10g, of a recording of %.4g s in all",
-                longest.from_s, longest.to_s, recorded_s);
-  throw InputError({name, 0}, "t_s", found,
+  throw InputError({name, 0}, "t_s",
+                   printed("nothing from t_s = %.10g to %.10g, of a recording of %.4g s in all",
+                           longest.from_s, longest.to_s, recorded_s),
                    "a clock that does not jump; with several segments a file each");
 }
 
@@ -354,8 +352,9 @@ std::vector<Break> breaks_of(const AxisReadings& read, size_t window) {
 
 }  // namespace
 
-LawfulSegment lawful_segment(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
-  LawfulSegment whole = {first, last, ""};
+ConsistentSegment consistent_segment(const Observation& rows, const Vec3& axis, size_t first,
+                                     size_t last) {
+  ConsistentSegment whole = {first, last, ""};
   if (is_commanded(rows.schedule)) return whole;
   const AxisReadings read = smoothed_rates(rows, axis, first, last);
   std::vector<Break> breaks;
@@ -364,7 +363,7 @@ LawfulSegment lawful_segment(const Observation& rows, const Vec3& axis, size_t f
     breaks = breaks_of(read, window);
   }
   if (breaks.empty()) return whole;
-  LawfulSegment longest = {first, first, ""};
+  ConsistentSegment longest = {first, first, ""};
   size_t begin = first;
   const Break* since = nullptr;
   const auto close = [&](size_t end, const Break* until) {

@@ -20,7 +20,7 @@ struct Segments {
   int64_t too_short = 0;  // segments with too few readings for an initial state, left out
   std::optional<AngleConvention> angles;  // how roll, pitch and yaw were read
   std::vector<std::string> notes;         // on columns that are read otherwise or left out
-  std::vector<std::string> lawless;       // why parts of segments are left out (lawful_segment())
+  std::vector<std::string> exclusions;  // why parts of segments are left out (consistent_segment())
 };
 
 // `max_blocks`: of all segments together. InputError as observe() (observation.h), and where every
@@ -36,7 +36,7 @@ void refuse_jump_of_clock(const Recording& recording, const std::string& name);
 // Detection of changes of the law of rotation about one axis: a drive is released, a hand brakes.
 
 // Rows [first, last) in which the rate follows one law.
-struct LawfulSegment {
+struct ConsistentSegment {
   size_t first = 0, last = 0;
   std::string left_out;  // why the rest is left out; empty: nothing is
 };
@@ -47,6 +47,7 @@ struct LawfulSegment {
 // differ by half of the larger one, by ten standard errors and by eight times what is usual in the
 // recording. A rate that vanishes or changes its sign is no break (dry friction does that), and
 // where commands or measured wheels act none is looked for.
-LawfulSegment lawful_segment(const Observation& rows, const Vec3& axis, size_t first, size_t last);
+ConsistentSegment consistent_segment(const Observation& rows, const Vec3& axis, size_t first,
+                                     size_t last);
 
 }  // namespace photorque

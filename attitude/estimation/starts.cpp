@@ -7,6 +7,7 @@
 #include "attitude/estimation/hypothesis.h"
 #include "attitude/recordings/columns.h"
 #include "core/constants.h"
+#include "core/numerics/order.h"
 
 namespace photorque {
 namespace {
@@ -189,14 +190,14 @@ RunStart best_start(const Hypothesis& h, const RunStart& given, const Observatio
     const Observation beginning = seen.part(0, std::min(blocks, seen.blocks()));
     std::vector<Begun> all;
     for (const RunStart& start : starts) all.push_back(begun_from(h, start, beginning));
-    std::stable_sort(all.begin(), all.end(),
-                     [](const Begun& a, const Begun& b) { return a.chi2 < b.chi2; });
     starts.clear();
-    for (size_t i = 0; i < std::min(most_kept, all.size()); ++i) starts.push_back(all[i].start);
+    for (const size_t i : sorted_indices(
+             all.size(), [&](size_t a, size_t b) { return all[a].chi2 < all[b].chi2; })) {
+      if (starts.size() < most_kept) starts.push_back(all[i].start);
+    }
     if (blocks == few_blocks && seen.has(Scalar::tilt)) {
-      for (size_t i = 0; i < std::min(most_kept, all.size()); ++i) {
-        starts.push_back(mirrored(all[i].start));
-      }
+      const size_t kept = starts.size();
+      for (size_t i = 0; i < kept; ++i) starts.push_back(mirrored(starts[i]));
     }
   }
   return starts.front();

@@ -6,15 +6,10 @@
 #include "attitude/estimation/axis_readings.h"
 #include "core/constants.h"
 #include "core/numerics/linear.h"
+#include "core/numerics/median.h"
 
 namespace photorque {
 namespace {
-
-double middle_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Without what it rests at the end: from where it stays as near to its last angle as a swing hardly
 // shows.
@@ -32,7 +27,7 @@ void leave_out_rest(AxisReadings& read) {
 // Twice the median time between passages through the median angle; 0 where there are few.
 double period_s(const AxisReadings& read) {
   constexpr size_t fewest_passages = 6;
-  const double middle_rad = middle_of(read.value);
+  const double middle_rad = upper_median(read.value);
   std::vector<double> between_s;
   double before_s = read.time_s.front();
   for (size_t i = 1; i < read.row.size(); ++i) {
@@ -40,7 +35,7 @@ double period_s(const AxisReadings& read) {
     between_s.push_back(read.time_s[i] - before_s);
     before_s = read.time_s[i];
   }
-  return between_s.size() < fewest_passages ? 0.0 : 2.0 * middle_of(between_s);
+  return between_s.size() < fewest_passages ? 0.0 : 2.0 * upper_median(between_s);
 }
 
 // Angle, rate and acceleration at the middles of local cubics; empty where it swings less than
@@ -63,7 +58,7 @@ LocalMotion local_motion(const AxisReadings& read) {
     intervals_s[i] = read.time_s[i + 1] - read.time_s[i];
   }
   const double step_s = whole_s / steps_per_period,
-               reach_s = std::max(2.0 * step_s, 4.001 * middle_of(intervals_s));
+               reach_s = std::max(2.0 * step_s, 4.001 * upper_median(intervals_s));
   std::vector<Vec3> all;
   size_t begin = 0, end = 0, at = 0;
   for (double t = read.time_s.front() + reach_s; t <= read.time_s.back() - reach_s; t += step_s) {
@@ -112,7 +107,7 @@ RobustResidual robust_residual(Eigen::MatrixXd law, const Eigen::VectorXd& value
         law * least_squares(weight.asDiagonal() * law, weight.cwiseProduct(values), alike).solution;
     const Eigen::VectorXd sizes = result.left.cwiseAbs();
     // The median of |x| of a Gaussian is 0.6745 σ.
-    const double scatter = std::max(middle_of({sizes.begin(), sizes.end()}) / 0.6745, 1e-300);
+    const double scatter = std::max(upper_median({sizes.begin(), sizes.end()}) / 0.6745, 1e-300);
     result.off = result.left.cwiseQuotient(least.cwiseMax(scatter));
     weight = (1.0 - (result.off / biweight).array().square()).max(0.0);
   }

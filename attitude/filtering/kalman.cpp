@@ -145,7 +145,7 @@ class FilterRun {
     const Reading& reading = readings_.all[i];
     const FilterSettings& settings = model_.settings();
     const Transition way = model_.advance(state, reading.time_s, reading.gyro_rad_s);
-    if (reading.begins_anew) model_.begin_anew(state);
+    if (reading.begins_anew) model_.reset_after_kick(state);
     if (passed != nullptr) {
       passed->predicted = state;
       passed->phi = way.phi;

@@ -111,7 +111,7 @@ FilterState MotionModel::start(double time_s, const Quat& lab_from_body,
   return state;
 }
 
-void MotionModel::begin_anew(FilterState& state) const {
+void MotionModel::reset_after_kick(FilterState& state) const {
   Mat3 about = Mat3::Identity();
   if (model_.platform.turns_about_one_axis()) {
     about = model_.platform.axis * model_.platform.axis.transpose();

@@ -74,7 +74,7 @@ class MotionModel {
   // The initial state, from an attitude with the covariance `attitude_lab_rad2`.
   FilterState start(double time_s, const Quat& lab_from_body, const Mat3& attitude_lab_rad2) const;
   // The motion has changed by an unknown kick: rate and attitude are uncertain again.
-  void begin_anew(FilterState& state) const;
+  void reset_after_kick(FilterState& state) const;
 
   // Propagates the state to a later time. `gyro_rad_s` is the reading there; it replaces the rate
   // if the motion model uses the gyro and all three axes were read. NumericalError if that takes

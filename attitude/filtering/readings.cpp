@@ -5,6 +5,7 @@
 
 #include "attitude/recordings/columns.h"
 #include "core/errors.h"
+#include "core/numerics/order.h"
 
 namespace photorque {
 
@@ -65,11 +66,15 @@ Readings readings_of(const Recording& recording, const std::string& name, const 
     throw InputError({name, 0}, columns.first_name(), "no number in any row",
                      "attitudes of unit norm, or rates");
   }
-  std::ranges::stable_sort(readings.all, {}, &Reading::time_s);
-  // An image of a time before the first row belongs to the start.
-  for (Reading& reading : readings.all) {
-    reading.time_s = std::max(reading.time_s, readings.first_s);
+  std::vector<Reading> in_time;
+  for (const size_t i : sorted_indices(readings.all.size(), [&](size_t a, size_t b) {
+         return readings.all[a].time_s < readings.all[b].time_s;
+       })) {
+    in_time.push_back(readings.all[i]);
+    // An image of a time before the first row belongs to the start.
+    in_time.back().time_s = std::max(in_time.back().time_s, readings.first_s);
   }
+  readings.all = std::move(in_time);
   return readings;
 }
 

@@ -96,7 +96,7 @@ Plot ways_plot(const std::vector<Ingredients>& ways, const TruthTrack& truth) {
   Plot plot;
   plot.name = "attitude_errors";
   plot.title = "Contribution of each instrument and model";
-  plot.x_label = "Time [s]";
+  plot.x_label = "time [s]";
   const std::string what = truth.empty() ? "predicted attitude error" : "attitude error";
   plot.y_label = "filter: " + what + " [arcsec]";
   plot.y_log = true;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 
 #include "attitude/filtering/report.h"
 #include "attitude/observation/noise_levels.h"
@@ -12,6 +11,7 @@
 #include "core/errors.h"
 #include "core/parallel.h"
 #include "core/settings/typed_keys.h"
+#include "core/text/format.h"
 
 namespace photorque {
 
@@ -144,10 +144,8 @@ std::vector<std::string> unseen_by(const Platform& platform, const Readings& rea
     const double moved = std::abs(e.parameters[at] - e.prior_mean[at]) / e.prior_sigma[at];
     constexpr double far = 3.0;
     if (moved > far) {
-      char line[80];
-      std::snprintf(line, sizeof line, " has moved by %.1f of its sigmas: not to be trusted",
-                    moved);
-      lines.push_back(parameters.columns[0].texts[i] + line);
+      lines.push_back(parameters.columns[0].texts[i] +
+                      printed(" has moved by %.1f of its sigmas: not to be trusted", moved));
     }
     if (how != "yes") {
       lines.push_back(parameters.columns[0].texts[i] +
@@ -178,7 +176,6 @@ RecordingNoise with_noise_of(const Sensors& sensors, const Recording& recording,
   if (knows_camera && knows_gyro) return result;
   const std::vector<Observation> seen = {observe(recording, name, platform)};
   const NoiseLevels usual;
-  char line[120];
   if (!knows_camera && seen[0].sees_some_attitude()) {
     if (!result.sensors.camera) result.sensors.camera.emplace();
     Vec3& noise_rad = result.sensors.camera->noise_rad;
@@ -187,9 +184,9 @@ RecordingNoise with_noise_of(const Sensors& sensors, const Recording& recording,
       noise_rad[k] = sees ? reading_level(seen, k).value_or(usual.camera_rad[k]) : noise_rad[k];
       if (!(noise_rad[k] > 0.0)) noise_rad[k] = usual.camera_rad[k];
     }
-    std::snprintf(line, sizeof line, "noise of attitudes, from neighbours: %.3g, %.3g, %.3g arcsec",
-                  in_arcsec(noise_rad[0]), in_arcsec(noise_rad[1]), in_arcsec(noise_rad[2]));
-    result.found.emplace_back(line);
+    result.found.push_back(printed("noise of attitudes, from neighbours: %.3g, %.3g, %.3g arcsec",
+                                   in_arcsec(noise_rad[0]), in_arcsec(noise_rad[1]),
+                                   in_arcsec(noise_rad[2])));
   }
   if (!knows_gyro && seen[0].has_gyro) {
     double square = 0.0, axes = 0.0;
@@ -201,9 +198,8 @@ RecordingNoise with_noise_of(const Sensors& sensors, const Recording& recording,
     if (!result.sensors.gyro) result.sensors.gyro.emplace();
     result.sensors.gyro->noise_rad_s =
         axes > 0.0 ? std::sqrt(square / axes) : usual.gyro_rad_s.maxCoeff();
-    std::snprintf(line, sizeof line, "noise of rates, from neighbours: %.3g rad/s",
-                  result.sensors.gyro->noise_rad_s);
-    result.found.emplace_back(line);
+    result.found.push_back(
+        printed("noise of rates, from neighbours: %.3g rad/s", result.sensors.gyro->noise_rad_s));
   }
   return result;
 }
@@ -368,7 +364,7 @@ ConsistencyResult consistency_of(const EstimateStudy& study, const PropagationRu
   plot.name = "normalised_errors";
   plot.title = "Normalised errors squared, mean of " + std::to_string(study.runs) +
                " runs, and their 95 % band";
-  plot.x_label = "Time [s]";
+  plot.x_label = "time [s]";
   plot.y_label = "NEES of attitude and rate";
   plot.levels = {ensemble.band().low, ensemble.band().high};
   Plot::Curve f, s, ef, es;

@@ -2,9 +2,11 @@
 // (zero-order hold), and what a simulation beside them says (the light, the battery).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
+#include "core/errors.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -64,10 +66,21 @@ struct Schedule {
   // The battery's current is the measured one: no law of the model adds to it.
   bool current_is_measured = false;
 
-  ZeroOrderHold at(double t_s) const;
+  ZeroOrderHold at(double t_s) const {
+    const auto later = std::upper_bound(time_s.begin(), time_s.end(), t_s);
+    if (later == time_s.begin()) return {};
+    return held[static_cast<size_t>(later - time_s.begin()) - 1];
+  }
   // Appends unless the values are those that hold already. NumericalError unless `t_s` is later
   // than all before.
-  void append(double t_s, const ZeroOrderHold& values);
+  void append(double t_s, const ZeroOrderHold& values) {
+    if (!time_s.empty() && t_s <= time_s.back()) {
+      throw NumericalError("a schedule must be written in order of time");
+    }
+    if (!held.empty() && held.back() == values) return;
+    time_s.push_back(t_s);
+    held.push_back(values);
+  }
 };
 
 }  // namespace photorque

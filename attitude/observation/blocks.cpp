@@ -84,8 +84,8 @@ double fastest_rad_s(const Observation& seen) {
     if (!whole_gyro && seen.attitude_rows[i] > 0.0) {
       if (before < i) {
         const Quat turn = seen.attitude[before].conjugate() * seen.attitude[i];
-        fastest = std::max(fastest,
-                           rotation_vector(turn).norm() / (seen.time_s[i] - seen.time_s[before]));
+        fastest =
+            std::max(fastest, turn_vector(turn).norm() / (seen.time_s[i] - seen.time_s[before]));
       }
       before = i;
     }
@@ -260,7 +260,7 @@ struct BlockRows {
     if (all.empty()) return {NAN, NAN, NAN, NAN};
     Vec3 rate_rad_s = Vec3::Zero();
     if (all.size() > 1) {
-      rate_rad_s = rotation_vector(all.front().attitude.conjugate() * all.back().attitude) /
+      rate_rad_s = turn_vector(all.front().attitude.conjugate() * all.back().attitude) /
                    (all.back().since_s - all.front().since_s);
     }
     const auto moved = [&](const Turned& one) {
@@ -272,14 +272,14 @@ struct BlockRows {
     for (int again = 0; again < times && all.size() > 2; ++again) {
       Vec3 trend = Vec3::Zero();
       for (const Turned& one : all) {
-        trend += one.rows * one.since_s * rotation_vector(reference.conjugate() * moved(one));
+        trend += one.rows * one.since_s * turn_vector(reference.conjugate() * moved(one));
       }
       rate_rad_s += trend / sum_s2;
       reference = moved(all.front());
     }
     Vec3 sum = Vec3::Zero();
     for (const Turned& one : all) {
-      sum += one.rows * rotation_vector(reference.conjugate() * moved(one));
+      sum += one.rows * turn_vector(reference.conjugate() * moved(one));
     }
     return (reference * turn_by(sum / rows)).normalized();
   }
@@ -379,7 +379,7 @@ class Straightened {
                                 {(value(block_ + 1) - value(block_)) / after_s(), after_s()});
   }
   Vec3 turn_rad(size_t from) const {
-    return rotation_vector(all_.attitude[from].conjugate() * all_.attitude[from + 1]);
+    return turn_vector(all_.attitude[from].conjugate() * all_.attitude[from + 1]);
   }
 
   const Observation& all_;
@@ -404,7 +404,7 @@ void append_mean(const Observation& from, size_t first, size_t last, Observation
   BlockRows{from, first, last}.append_to(to);
 }
 
-void straighten_first(const Observation& all, size_t block, Observation& to) {
+void correct_first_block(const Observation& all, size_t block, Observation& to) {
   Straightened(all, block).put_into(to);
 }
 

@@ -66,6 +66,6 @@ void append_mean(const Observation& from, size_t first, size_t last, Observation
 
 // Makes the first block of `to`, a mean that is the given block of `all`, a reading at its middle,
 // with the curvature of the motion from its neighbours there.
-void straighten_first(const Observation& all, size_t block, Observation& to);
+void correct_first_block(const Observation& all, size_t block, Observation& to);
 
 }  // namespace photorque

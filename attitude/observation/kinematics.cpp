@@ -16,15 +16,6 @@ struct Turning {
   Vec3 rate_lab_rad_s;
 };
 
-// The rate of exp(φ) in lab axes is J(φ) dφ/dt (the left Jacobian of the rotations).
-Mat3 left_jacobian(const Vec3& phi) {
-  const double angle = phi.norm();
-  const Mat3 cross = skew(phi);
-  if (angle < 1e-4) return Mat3::Identity() + 0.5 * cross;
-  return Mat3::Identity() + (1.0 - std::cos(angle)) / (angle * angle) * cross +
-         (angle - std::sin(angle)) / (angle * angle * angle) * cross * cross;
-}
-
 // A smooth curve through the attitudes: a parabola about each of some knots gives attitude and
 // rate there, a cubic joins them.
 class SmoothMotion {
@@ -35,8 +26,7 @@ class SmoothMotion {
     }
     double fastest_rad_s = 1e-3;
     for (size_t n = 0; n + 1 < at_.size(); ++n) {
-      const Vec3 turn =
-          rotation_vector(seen.attitude[at_[n + 1]] * seen.attitude[at_[n]].conjugate());
+      const Vec3 turn = turn_vector(seen.attitude[at_[n + 1]] * seen.attitude[at_[n]].conjugate());
       fastest_rad_s =
           std::max(fastest_rad_s, turn.norm() / (seen.time_s[at_[n + 1]] - seen.time_s[at_[n]]));
     }
@@ -55,13 +45,13 @@ class SmoothMotion {
     k = std::clamp<size_t>(k, 1, time_s_.size() - 1) - 1;
     const Turning &a = knot_[k], &b = knot_[k + 1];
     const double span_s = time_s_[k + 1] - time_s_[k], x = (t_s - time_s_[k]) / span_s;
-    const Vec3 end = rotation_vector(b.lab_from_body * a.lab_from_body.conjugate());
+    const Vec3 end = turn_vector(b.lab_from_body * a.lab_from_body.conjugate());
     const Vec3 slope_a = span_s * a.rate_lab_rad_s;
-    const Vec3 slope_b = span_s * left_jacobian(end).inverse() * b.rate_lab_rad_s;
+    const Vec3 slope_b = span_s * turn_jacobian(end).inverse() * b.rate_lab_rad_s;
     const Vec3 third = slope_a + slope_b - 2.0 * end, second = 3.0 * end - 2.0 * slope_a - slope_b;
     const Vec3 phi = x * (slope_a + x * (second + x * third));
     const Vec3 slope = (slope_a + x * (2.0 * second + 3.0 * x * third)) / span_s;
-    return {turn_by(phi) * a.lab_from_body, left_jacobian(phi) * slope};
+    return {turn_by(phi) * a.lab_from_body, turn_jacobian(phi) * slope};
   }
 
  private:
@@ -74,7 +64,7 @@ class SmoothMotion {
       const double t = seen.time_s[at_[m]] - at_s;
       const Vec3 powers(1.0, t, t * t);
       matrix += powers * powers.transpose();
-      right += powers * rotation_vector(seen.attitude[at_[m]] * middle.conjugate()).transpose();
+      right += powers * turn_vector(seen.attitude[at_[m]] * middle.conjugate()).transpose();
     }
     const Mat3 fitted = matrix.ldlt().solve(right);
     time_s_.push_back(at_s);
@@ -118,7 +108,7 @@ std::vector<Left> what_is_left(const Observation& seen, const Prediction* about)
     left.motion = motion.at(seen.time_s[i]);
     const Quat& q = left.motion.lab_from_body;
     if (seen.attitude_rows[i] > 0.0) {
-      left.angle_rad = rotation_vector(seen.attitude[i] * q.conjugate());
+      left.angle_rad = turn_vector(seen.attitude[i] * q.conjugate());
     }
     left.rate_body_rad_s = seen.gyro_rad_s[i] - q.conjugate() * left.motion.rate_lab_rad_s;
     for (int k = 0; k < 3; ++k) {

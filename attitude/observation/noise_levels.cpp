@@ -35,7 +35,7 @@ std::vector<ReadingAt> readings_of(const Observation& seen, int channel) {
     }
     if (before < seen.blocks()) {
       const Quat turn = seen.attitude[i] * seen.attitude[before].conjugate();
-      angle_rad += rotation_vector(turn)[channel];
+      angle_rad += turn_vector(turn)[channel];
     }
     before = i;
     all.push_back({seen.time_s[i], angle_rad});

@@ -26,12 +26,6 @@ void unwind(std::vector<double>& angle_rad) {
 
 }  // namespace
 
-Vec3 rotation_vector(const Quat& rotation) {
-  const double sine = rotation.vec().norm(), side = std::copysign(1.0, rotation.w());
-  if (sine < 1e-12) return 2.0 * side * rotation.vec();
-  return 2.0 * side * std::atan2(sine, std::abs(rotation.w())) / sine * rotation.vec();
-}
-
 ChannelNoise NoiseLevels::of(int channel) const {
   if (channel >= vector_channels) {
     return scalar[static_cast<size_t>(channel - vector_channels)];
@@ -254,7 +248,7 @@ Observation Observation::part(size_t first, size_t last) const {
     cut(result.scalar[s].value, scalar[s].value);
     cut(result.scalar[s].rows, scalar[s].rows);
   }
-  if (result.spread_of(0).readings_s > 0.0) straighten_first(*this, first, result);
+  if (result.spread_of(0).readings_s > 0.0) correct_first_block(*this, first, result);
   const double start_s = result.time_s.front();
   double from_s = time_s.front();
   for (size_t i = 0; i < schedule.time_s.size() && from_s < start_s; ++i) {

@@ -120,7 +120,4 @@ struct Observation {
 Observation observe(const Recording& recording, const std::string& name,
                     const Platform& platform = {}, size_t max_blocks = 6000);
 
-// The rotation vector of a rotation, at most π long [rad].
-Vec3 rotation_vector(const Quat& rotation);
-
 }  // namespace photorque

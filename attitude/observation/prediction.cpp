@@ -77,12 +77,6 @@ Whitening::Gain Whitening::gain(double time_s, double rows) {
 
 namespace {
 
-Quat turned(const Quat& from, const Vec3& by_rad) {
-  const double angle_rad = by_rad.norm();
-  if (angle_rad == 0.0) return from;
-  return (from * Quat(Eigen::AngleAxisd(angle_rad, by_rad / angle_rad))).normalized();
-}
-
 // The mean of a block's instants. Of attitudes it is what observation.cpp makes of readings: moved
 // to the block's time as by the constant rate that leaves no trend, which puts the outer two into
 // the middle between them.
@@ -108,11 +102,12 @@ ExpectedInstant mean_of(const std::vector<ExpectedInstant>& all, const BlockInst
     mean.place += weight * all[i].place;
   }
   const Quat &before = first.state.lab_from_body, &after = last.state.lab_from_body;
-  const Quat middle = turned(before, 0.5 * rotation_vector(before.conjugate() * after));
+  const Quat middle =
+      (before * turn_by(0.5 * turn_vector(before.conjugate() * after))).normalized();
   Vec3 turn_rad = Vec3::Zero();
   if (all.size() == 3) {
-    turn_rad = instants.weight(block, 1) *
-               rotation_vector(middle.conjugate() * all[1].state.lab_from_body);
+    turn_rad =
+        instants.weight(block, 1) * turn_vector(middle.conjugate() * all[1].state.lab_from_body);
   }
   // Attitudes may stand closer together than the other readings.
   const double between_s = instants.since_s(block, all.size() - 1) - instants.since_s(block, 0);
@@ -121,7 +116,7 @@ ExpectedInstant mean_of(const std::vector<ExpectedInstant>& all, const BlockInst
         (last.state.rate_body_rad_s - first.state.rate_body_rad_s) / between_s;
     turn_rad += 0.5 * instants.attitudes_excess_s2(block) * acceleration_rad_s2;
   }
-  mean.state.lab_from_body = turned(middle, turn_rad);
+  mean.state.lab_from_body = (middle * turn_by(turn_rad)).normalized();
   return mean;
 }
 
@@ -183,7 +178,7 @@ class Comparison {
     const Vec3 &camera_offset_body = moment.camera_offset_body, &gyro_rad_s = moment.gyro_rad_s;
     WhiteRow white = WhiteRow::Constant(NAN), off = white;
     if (seen_.attitude_rows[block] > 0.0 && seen_.sees_some_attitude()) {
-      off.head<3>() = rotation_vector(seen_.attitude[block] * state.lab_from_body.conjugate()) -
+      off.head<3>() = turn_vector(seen_.attitude[block] * state.lab_from_body.conjugate()) -
                       state.lab_from_body * camera_offset_body;
       if (platform_.turns_about_one_axis()) count_turns(off);
     }
@@ -200,10 +195,7 @@ class Comparison {
       }
       const auto which = static_cast<Scalar>(s);
       const Vec3 camera_offset_lab = state.lab_from_body * camera_offset_body;
-      const double angle = camera_offset_lab.norm();
-      const Quat as_seen = angle > 0.0 ? Quat(Eigen::AngleAxisd(angle, camera_offset_lab / angle)) *
-                                             state.lab_from_body
-                                       : state.lab_from_body;
+      const Quat as_seen = turn_by(camera_offset_lab) * state.lab_from_body;
       const ScalarReading reading = scalar_reading(which, as_seen, gyro_rad_s);
       scalars[s] = reading.value;
       off[vector_channels + s] = scalar_difference(which, read.value[block], reading.value);

@@ -7,10 +7,7 @@
 namespace photorque {
 
 Quat attitude_before(const PlatformState& state, double before_s) {
-  const Vec3 turn_rad = state.rate_body_rad_s * before_s;
-  const double angle_rad = turn_rad.norm();
-  if (!(angle_rad > 0.0)) return state.lab_from_body;
-  return state.lab_from_body * Quat(Eigen::AngleAxisd(-angle_rad, turn_rad / angle_rad));
+  return state.lab_from_body * turn_by(-before_s * state.rate_body_rad_s);
 }
 
 LiveInstruments::LiveInstruments(const Dynamics& dynamics, const PlatformState& initial,

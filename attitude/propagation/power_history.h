@@ -25,7 +25,7 @@ class PowerHistory {
     time_s_.push_back(time_s);
     power_.push_back(power);
   }
-  void know_until(double time_s) { known_until_s_ = time_s; }
+  void set_known_until(double time_s) { known_until_s_ = time_s; }
 
   double known_until_s() const { return known_until_s_; }
   // The last state added. Needs one.

@@ -116,7 +116,7 @@ Settings disturbances_of(const Settings& root) {
   }
   SettingsNode holder;
   holder.value = SettingsNode::Table{{"disturbance", std::move(list)}};
-  return Settings(std::make_shared<const SettingsNode>(std::move(holder)));
+  return Settings(std::move(holder));
 }
 
 // The calendar time of t = 0, and whether an ephemeris covers the run.
@@ -276,11 +276,9 @@ void check_begins_about_axis(const Settings& settings, const Platform& platform,
 }  // namespace
 
 Settings own_table(const Settings& root, const std::string& key, bool required) {
-  if (!root.has(key) && !required) {
-    return Settings(std::make_shared<const SettingsNode>(), key);
-  }
+  if (!root.has(key) && !required) return Settings(SettingsNode{}, key);
   const Settings table = root.table(key);  // complains when it is no table
-  return Settings(std::make_shared<const SettingsNode>(root.raw(key)), table.name());
+  return Settings(root.raw(key), table.name());
 }
 
 namespace {

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "attitude/model/platform.h"
 #include "core/constants.h"
+#include "core/numerics/extremes.h"
+#include "core/numerics/order.h"
 #include "core/snapshot.h"
 
 namespace photorque {
@@ -45,34 +46,16 @@ constexpr const char* fixed_names[fixed] = {"t_s",
                                             "battery_current_A",
                                             "array_power_W"};
 
-// Reduces a curve to about 1600 points, the number of columns of a picture: the minimum and the
-// maximum of every interval, in order of time.
-void thin(const std::vector<double>& x, const std::vector<double>& y, Plot::Curve& curve) {
-  constexpr size_t most = 1600;
-  if (x.size() <= most) {
-    curve.x = x;
-    curve.y = y;
-    return;
-  }
-  const size_t intervals = most / 2;
-  for (size_t s = 0; s < intervals; ++s) {
-    const size_t begin = s * x.size() / intervals, end = (s + 1) * x.size() / intervals;
-    const auto [low, high] = std::minmax_element(y.begin() + static_cast<std::ptrdiff_t>(begin),
-                                                 y.begin() + static_cast<std::ptrdiff_t>(end));
-    for (const auto at : {std::min(low, high), std::max(low, high)}) {
-      const size_t i = static_cast<size_t>(at - y.begin());
-      if (!curve.x.empty() && curve.x.back() == x[i]) continue;
-      curve.x.push_back(x[i]);
-      curve.y.push_back(y[i]);
-    }
-  }
-}
-
+// About 1600 points, the number of columns of a picture.
 Plot::Curve curve(const std::string& label, const std::vector<double>& x,
                   const std::vector<double>& y) {
+  constexpr size_t most = 1600;
   Plot::Curve c;
   c.label = label;
-  thin(x, y, c);
+  for (const size_t i : lows_and_highs(y, most)) {
+    c.x.push_back(x[i]);
+    c.y.push_back(y[i]);
+  }
   return c;
 }
 
@@ -160,9 +143,8 @@ std::vector<Plot::Curve> stacked_fractions(const std::vector<double>& t,
       of[k] += fractions[k][p];
     }
   }
-  std::vector<size_t> order(kinds);
-  std::iota(order.begin(), order.end(), size_t{0});
-  std::ranges::stable_sort(order, [&](size_t a, size_t b) { return of[a] > of[b]; });
+  const std::vector<size_t> order =
+      sorted_indices(kinds, [&](size_t a, size_t b) { return of[a] > of[b]; });
   std::vector<Plot::Curve> curves;
   std::vector<double> top(parts);
   for (size_t place = 0; place < kinds; ++place) {
@@ -263,7 +245,7 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
     Plot plot;
     plot.name = name;
     plot.title = title;
-    plot.x_label = "Time [s]";
+    plot.x_label = "time [s]";
     plot.y_label = y;
     plot.curves = std::move(curves);
     product.plots.push_back(std::move(plot));
@@ -275,15 +257,15 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
     product.plots.back().below = {{"y [" + unit + "]", {curve("", t, values(x + 1))}, false},
                                   {"z [" + unit + "]", {curve("", t, values(x + 2))}, false}};
   };
-  add_plot("tilt", "Tilt", "Tilt [deg]", {curve("", t, values(tilt))});
-  add_plot("yaw", "Yaw", "Yaw [deg]", {curve("", t, unwrapped_deg(values(yaw)))});
+  add_plot("tilt", "Tilt", "tilt [deg]", {curve("", t, values(tilt))});
+  add_plot("yaw", "Yaw", "yaw [deg]", {curve("", t, unwrapped_deg(values(yaw)))});
   add_vector_plot("rates", "Body rates", "rad/s", rate_x);
   if (any_nonzero(values(charge))) {
-    add_plot("charge", "Charge missing from the battery", "Charge [Ah]",
+    add_plot("charge", "Charge missing from the battery", "charge [Ah]",
              {curve("", t, values(charge))});
   }
   if (any_nonzero(values(power))) {
-    add_plot("array_power", "Power of the solar array", "Power [W]", {curve("", t, values(power))});
+    add_plot("array_power", "Power of the solar array", "power [W]", {curve("", t, values(power))});
   }
   std::vector<size_t> shown;
   std::vector<std::vector<double>> sizes;
@@ -310,9 +292,9 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
     std::vector<std::string> names;
     for (const size_t i : shown) names.push_back(labels_[i]);
     add_plot("torque_fractions", "Fraction of every torque in the sum of their sizes",
-             "Fraction [%]", stacked_fractions(t, names, sizes));
+             "fraction [%]", stacked_fractions(t, names, sizes));
     add_plot("torques", "Size of every torque, largest within each 240th of the run",
-             "Torque [N m]", std::move(all));
+             "torque [N m]", std::move(all));
     product.plots.back().y_log = true;
   }
 

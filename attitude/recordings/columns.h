@@ -68,7 +68,7 @@ enum class Measures { angle, rate, force, field, length, speed };
 struct ChannelTraits {
   const char* name;   // in diagnosis.json, with its unit
   const char* label;  // as printed
-  const char* spoken;
+  const char* name_in_text;
   const char* unit;
   double per_SI;  // of that unit in rad, rad/s, m/s², T
   Measures measures;

@@ -6,6 +6,7 @@
 #include "attitude/recordings/kvn.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -145,10 +146,8 @@ class XmlMessage {
   KvnItem row_of(const pugi::xml_node& state) const {
     std::vector<pugi::xml_node> leaves = leaves_of(state);
     std::ranges::stable_sort(leaves, {}, [](const auto& leaf) { return place_of(leaf.name()); });
-    std::string line;
-    for (const pugi::xml_node& leaf : leaves) {
-      line += (line.empty() ? "" : " ") + std::string(leaf.child_value());
-    }
+    const std::string line = joined_text(
+        leaves, " ", [&](const pugi::xml_node& leaf) { return std::string(leaf.child_value()); });
     KvnItem row = kvn_data(line);
     row.line = line_of(state);
     return row;

@@ -69,7 +69,7 @@ std::vector<Key> errors_of(const std::string& instrument) {
   std::vector<Key> keys;
   for (const DisturbanceKind& kind : disturbance_kinds()) {
     if (kind.instrument != instrument) continue;
-    for (const Key& key : kind.keys) keys.push_back(Key(key).usually_is("0"));
+    for (const Key& key : kind.keys) keys.push_back(Key(key).with_default_text("0"));
   }
   return keys;
 }

@@ -260,11 +260,11 @@ BalanceResult balance(const BalanceRun& run) {
   result.chi2_per_sample = result.fit.chi2_per_sample();
   result.excess_sigma =
       (result.chi2_per_sample - 1.0) * std::sqrt(0.5 * static_cast<double>(result.fit.samples));
-  if (result.leaves_more_than_noise()) {
+  if (result.exceeds_noise()) {
     const Fit beside = fit_with_discrepancy(result.fit, segments);
     if (std::isfinite(beside.chi2)) result.fit = beside;
   }
-  const Vec3 distance_m = result.leaves_more_than_noise()
+  const Vec3 distance_m = result.exceeds_noise()
                               ? distance_of_parts_m(run, result.fit, unbalance, segments)
                               : Vec3(Vec3::Zero());
   add_camera_residuals(segments, result);
@@ -281,7 +281,7 @@ BalanceResult balance(const BalanceRun& run) {
     ++shared;
   }
   const double mass_kg = model.platform.mass_kg;
-  result.command = steps_that_remove(result.offset_body_m, run.masses, mass_kg);
+  result.command = balancing_steps(result.offset_body_m, run.masses, mass_kg);
   for (const MovingMass& mass : run.masses) {
     result.resolution_m = std::max(result.resolution_m, com_resolution_m(mass, mass_kg));
   }
@@ -289,7 +289,7 @@ BalanceResult balance(const BalanceRun& run) {
 }
 
 std::string BalanceResult::warning() const {
-  if (!leaves_more_than_noise()) return "";
+  if (!exceeds_noise()) return "";
   return "the experiment lacks an effect: the residual of the fit is " +
          readable_number(std::sqrt(chi2_per_sample), 3) +
          " times the noise; the errors include the scatter between parts of the recording, but no "
@@ -342,7 +342,7 @@ Product balance_product(const BalanceRun& run, const BalanceResult& result) {
   Plot plot;
   plot.name = "balance_residuals";
   plot.title = "Camera minus fitted trajectory, about lab axes";
-  plot.x_label = "Time [s]";
+  plot.x_label = "time [s]";
   // More points would only cover each other.
   constexpr size_t max_points = 2000;
   const size_t rows = result.residual_time_s.size();
@@ -357,10 +357,10 @@ Product balance_product(const BalanceRun& run, const BalanceResult& result) {
     }
     return curve;
   };
-  plot.y_label = "About x [arcsec]";
+  plot.y_label = "about x [arcsec]";
   plot.curves = {residuals(0)};
-  plot.below = {{"About y [arcsec]", {residuals(1)}, false},
-                {"About z [arcsec]", {residuals(2)}, false}};
+  plot.below = {{"about y [arcsec]", {residuals(1)}, false},
+                {"about z [arcsec]", {residuals(2)}, false}};
   product.plots.push_back(std::move(plot));
   return product;
 }

@@ -43,7 +43,7 @@ struct BalanceResult {
   // by an unknown amount.
   double chi2_per_sample = 0.0, excess_sigma = 0.0;
   static constexpr double noticed_sigma = 6.0;
-  bool leaves_more_than_noise() const { return excess_sigma > noticed_sigma; }
+  bool exceeds_noise() const { return excess_sigma > noticed_sigma; }
   std::string warning() const;  // as printed; empty where nothing more than noise is left
   size_t segments = 1;          // into which gaps cut the recording
   Fit fit;

@@ -68,6 +68,10 @@ BudgetTraits traits_of(const std::string& kind) {
   return known == nullptr ? BudgetTraits{} : known->budget;
 }
 
+bool is_ranked(const Disturbance& disturbance) {
+  return traits_of(disturbance.kind).reason_against.empty();
+}
+
 std::vector<std::string> names_of(const std::vector<Disturbance>& disturbances) {
   std::map<std::string, int> total, so_far;
   for (const Disturbance& d : disturbances) ++total[d.kind];
@@ -207,7 +211,7 @@ std::vector<AirPart> read_own_air_parts(const Settings& root) {
   if (!root.has("disturbance")) return all;
   SettingsNode holder;
   holder.value = SettingsNode::Table{{"disturbance", root.raw("disturbance")}};
-  const Settings own(std::make_shared<const SettingsNode>(std::move(holder)));
+  const Settings own(std::move(holder));
   for (const Settings& disturbance : own.tables("disturbance")) {
     if (!disturbance.has("part")) continue;
     const std::vector<AirPart> parts = read_air_parts(disturbance.tables("part"));
@@ -289,6 +293,7 @@ Plot tilt_plot(const Budget& budget) {
     state.charge_drawn_C = budget.state.charge_drawn_C;
     const std::vector<Acting> acting = acting_within_a_second(budget.model, state);
     for (size_t d = 0; d < acting.size(); ++d) {
+      if (!is_ranked(budget.model.disturbances[d])) continue;
       const double torque_N_m = acting[d].largest_body_N_m.norm();
       // A logarithmic axis has no zero.
       if (!(torque_N_m > 0.0) || !std::isfinite(torque_N_m)) continue;
@@ -309,7 +314,7 @@ Budget make_budget(AttitudeModel model, const PlatformState& state) {
   const Mat3 inverse_inertia = budget.model.platform.inertia_kg_m2.inverse();
   for (size_t d = 0; d < acting.size(); ++d) {
     const Disturbance& disturbance = budget.model.disturbances[d];
-    if (!traits_of(disturbance.kind).reason_against.empty()) continue;
+    if (!is_ranked(disturbance)) continue;
     if (!acting[d].largest_body_N_m.allFinite() || !acting[d].mean_body_N_m.allFinite()) {
       throw NumericalError("budget: the torque of " + names[d] +
                            " is no finite number at this state");

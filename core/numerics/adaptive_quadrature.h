@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <type_traits>
 
 namespace photorque {
@@ -60,8 +61,8 @@ auto integrate_adaptively(const Function& f, double low, double high, double tol
   const double ratio = spread > 0.0 ? 200.0 * difference / spread : 0.0;
   const double sharper = spread * ratio * std::sqrt(ratio);
   Integral<Value> result{half * kronrod, std::abs(half) * std::min(difference, sharper)};
-  constexpr double rounding = 1e-15;
-  const bool exact = result.error <= rounding * size_of(result.value);
+  constexpr double rounding = 1e-15, smallest = std::numeric_limits<double>::min();
+  const bool exact = result.error <= std::max(rounding * size_of(result.value), smallest);
   if (result.error <= tolerance || exact || depth == 0) return result;
   const auto lower = integrate_adaptively(f, low, centre, 0.5 * tolerance, depth - 1);
   const auto upper = integrate_adaptively(f, centre, high, 0.5 * tolerance, depth - 1);

@@ -50,7 +50,7 @@ Key Key::optional() && {
   return std::move(*this);
 }
 
-Key Key::usually_is(std::string words) && {
+Key Key::with_default_text(std::string words) && {
   required = false;
   usually = std::move(words);
   return std::move(*this);

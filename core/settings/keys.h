@@ -73,7 +73,7 @@ struct Key {
   // For keys that a table can do without and that have no constant for a default.
   Key optional() &&;
   // The key with its default in words: "the file's".
-  Key usually_is(std::string words) &&;
+  Key with_default_text(std::string words) &&;
   // A number, or an array of `count` of them.
   Key one_or_several(size_t count) &&;
   Key range_that_varies() &&;

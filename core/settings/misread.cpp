@@ -101,7 +101,7 @@ class Misreading {
       }
     }
     errors_.emplace_back(value.where, full, "an unknown key",
-                         names.empty() ? "no keys here" : known_instead_of(key, names));
+                         names.empty() ? "no keys here" : expected_keys(key, names));
   }
 
   void expect(bool is_so, const SettingsNode& value, const Key& key, const std::string& full) {
@@ -115,7 +115,7 @@ class Misreading {
       for (const auto& [part, number] : pair) {
         if (part == "value" || part == "sigma") continue;
         errors_.emplace_back(number.where, full + "." + part, "an unknown key",
-                             known_instead_of(part, {"value", "sigma"}));
+                             expected_keys(part, {"value", "sigma"}));
       }
       if (const auto nominal = pair.find("value"); nominal != pair.end()) {
         plain(nominal->second, key, written, full + ".value");

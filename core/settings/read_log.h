@@ -39,6 +39,6 @@ std::string one_of(const std::vector<std::string>& choices);
 // The expectation for a word that is none of them, with the most similar.
 std::string one_of(const std::vector<std::string>& choices, const std::string& instead_of);
 // The keys that are expected in the place of an unknown one.
-std::string known_instead_of(std::string_view key, const std::set<std::string>& known);
+std::string expected_keys(std::string_view key, const std::set<std::string>& known);
 
 }  // namespace photorque

@@ -86,8 +86,25 @@ std::string nearest(std::string_view word, const std::set<std::string>& candidat
   return best;
 }
 
+std::string listed_names(std::set<std::string> names, std::string_view wanted) {
+  constexpr size_t most = 12;
+  names.erase("");
+  if (names.empty()) return "none";
+  const std::string likest = nearest(wanted, names);
+  std::string text = likest.empty() ? "" : "perhaps \"" + likest + "\"";
+  if (!likest.empty() && names.size() == 1) return text;
+  if (!likest.empty()) text += ", of ";
+  size_t count = 0;
+  for (const std::string& name : names) {
+    if (++count > most) break;
+    text += (count == 1 ? "\"" : ", \"") + name + "\"";
+  }
+  if (names.size() > most) text += " and " + std::to_string(names.size() - most) + " more";
+  return text;
+}
+
 // The most similar of the known ones, else the first of them all.
-std::string known_instead_of(std::string_view key, const std::set<std::string>& known) {
+std::string expected_keys(std::string_view key, const std::set<std::string>& known) {
   constexpr size_t most = 12;
   if (const std::string likest = nearest(key, known); !likest.empty()) {
     return "a known key, perhaps \"" + likest + "\"";
@@ -193,6 +210,10 @@ Settings Settings::table(std::string_view key) const {
   return {&node, root_, log_, full_name(key)};
 }
 
+Settings Settings::table_or_empty(std::string_view key) const {
+  return has(key) ? table(key) : Settings(SettingsNode{}, full_name(key));
+}
+
 std::vector<Settings> Settings::tables(std::string_view key) const {
   double factor = 1.0;
   const SettingsNode* node = find(key, &factor);
@@ -235,7 +256,7 @@ void Settings::finish() const {
       const auto asked = log_->asked.find(node_);
       throw InputError(
           node.where, full_name(key), "an unknown key",
-          asked == log_->asked.end() ? "only known keys" : known_instead_of(key, asked->second));
+          asked == log_->asked.end() ? "only known keys" : expected_keys(key, asked->second));
     }
     if (node.is_table()) Settings(&node, root_, log_, full_name(key)).finish();
     if (const auto* array = std::get_if<SettingsNode::Array>(&node.value)) {

@@ -72,6 +72,8 @@ class Settings {
  public:
   // `name` is how messages call this table; empty for the root of a file.
   explicit Settings(std::shared_ptr<const SettingsNode> root, std::string name = "");
+  explicit Settings(SettingsNode root = {}, std::string name = "")
+      : Settings(std::make_shared<const SettingsNode>(std::move(root)), std::move(name)) {}
 
   bool has(std::string_view key) const;
 
@@ -111,6 +113,8 @@ class Settings {
 
   // A sub-table; throws when absent.
   Settings table(std::string_view key) const;
+  // One without keys when absent.
+  Settings table_or_empty(std::string_view key) const;
   // The tables of an array of tables, `[[key]]`; empty when absent. A single table counts as one.
   std::vector<Settings> tables(std::string_view key) const;
   // The keys of this table as the user wrote them.
@@ -157,5 +161,10 @@ KeyUnit unit_of_key(std::string_view key);
 
 // The candidate nearest to `word` by edit distance, or empty if none is similar.
 std::string nearest(std::string_view word, const std::set<std::string>& candidates);
+
+// The names that a message offers instead of `wanted`: "perhaps \"b\", of \"a\", \"b\" and 7 more",
+// at most 12 of them, the nearest by nearest() first. Empty names are left out; "none" if there is
+// no other.
+std::string listed_names(std::set<std::string> names, std::string_view wanted);
 
 }  // namespace photorque

@@ -62,13 +62,16 @@ double Settings::to_number(const SettingsNode& node, std::string_view key, doubl
   }
   const double x = written * factor;
   if (!is_inside(x, range)) throw wrong(in_range());
-  // No laboratory needs more of any unit; squares and products stay finite, and places within what
-  // single precision can trace.
+  // Squares and products stay finite, angles keep digits within a turn, and places stay within what
+  // single precision can trace. The Sun and planets may be beyond that.
   const KeyUnit unit = unit_of_key(key);
-  const bool length = unit.dimension == "length";
-  if (!unit.unit.empty() && std::abs(x) > (length ? 1e12 : 1e30)) {
-    throw wrong(length ? "at most 1e12 m" : "at most 1e30 in SI units");
-  }
+  if (unit.unit.empty()) return x;
+  const auto [largest, text] = unit.unit == "au"            ? std::pair{1e16, "at most 66000 au"}
+                               : unit.dimension == "length" ? std::pair{1e12, "at most 1e12 m"}
+                               : unit.dimension == "angle"
+                                   ? std::pair{1e9, "at most 1e9 rad"}
+                                   : std::pair{1e30, "at most 1e30 in SI units"};
+  if (std::abs(x) > largest) throw wrong(text);
   return x;
 }
 

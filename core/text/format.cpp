@@ -1,7 +1,9 @@
 #include "core/text/format.h"
 
 #include <charconv>
+#include <cstdarg>
 #include <cstdint>
+#include <cstdio>
 
 namespace photorque {
 namespace {
@@ -44,10 +46,6 @@ std::string with_true_minus(const std::string& ascii) {
   return text;
 }
 
-}  // namespace
-
-namespace {
-
 // U+0080 to U+009F, which some terminals obey as they do an escape.
 bool is_high_control(std::string_view character) {
   return character.size() > 1 && character[0] == '\xC2' &&
@@ -55,6 +53,17 @@ bool is_high_control(std::string_view character) {
 }
 
 }  // namespace
+
+std::string printed(const char* format, ...) {
+  std::va_list values, again;
+  va_start(values, format);
+  va_copy(again, values);
+  std::string text(static_cast<size_t>(std::vsnprintf(nullptr, 0, format, values)), '\0');
+  std::vsnprintf(text.data(), text.size() + 1, format, again);
+  va_end(again);
+  va_end(values);
+  return text;
+}
 
 std::string clean_text(std::string_view text) {
   std::string clean;
@@ -100,6 +109,15 @@ std::string xml_text(std::string_view text) {
   return escaped;
 }
 
+std::string shell_word(const std::string& word) {
+  static constexpr const char* plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=:,+-";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
 std::string round_trip_number(double value) {
   if (std::isnan(value)) return "";
   if (value == 0.0) value = 0.0;  // no "-0"
@@ -112,18 +130,14 @@ std::string readable_number(double value, int significant) {
   if (std::isnan(value)) return "–";
   if (std::isinf(value)) return value > 0 ? "∞" : "−∞";
   if (value == 0.0) return "0";
-  std::array<char, 64> buffer{};
   // Rounded first, so that 99999.7 is judged as the 1.000e5 that it prints as.
-  std::snprintf(buffer.data(), buffer.size(), "%.*e", significant - 1, value);
-  const std::string scientific = buffer.data();
+  const std::string scientific = printed("%.*e", significant - 1, value);
   const size_t e = scientific.find('e');
   const int exponent = std::stoi(scientific.substr(e + 1));
   if (exponent < -3 || exponent >= 5) {
     return with_true_minus(scientific.substr(0, e)) + "×" + power_of_ten(exponent);
   }
-  const int decimals = std::max(0, significant - 1 - exponent);
-  std::snprintf(buffer.data(), buffer.size(), "%.*f", decimals, value);
-  return with_true_minus(buffer.data());
+  return with_true_minus(printed("%.*f", std::max(0, significant - 1 - exponent), value));
 }
 
 std::string power_of_ten(int exponent) {

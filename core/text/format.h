@@ -2,11 +2,26 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
 
 namespace photorque {
+
+// Values as std::printf() writes them.
+[[gnu::format(printf, 1, 2)]] std::string printed(const char* format, ...);
+
+// The items as texts, `separator` between each two.
+template <class Items, class Text = std::identity>
+std::string joined_text(const Items& items, std::string_view separator, const Text& text = {}) {
+  std::string all;
+  for (const auto& item : items) {
+    if (!all.empty()) all += separator;
+    all += std::invoke(text, item);
+  }
+  return all;
+}
 
 // Valid UTF-8 without control characters: others become U+FFFD or a space. Names come from users'
 // files, and one bad byte would stop cairo from drawing and a JSON file from being read.
@@ -17,6 +32,9 @@ size_t first_character_bytes(std::string_view text);
 
 // `text` as content or attribute value of an XML element.
 std::string xml_text(std::string_view text);
+
+// A text quoted as one word of a shell.
+std::string shell_word(const std::string& word);
 
 // The shortest decimal that reads back as the same double: "0.1", "1.127e-09", "inf"; empty for
 // NaN.

@@ -224,14 +224,14 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
     tell(options, "fitting the laws of a textbook together");
     laws = fit_textbook_laws(nominal_fit, known, data);
   }
-  if (is_far && laws && leaves_only_noise(laws->fit, data)) {
+  if (is_far && laws && is_consistent_with_noise(laws->fit, data)) {
     fine = at_noise_of_readings(nominal, data, options, nominal_fit, &*laws);
     if (fine.decision.finding != inference::Finding::unknown) return fine;
   }
   RecordedData rough = data;
   std::optional<Answer> named =
       identify_with_discrepancy(nominal, rough, options, laws ? &*laws : nullptr);
-  if (named && fine.trials.empty() && leaves_only_noise(named->chosen().fit, data)) {
+  if (named && fine.trials.empty() && is_consistent_with_noise(named->chosen().fit, data)) {
     Answer again = at_noise_of_readings(nominal, data, options, nominal_fit, &named->chosen());
     if (again.decision.finding != inference::Finding::unknown) return again;
   }

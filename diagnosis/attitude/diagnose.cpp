@@ -19,7 +19,6 @@
 #include "diagnosis/attitude/locate.h"
 #include "diagnosis/attitude/manoeuvre.h"
 #include "diagnosis/attitude/recorded_data.h"
-#include "diagnosis/verdict.h"
 
 namespace photorque {
 namespace {

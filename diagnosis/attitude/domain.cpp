@@ -64,10 +64,10 @@ Trial AttitudeDomain::predict(const Trial& trial, const Runs& runs) const {
 
 std::vector<RunStart> AttitudeDomain::initial_conditions_from_data(const Trial& trial,
                                                                    const Runs& runs) const {
-  return seen_starts(trial.fit.best, runs);
+  return starts_from_data(trial.fit.best, runs);
 }
 
-Trial AttitudeDomain::with_begins(Trial trial, const std::vector<Begin>& begins) const {
+Trial AttitudeDomain::with_initial_conditions(Trial trial, const std::vector<Begin>& begins) const {
   trial.fit.best.runs = begins;
   return trial;
 }

@@ -32,9 +32,9 @@ class AttitudeDomain {
   Trial refit_near(const Trial& trial, const Trial& other, const Runs& runs,
                    const Effort& effort) const;
   Trial predict(const Trial& trial, const Runs& runs) const;
-  std::vector<Begin> begins_of(const Trial& trial) const { return trial.fit.best.runs; }
+  std::vector<Begin> initial_conditions_of(const Trial& trial) const { return trial.fit.best.runs; }
   std::vector<Begin> initial_conditions_from_data(const Trial& trial, const Runs& runs) const;
-  Trial with_begins(Trial trial, const std::vector<Begin>& begins) const;
+  Trial with_initial_conditions(Trial trial, const std::vector<Begin>& begins) const;
 
   std::vector<double> gains(const Trial& at, const std::vector<size_t>& candidates,
                             const Runs& runs) const;

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "attitude/disturbances/kind.h"
 #include "core/text/format.h"
 #include "diagnosis/attitude/empirical_torque.h"
 
@@ -316,6 +317,25 @@ std::vector<Alternative> alternatives(const inference::Decision& decision,
   return result;
 }
 
+namespace {
+
+// Moves fitted values into the range of their key, which they may leave by less than the standard
+// error: an experiment file cannot state such a value.
+void keep_within_range(const std::string& kind, FittedParameter& fitted) {
+  const DisturbanceKind* const known = find_kind(kind);
+  if (known == nullptr) return;
+  const KeyUnit unit = unit_of_key(fitted.key);
+  for (const Key& key : known->keys) {
+    const KeyUnit same = unit_of_key(key.name);
+    if (same.stem != unit.stem || same.dimension != unit.dimension) continue;
+    for (double& value : fitted.value) {
+      value = std::clamp(value, key.range.low / unit.to_SI, key.range.high / unit.to_SI);
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<FittedParameter> refined_priors(const Trial& chosen) {
   std::vector<FittedParameter> result;
   const size_t nominal =
@@ -324,6 +344,7 @@ std::vector<FittedParameter> refined_priors(const Trial& chosen) {
           : *std::min_element(chosen.disturbances.begin(), chosen.disturbances.end());
   for (size_t d = 0; d < nominal; ++d) {
     for (FittedParameter& p : fitted_parameters(chosen, d)) {
+      keep_within_range(chosen.fit.best.model.disturbances[d].kind, p);
       p.key = "disturbance[" + std::to_string(d) + "]." + p.key;
       result.push_back(std::move(p));
     }

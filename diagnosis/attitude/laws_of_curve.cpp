@@ -176,7 +176,7 @@ LawsOfCurve laws_of_curve(const Trial& nominal, const Candidates& all,
   LawsOfCurve result;
   std::vector<Curve> curves;
   std::vector<Eigen::VectorXd> rates;
-  result.begins = seen_starts(nominal.fit.best, runs);
+  result.begins = starts_from_data(nominal.fit.best, runs);
   for (size_t run = 0; run < runs.size(); ++run) {
     Curve curve = curve_of(runs[run], stated.platform.axis);
     if (curve.time_s.empty()) return {};

@@ -382,7 +382,7 @@ Among among_with_discrepancy(const NominalModel& nominal, const RecordedData& da
                                                                     : Among::torques;
 }
 
-bool leaves_only_noise(const Fit& fit, const RecordedData& data) {
+bool is_consistent_with_noise(const Fit& fit, const RecordedData& data) {
   constexpr double as_noise = 1.5;  // χ² per sample
   const Fit at_readings = propagate_model(fit, data.train, {});
   return at_readings.chi2_per_sample() < as_noise;

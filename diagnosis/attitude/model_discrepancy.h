@@ -39,6 +39,6 @@ std::optional<Answer> identify_with_discrepancy(const NominalModel& nominal, Rec
                                                 const DiagnoseOptions& options, const Trial* laws);
 
 // Whether a fit agrees with recordings whose noise is that of the readings alone.
-bool leaves_only_noise(const Fit& fit, const RecordedData& data);
+bool is_consistent_with_noise(const Fit& fit, const RecordedData& data);
 
 }  // namespace photorque

@@ -37,7 +37,7 @@ void say_cuts(const std::string& name, const Segments& segments,
   say(segments.too_short,
       " segments with too few readings for their initial conditions are left out");
   for (const std::string& note : segments.notes) warnings.push_back(name + ": " + note);
-  for (const std::string& why : segments.lawless) {
+  for (const std::string& why : segments.exclusions) {
     warnings.push_back(name + ": " + why + ", which is left out");
   }
 }
@@ -116,7 +116,7 @@ double value_at(const Observation& seen, int channel, size_t block) {
     return seen.scalar[static_cast<size_t>(channel - vector_channels)].value[block];
   }
   if (channel >= 3) return seen.gyro_rad_s[block][channel - 3];
-  return rotation_vector(seen.attitude[block])[channel];
+  return turn_vector(seen.attitude[block])[channel];
 }
 
 void leave_out_block(int channel, size_t block, Observation& seen) {
@@ -320,10 +320,11 @@ namespace {
 InstrumentFinding level_finding(int k, const FoundNoise& found, double stated) {
   const double unit = k < 3 ? arcsecond_rad : 1.0;
   const double value = found.noise.level / unit;
-  return {channel_traits(k).name, "noise_level", value, found.level_sigma * value,
-          written("the noise of %s is not what the experiment states: %.3g %s were found in the "
-                  "recording and used, %.3g are stated",
-                  channel_traits(k).spoken, value, k < 3 ? "arcsec" : "rad/s", stated / unit)};
+  return {
+      channel_traits(k).name, "noise_level", value, found.level_sigma * value,
+      written("the noise of %s is not what the experiment states: %.3g %s were found in the "
+              "recording and used, %.3g are stated",
+              channel_traits(k).name_in_text, value, k < 3 ? "arcsec" : "rad/s", stated / unit)};
 }
 
 InstrumentFinding colour_finding(int k, const FoundNoise& found) {
@@ -333,7 +334,7 @@ InstrumentFinding colour_finding(int k, const FoundNoise& found) {
       written(
           "the noise of %s is correlated over %.3g s%s: neighbouring readings count for "
           "less",
-          channel_traits(k).spoken, found.noise.time_s,
+          channel_traits(k).name_in_text, found.noise.time_s,
           all ? "" : written(" (%.0f %% of its variance)", 100.0 * found.noise.coloured).c_str())};
 }
 
@@ -343,7 +344,7 @@ InstrumentFinding tail_finding(int k, const HeavyTail& tail) {
       channel_traits(k).name, "noise_degrees_of_freedom", tail.degrees, tail.degrees_sigma,
       written("the noise of %s has heavy tails (Student's t with %.2g degrees of freedom, scale "
               "%.3g %s): readings far from their neighbours count for less",
-              channel_traits(k).spoken, tail.degrees, tail.scale / unit,
+              channel_traits(k).name_in_text, tail.degrees, tail.scale / unit,
               k < 3 ? "arcsec" : "rad/s")};
 }
 

@@ -102,7 +102,7 @@ class Refinement {
   Trial exchanged(const Trial& trial, const EmpiricalLaw& law, const Disturbance& start,
                   const std::vector<Observation>& runs) {
     all_.list.push_back(candidate_of(law));
-    FitSettings settings = patient();
+    FitSettings settings = until_convergence();
     if (trial.fit.chi2_per_sample() > all_.limits.diverged_chi2_per_sample) {
       settings.windows = all_.limits.fitting.diverged_windows;
     }
@@ -147,7 +147,7 @@ class Refinement {
 
  private:
   // Iterates to convergence as long as the fit can reach the χ² of the previous law.
-  FitSettings patient() const {
+  FitSettings until_convergence() const {
     FitSettings settings;
     settings.max_iterations = 40;
     settings.worth_chi2 = worth_chi2_;
@@ -254,7 +254,7 @@ void Refinement::consider_simpler(const Trial& table, size_t laws) {
   std::ranges::sort(found, {}, [](const auto& f) { return f.second.left; });
   for (size_t k = 0; k < std::min(most, found.size()); ++k) {
     const auto& [c, regression] = found[k];
-    consider(exchange(table, all_, which_, c, regression.start, runs_, patient()));
+    consider(exchange(table, all_, which_, c, regression.start, runs_, until_convergence()));
   }
 }
 

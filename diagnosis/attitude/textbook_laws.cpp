@@ -56,7 +56,7 @@ Trial without_superfluous(Trial trial, const AttitudeDomain& domain, const Candi
     for (size_t i = 0; i < terms.size(); ++i) {
       if (i != *least) rest.push_back({terms[i], {}});
     }
-    Trial fewer = domain.assemble(trial, rest, runs, inference::patient(all.limits));
+    Trial fewer = domain.assemble(trial, rest, runs, inference::until_convergence(all.limits));
     if (!std::isfinite(fewer.fit.chi2)) break;
     trial = std::move(fewer);
   }
@@ -73,7 +73,7 @@ Trial lengthened(const Trial& in_pieces, const inference::RunSet<AttitudeDomain>
         count < pieces.pieces ? domain.cut(runs, count) : std::vector<Observation>();
     if (longer.empty()) continue;
     Trial next = domain.refit(found, longer, domain.initial_conditions_from_data(found, longer),
-                              inference::patient(all.limits));
+                              inference::until_convergence(all.limits));
     if (!std::isfinite(next.fit.chi2)) continue;
     found = without_superfluous(std::move(next), domain, all, longer);
   }
@@ -108,11 +108,11 @@ std::optional<Trial> fit_from_curve(const Trial& nominal, const std::vector<size
                                     const std::vector<Observation>& runs) {
   const LawsOfCurve curve = laws_of_curve(nominal, all, laws, runs);
   if (curve.members.empty()) return std::nullopt;
-  const Trial stated = domain.with_begins(as_stated(nominal), curve.begins);
+  const Trial stated = domain.with_initial_conditions(as_stated(nominal), curve.begins);
   std::optional<Trial> best;
   for (const std::vector<double>& windows :
        {std::vector<double>{1.0}, std::vector<double>{0.1, 0.3, 1.0}}) {
-    inference::Effort effort = inference::patient(all.limits);
+    inference::Effort effort = inference::until_convergence(all.limits);
     effort.windows = windows;
     Trial trial = domain.assemble(stated, curve.members, runs, effort);
     if (std::isfinite(trial.fit.chi2) && !(best && best->fit.chi2 <= trial.fit.chi2)) {
@@ -127,7 +127,7 @@ std::optional<Trial> fit_from_curve(const Trial& nominal, const std::vector<size
 std::optional<Trial> fit_growing(const Trial& nominal, const inference::Members<Start>& members,
                                  const AttitudeDomain& domain, const Candidates& all,
                                  const RecordedData& data) {
-  inference::Effort growing = inference::patient(all.limits);
+  inference::Effort growing = inference::until_convergence(all.limits);
   growing.windows = {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0};
   Trial found = nominal;
   // With rates alone, a piece does not determine its initial angle; the whole recording does.
@@ -136,7 +136,7 @@ std::optional<Trial> fit_growing(const Trial& nominal, const inference::Members<
   if (sees_angle) {
     const auto [pieces, parted] = near_short_pieces(domain, nominal, data.train, all.limits);
     const Trial all_laws =
-        domain.assemble(parted, members, pieces.runs, inference::patient(all.limits));
+        domain.assemble(parted, members, pieces.runs, inference::until_convergence(all.limits));
     const auto in_the_whole = [&](const Trial& laws) {
       return domain.refit(laws, data.train, domain.initial_conditions_from_data(laws, data.train),
                           growing);
@@ -164,7 +164,7 @@ std::optional<Trial> fit_growing(const Trial& nominal, const inference::Members<
   }
   // Collinear laws with opposite signs explain hardly more than those within physics. With rates
   // alone they also follow any slow change, so no law below two standard errors is kept.
-  if (!leaves_only_noise(found.fit, data)) {
+  if (!is_consistent_with_noise(found.fit, data)) {
     constexpr double hardly = 2.0;
     Trial fewer = without_superfluous(found, domain, all, data.train, sees_angle ? 0.0 : 2.0);
     const double most = sees_angle ? hardly * found.fit.chi2 : nominal.fit.chi2;
@@ -188,7 +188,7 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
   std::vector<size_t> laws;
   for (size_t c = 0; c < all.size(); ++c) {
     if (!all[c].is_linear() || all[c].empirical()) continue;
-    const bool is_law = braking_power(all[c], model) || pulls_back(all[c], model) ||
+    const bool is_law = braking_power(all[c], model) || is_restoring(all[c], model) ||
                         all[c].effect.how.steady || all[c].start.stage == Stage::measurement;
     if (!is_law || !all[c].has_linear_strength()) continue;
     members.push_back({{c, domain.start_of(c)}, {}});
@@ -197,7 +197,7 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
   if (members.empty()) return std::nullopt;
   const Trial nominal = nominal_trial(nominal_fit, all);
   const std::optional<Trial> by_curve = fit_from_curve(nominal, laws, domain, all, data.train);
-  if (by_curve && leaves_only_noise(by_curve->fit, data)) return by_curve;
+  if (by_curve && is_consistent_with_noise(by_curve->fit, data)) return by_curve;
   std::optional<Trial> found = fit_growing(nominal, members, domain, all, data);
   if (by_curve && by_curve->fit.chi2 < nominal_fit.chi2 &&
       !(found && found->fit.chi2 <= by_curve->fit.chi2)) {
@@ -248,7 +248,7 @@ std::vector<Trial> fit_sets_of_brakes(const Trial& nominal, const Trial& found,
     for (const auto& member : members) laws.push_back(member.term.candidate);
     const LawsOfCurve curve = laws_of_curve(nominal, all, laws, data.train);
     if (curve.members.size() != members.size()) return;
-    const Trial stated = domain.with_begins(as_stated(nominal), curve.begins);
+    const Trial stated = domain.with_initial_conditions(as_stated(nominal), curve.begins);
     Trial by_curve = domain.assemble(stated, curve.members, data.train, {});
     if (by_curve.fit.chi2 < trials[i].fit.chi2) trials[i] = std::move(by_curve);
   });

@@ -8,7 +8,9 @@
 #include "attitude/recordings/named_columns.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/errors.h"
+#include "core/numerics/median.h"
 #include "core/settings/settings.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 
 namespace photorque {
@@ -21,11 +23,10 @@ std::string clock_unit(const FileHead& head, size_t column) {
     if (std::isfinite(step)) steps.push_back(step);
   }
   if (steps.empty()) return "s";
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
+  const double usual = upper_median(steps);
   const bool whole =
       std::all_of(steps.begin(), steps.end(), [](double s) { return s == std::round(s); });
-  return whole && *middle >= 200.0 ? "us" : whole && *middle >= 2.0 ? "ms" : "s";
+  return whole && usual >= 200.0 ? "us" : whole && usual >= 2.0 ? "ms" : "s";
 }
 
 namespace {
@@ -128,18 +129,6 @@ std::string proposed_names(const FileHead& table, char separator) {
     }
   }
   return names;
-}
-
-// A name that a shell reads as one word.
-std::string shell_word(const std::string& name) {
-  const bool is_plain = std::ranges::all_of(name, [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_' || c == '-' ||
-           c == '/' || c == '+';
-  });
-  if (is_plain) return name;
-  std::string word = "'";
-  for (const char c : name) word += c == '\'' ? "'\\''" : std::string(1, c);
-  return word + "'";
 }
 
 InputError without_header(const std::filesystem::path& path, const FileHead& table,

@@ -102,10 +102,9 @@ std::string guess_experiment(const std::vector<std::filesystem::path>& recording
   if (recordings.empty()) {
     throw InputError({}, "--guess", "nothing", "a recording (CSV), or several of one machine");
   }
-  std::string names;
-  for (const std::filesystem::path& path : recordings) {
-    names += (names.empty() ? "" : ", ") + path.filename().string();
-  }
+  const std::string names = joined_text(recordings, ", ", [&](const std::filesystem::path& path) {
+    return path.filename().string();
+  });
   TomlDocument document;
   document.add_to_head("Made by photorque diagnose --guess from " + names +
                        ". Values were read from there; assumptions are marked CONFIRM.");

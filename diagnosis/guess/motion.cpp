@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 
 #include "attitude/estimation/free_inertia.h"
@@ -13,6 +12,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/linear.h"
+#include "core/text/format.h"
 #include "diagnosis/guess/guess.h"
 
 namespace photorque {
@@ -23,9 +23,7 @@ namespace fs = std::filesystem;
 constexpr size_t fewest_readings = 20;  // as of Observation
 
 std::string digits(double value, int significant = 3) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*g", significant, value);
-  return text;
+  return printed("%.*g", significant, value);
 }
 
 // Rounds to three digits.
@@ -169,8 +167,8 @@ void add_noise(TomlDocument& document, const std::vector<Observation>& runs,
   const auto [least, most] = std::minmax_element(levels.begin(), levels.end());
   constexpr double alike = 2.0;
   if (*most > alike * *least) {
-    std::string all;
-    for (const double level : levels) all += (all.empty() ? "" : ", ") + digits(level);
+    const std::string all =
+        joined_text(levels, ", ", [&](const double level) { return digits(level); });
     return document.comment(
         "Neighbouring readings scatter by " + all + " (sensors." + key +
         "), which differs from axis to axis: it is left out, and diagnose finds it.");
@@ -189,7 +187,7 @@ bool passes_its_mean(const std::vector<Observation>& runs, int axis) {
     for (size_t i = 0; i < seen.blocks(); ++i) {
       if (!(seen.attitude_rows[i] > 0.0)) continue;
       if (i > 0 && seen.attitude_rows[i - 1] > 0.0) {
-        at_rad += rotation_vector(seen.attitude[i] * seen.attitude[i - 1].conjugate())[axis];
+        at_rad += turn_vector(seen.attitude[i] * seen.attitude[i - 1].conjugate())[axis];
       }
       angle_rad.push_back(at_rad);
     }

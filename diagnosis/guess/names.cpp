@@ -10,6 +10,7 @@
 #include "attitude/recordings/text_lines.h"
 #include "core/errors.h"
 #include "core/settings/settings.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 #include "diagnosis/guess/file_head.h"
 #include "diagnosis/guess/header.h"
@@ -488,11 +489,8 @@ GuessedCurve guess_curve(const std::filesystem::path& path) {
 }
 
 std::string names_in(const std::filesystem::path& path) {
-  std::string names;
-  for (const std::string& name : head_of(path).header) {
-    names += (names.empty() ? "" : ", ") + in_quotes(header_cell_text(name));
-  }
-  return names;
+  return joined_text(head_of(path).header, ", ",
+                     [&](const std::string& name) { return in_quotes(header_cell_text(name)); });
 }
 
 }  // namespace photorque

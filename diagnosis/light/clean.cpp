@@ -96,7 +96,7 @@ std::vector<size_t> rows_without_outliers(const LightRun& run, const Eigen::Vect
   return good;
 }
 
-std::vector<size_t> rows_without_strays(const LightRun& run, const Eigen::VectorXd& residuals) {
+std::vector<size_t> rows_within_noise(const LightRun& run, const Eigen::VectorXd& residuals) {
   constexpr double stray_sigma = 5.0, from_all_sigma = 3.0, median_of_normal = 0.6745;
   const LightRecording& r = run.recording();
   const size_t channels = run.channels().size();

@@ -8,7 +8,6 @@
 #include "diagnosis/light/domain.h"
 #include "diagnosis/light/findings.h"
 #include "diagnosis/light/segments.h"
-#include "diagnosis/verdict.h"
 #include "inference/decide.h"
 #include "inference/search.h"
 #include "inference/weigh.h"
@@ -119,7 +118,7 @@ bool drop_wild(const LightTrial& about, const LightCandidates& all, LightData& d
       const std::vector<size_t> good =
           about.candidates.empty() || runs == &data.held
               ? rows_without_outliers(*run.run, residuals, all.limits.noise)
-              : rows_without_strays(*run.run, residuals);
+              : rows_within_noise(*run.run, residuals);
       if (good.size() == run.run->rows() || good.empty()) continue;
       dropped += static_cast<int64_t>(run.run->rows() - good.size());
       run = part_of(run, good, all.nominal);
@@ -143,7 +142,8 @@ LightAnswer explain_light(const LightLab& lab, const NominalLight& nominal, Ligh
   const LightTrial best = answer.trials[inference::by_evidence(answer.trials).front()];
   if (drop_wild(best, answer.all, data)) {
     const LightTrial base = nominal_light_trial(answer.all, data.train);
-    const LightTrial from = domain.refit(best, data.train, {}, inference::patient(domain.limits()));
+    const LightTrial from =
+        domain.refit(best, data.train, {}, inference::until_convergence(domain.limits()));
     answer.trials =
         inference::Rounds<LightDomain>(domain, {data.train}, base,
                                        domain.limits().search.max_effects, options.threads)

@@ -39,7 +39,7 @@ std::vector<size_t> rows_without_outliers(const LightRun& run, const Eigen::Vect
 // is off by five standard errors, and as far from the median of its neighbours, occurs by chance
 // once in a million. (A wrong factor on a reading in little light causes no larger deviation, and
 // such readings strongly affect the fitted edge of a beam.)
-std::vector<size_t> rows_without_strays(const LightRun& run, const Eigen::VectorXd& residuals);
+std::vector<size_t> rows_within_noise(const LightRun& run, const Eigen::VectorXd& residuals);
 
 // Throws InputError for recordings that the experiment cannot model: curves without an array. The
 // result is independent of the number of threads.

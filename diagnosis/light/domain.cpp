@@ -222,7 +222,7 @@ std::vector<std::vector<LightStart>> LightDomain::starts(const Trial& parent,
                                                          const std::vector<size_t>& candidates,
                                                          const Runs& runs, const Runs&,
                                                          int threads) const {
-  return scanned_starts(parent, all_, candidates, runs, threads);
+  return starts_from_scan(parent, all_, candidates, runs, threads);
 }
 
 std::vector<FittedRun> LightDomain::average(const Trial&, const Runs& runs, size_t count) const {

@@ -29,13 +29,13 @@ class LightDomain {
   Trial refit_near(const Trial& trial, const Trial& other, const Runs& runs,
                    const Effort& effort) const;
   Trial predict(const Trial& trial, const Runs& runs) const;
-  std::vector<Begin> begins_of(const Trial& trial) const {
+  std::vector<Begin> initial_conditions_of(const Trial& trial) const {
     return std::vector<Begin>(trial.fit.run_chi2.size());
   }
   std::vector<Begin> initial_conditions_from_data(const Trial&, const Runs& runs) const {
     return std::vector<Begin>(runs.size());
   }
-  Trial with_begins(Trial trial, const std::vector<Begin>&) const { return trial; }
+  Trial with_initial_conditions(Trial trial, const std::vector<Begin>&) const { return trial; }
 
   std::vector<double> gains(const Trial& at, const std::vector<size_t>& candidates,
                             const Runs& runs) const;

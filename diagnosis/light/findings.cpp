@@ -14,7 +14,7 @@ namespace {
 bool is_dark(const LightTrial& trial, const LightCandidates& all, size_t which) {
   const LightCandidate& c = all[trial.candidates[which]];
   if (c.kind.name != "led_derated") return false;
-  return leaves_nothing(trial.x[which][0], trial.fit, columns_of(trial, all, which).front());
+  return leaves_no_light(trial.x[which][0], trial.fit, columns_of(trial, all, which).front());
 }
 
 std::vector<std::string> light_kinds(const LightTrial& trial, const LightCandidates& all) {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/numerics/linear.h"
+#include "core/numerics/order.h"
 #include "core/parallel.h"
 
 namespace photorque {
@@ -84,10 +84,8 @@ std::vector<LightStart> best_of_grid(const LightCandidate& c, const std::vector<
   }
   std::vector<double> gain;
   for (const std::vector<double>& x : grid) gain.push_back(gain_alone(c, x, left));
-  std::vector<size_t> order(grid.size());
-  std::iota(order.begin(), order.end(), size_t{0});
-  std::ranges::stable_sort(order, [&](size_t a, size_t b) { return gain[a] > gain[b]; });
-  for (const size_t i : order) {
+  for (const size_t i :
+       sorted_indices(grid.size(), [&](size_t a, size_t b) { return gain[a] > gain[b]; })) {
     if (result.size() == most || gain[i] < limits.min_scan_gain) break;
     result.push_back({grid[i]});
   }
@@ -96,11 +94,11 @@ std::vector<LightStart> best_of_grid(const LightCandidate& c, const std::vector<
 
 }  // namespace
 
-std::vector<std::vector<LightStart>> scanned_starts(const LightTrial& parent,
-                                                    const LightCandidates& all,
-                                                    const std::vector<size_t>& candidates,
-                                                    const std::vector<FittedRun>& runs,
-                                                    int threads) {
+std::vector<std::vector<LightStart>> starts_from_scan(const LightTrial& parent,
+                                                      const LightCandidates& all,
+                                                      const std::vector<size_t>& candidates,
+                                                      const std::vector<FittedRun>& runs,
+                                                      int threads) {
   std::vector<std::vector<LightStart>> result(candidates.size());
   const std::vector<LeftOfRun> left = left_of(parent, all, runs);
   parallel_for(candidates.size(), threads, [&](size_t i) {

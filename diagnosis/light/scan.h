@@ -15,11 +15,11 @@ struct LeftOfRun {
 };
 
 // For each candidate the few starts with the largest predicted gains; none without a gain.
-std::vector<std::vector<LightStart>> scanned_starts(const LightTrial& parent,
-                                                    const LightCandidates& all,
-                                                    const std::vector<size_t>& candidates,
-                                                    const std::vector<FittedRun>& runs,
-                                                    int threads);
+std::vector<std::vector<LightStart>> starts_from_scan(const LightTrial& parent,
+                                                      const LightCandidates& all,
+                                                      const std::vector<size_t>& candidates,
+                                                      const std::vector<FittedRun>& runs,
+                                                      int threads);
 
 // Opaque boxes that explain missing light of the scans, as numbers of the effect unmodelled_shadow,
 // best first. A plane above the receiver is carved: an element may be opaque only if all light

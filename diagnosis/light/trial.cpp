@@ -146,7 +146,7 @@ std::vector<inference::Parameter> parameters_of(const LightCandidates& all,
 // prior width.
 bool is_point(const LightCandidate& c, const LightTrial& trial, size_t member,
               Eigen::Index column) {
-  return c.kind.name == "led_derated" && leaves_nothing(trial.x[member][0], trial.fit, column);
+  return c.kind.name == "led_derated" && leaves_no_light(trial.x[member][0], trial.fit, column);
 }
 
 // Laplace's approximation. The prior of the fit, which only keeps numbers from diverging, is
@@ -227,7 +227,7 @@ void judge(LightTrial& trial, const LightCandidates& all) {
 
 }  // namespace
 
-bool leaves_nothing(double derating, const inference::Fit& fit, Eigen::Index column) {
+bool leaves_no_light(double derating, const inference::Fit& fit, Eigen::Index column) {
   const double sigma = std::sqrt(std::max(0.0, fit.shared_posterior()(column, column)));
   constexpr double known_to = 0.1, within = 3.0;
   return sigma < known_to && 1.0 + derating < std::max(within * sigma, 1e-3);

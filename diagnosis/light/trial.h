@@ -20,7 +20,7 @@ struct LightStart {
 };
 
 // Whether a lamp's derating, fitted as `column`, leaves no light.
-bool leaves_nothing(double derating, const inference::Fit& fit, Eigen::Index column);
+bool leaves_no_light(double derating, const inference::Fit& fit, Eigen::Index column);
 
 // The physical state of a trial.
 LightState state_of(const LightTrial& trial, const LightCandidates& all);

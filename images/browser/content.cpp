@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numerics/extremes.h"
 #include "core/text/format.h"
 #include "images/drawing/colour.h"
 #include "images/drawing/plot.h"
@@ -18,8 +19,8 @@ Json figure_json(const PageFigure& figure) {
   return {{"key", clean_text(figure.key)},
           {"label", clean_text(figure.label)},
           {"unit", clean_text(figure.unit)},
-          {"value", json_number(figure.estimate.value)},
-          {"error", json_number(figure.estimate.standard_error)}};
+          {"value", figure.estimate.value},
+          {"error", figure.estimate.standard_error}};
 }
 
 Json figures_json(const std::vector<PageFigure>& figures) {
@@ -32,8 +33,8 @@ Json power_json(const std::vector<PowerStage>& stages) {
   Json list = Json::array();
   for (const PowerStage& stage : stages) {
     list.push_back({{"label", clean_text(stage.label)},
-                    {"value", json_number(stage.power_W.value)},
-                    {"error", json_number(stage.power_W.standard_error)},
+                    {"value", stage.power_W.value},
+                    {"error", stage.power_W.standard_error},
                     {"total", stage.is_total}});
   }
   return list;
@@ -53,7 +54,7 @@ Json table_json(const Table& table, size_t most_rows) {
     Json cells = Json::array();
     for (size_t i = 0; i < std::min(shown, column.size()); ++i) {
       if (column.texts.empty()) {
-        cells.push_back(json_number(column.values[i]));
+        cells.push_back(column.values[i]);
       } else {
         cells.push_back(clean_text(column.texts[i]));
       }
@@ -66,30 +67,9 @@ Json table_json(const Table& table, size_t most_rows) {
           {"columns", std::move(columns)}};
 }
 
-// Of every interval of points the lowest and the highest, so that no peak is lost.
-std::vector<size_t> kept_points(const std::vector<double>& y, size_t most) {
-  std::vector<size_t> kept;
-  const size_t intervals = std::max<size_t>(1, most / 2);
-  if (y.size() <= most) {
-    for (size_t i = 0; i < y.size(); ++i) kept.push_back(i);
-    return kept;
-  }
-  for (size_t s = 0; s < intervals; ++s) {
-    const size_t from = s * y.size() / intervals, to = (s + 1) * y.size() / intervals;
-    size_t low = from, high = from;
-    for (size_t i = from; i < to; ++i) {
-      if (y[i] < y[low] || !std::isfinite(y[low])) low = i;
-      if (y[i] > y[high] || !std::isfinite(y[high])) high = i;
-    }
-    kept.push_back(std::min(low, high));
-    if (low != high) kept.push_back(std::max(low, high));
-  }
-  return kept;
-}
-
 Json curve_json(const Plot::Curve& curve, size_t most_points) {
   static constexpr const char* colours[] = {"", "blue", "vermilion", "green", "grey"};
-  const std::vector<size_t> kept = kept_points(curve.y, most_points);
+  const std::vector<size_t> kept = lows_and_highs(curve.y, most_points);
   const auto pick = [&](const std::vector<double>& of) {
     std::vector<double> picked;
     for (const size_t i : kept) {
@@ -116,7 +96,7 @@ Json panel_json(const Plot::Panel& panel, const PageLimits& limits) {
     curves.push_back(curve_json(curve, limits.curve_points));
   }
   Json levels = Json::array();
-  for (const double level : panel.levels) levels.push_back(json_number(level));
+  for (const double level : panel.levels) levels.push_back(level);
   return {{"y_label", clean_text(panel.y_label)},
           {"log", panel.y_log},
           {"robust", panel.robust_range},
@@ -125,12 +105,12 @@ Json panel_json(const Plot::Panel& panel, const PageLimits& limits) {
 }
 
 Json plot_json(const Plot& of, const RunPage& page, const PageLimits& limits) {
-  const Plot plot = in_readable_time(of);
+  const Plot plot = with_readable_time_unit(of);
   Json panels = Json::array();
   for (const Plot::Panel& panel : panels_of(plot)) panels.push_back(panel_json(panel, limits));
   Json shaded = Json::array();
   for (const Plot::Interval& interval : plot.shaded) {
-    shaded.push_back({json_number(interval.from), json_number(interval.to)});
+    shaded.push_back({interval.from, interval.to});
   }
   Json json = {
       {"name", clean_text(plot.name)},       {"title", clean_text(plot.title)},
@@ -142,10 +122,10 @@ Json plot_json(const Plot& of, const RunPage& page, const PageLimits& limits) {
   if (cursor != page.cursors.end()) {
     json["cursor"] = {{"axis", cursor->axis},
                       {"x_per_unit", cursor->x_per_unit / per_unit},
-                      {"x_from", json_number(cursor->x_from / per_unit)}};
+                      {"x_from", cursor->x_from / per_unit}};
     if (cursor->only_at) {
       json["cursor"]["only_at"] = {{"axis", cursor->only_at->first},
-                                   {"value", json_number(cursor->only_at->second)}};
+                                   {"value", cursor->only_at->second}};
     }
   }
   return json;
@@ -162,17 +142,17 @@ Json map_content(const Map& map, int factor) {
                {"height", small.height},
                {"bins", {map.width, map.height}},
                {"factor", factor},
-               {"x_low", json_number(map.x_low)},
-               {"x_high", json_number(map.x_high)},
-               {"y_low", json_number(map.y_low)},
-               {"y_high", json_number(map.y_high)},
+               {"x_low", map.x_low},
+               {"x_high", map.x_high},
+               {"y_low", map.y_low},
+               {"y_high", map.y_high},
                {"x_label", clean_text(map.x_label)},
                {"y_label", clean_text(map.y_label)},
                {"equal_scale", map.equal_scale},
                {"smooth", map.smooth},
                {"colours", diverging ? "cool_warm" : "viridis"},
-               {"low", json_number(scale.low)},
-               {"high", json_number(scale.high)},
+               {"low", scale.low},
+               {"high", scale.high},
                {"value", packed_rounded(small.value)}};
   if (!small.standard_error.empty()) json["error"] = packed_rounded(small.standard_error);
   return json;

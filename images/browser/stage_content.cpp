@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json vector_json(const Vec3& v) {
-  return {json_number(v.x()), json_number(v.y()), json_number(v.z())};
+  return {v.x(), v.y(), v.z()};
 }
 
 Json rgb_json(const Rgb& colour) {
@@ -120,8 +120,8 @@ Json painting_json(const Painting& painting, const Product& product) {
   return {{"title", clean_text(painting.title)},
           {"unit", clean_text(painting.unit)},
           {"colours", diverging ? "cool_warm" : "viridis"},
-          {"low", json_number(scale.low)},
-          {"high", json_number(scale.high)},
+          {"low", scale.low},
+          {"high", scale.high},
           {"surfaces", std::move(surfaces)}};
 }
 
@@ -131,7 +131,7 @@ Json lamps_json(const std::vector<StageLamp>& lamps) {
     list.push_back({{"name", clean_text(lamp.name)},
                     {"position", vector_json(lamp.position_lab_m)},
                     {"direction", vector_json(lamp.direction_lab)},
-                    {"radius", json_number(lamp.radius_m)},
+                    {"radius", lamp.radius_m},
                     {"far", lamp.is_far}});
   }
   return list;
@@ -144,7 +144,7 @@ Json arrows_json(const std::vector<StageArrow>& arrows) {
     list.push_back({{"name", clean_text(arrow.name)},
                     {"unit", clean_text(arrow.unit)},
                     {"kind", kinds[static_cast<size_t>(arrow.kind)]},
-                    {"m_per_unit", json_number(arrow.m_per_unit)},
+                    {"m_per_unit", arrow.m_per_unit},
                     {"remark", clean_text(arrow.remark)}});
   }
   return list;

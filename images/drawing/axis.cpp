@@ -53,9 +53,7 @@ int engineering_exponent(double largest) {
 }
 
 std::string tick_label(double scaled, int decimals) {
-  std::array<char, 400> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.*f", decimals, std::abs(scaled));
-  const std::string digits = buffer.data();
+  const std::string digits = printed("%.*f", decimals, std::abs(scaled));
   const bool zero = digits.find_first_not_of("0.") == std::string::npos;
   return scaled < 0.0 && !zero ? "−" + digits : digits;
 }

@@ -9,7 +9,7 @@
 #include <map>
 
 #include "core/errors.h"
-#include "core/own_file.h"
+#include "core/files.h"
 #include "core/text/format.h"
 
 namespace photorque {
@@ -148,15 +148,15 @@ std::string text_element(const std::string& clean, const PagePoint& at, const Te
                              : style.align == TextAlign::right ? "end"
                                                                : "middle";
   const double down = style.level == TextLevel::middle ? 0.5 * capital_height * style.size : 0.0;
-  std::array<char, 400> head{};
-  std::snprintf(head.data(), head.size(),
-                "<text transform=\"translate(%.2f %.2f) rotate(%.2f)\" y=\"%.2f\" "
-                "font-family=\"DejaVu Sans, Verdana, sans-serif\" font-size=\"%.2f\"%s "
-                "fill=\"#%02x%02x%02x\" text-anchor=\"%s\" textLength=\"%.2f\" "
-                "lengthAdjust=\"spacingAndGlyphs\">",
-                at.x, at.y, -style.turn_rad * 180.0 / std::numbers::pi, down, style.size,
-                style.bold ? " font-weight=\"bold\"" : "", red, green, blue, anchor, width);
-  return clean.empty() ? "" : head.data() + xml_text(clean) + "</text>\n";
+  if (clean.empty()) return "";
+  return printed(
+             "<text transform=\"translate(%.2f %.2f) rotate(%.2f)\" y=\"%.2f\" "
+             "font-family=\"DejaVu Sans, Verdana, sans-serif\" font-size=\"%.2f\"%s "
+             "fill=\"#%02x%02x%02x\" text-anchor=\"%s\" textLength=\"%.2f\" "
+             "lengthAdjust=\"spacingAndGlyphs\">",
+             at.x, at.y, -style.turn_rad * 180.0 / std::numbers::pi, down, style.size,
+             style.bold ? " font-weight=\"bold\"" : "", red, green, blue, anchor, width) +
+         xml_text(clean) + "</text>\n";
 }
 
 // Before the end of the root element.

@@ -86,6 +86,61 @@ double smooth_value(const Map& map, double x, double y) {
   return sum;
 }
 
+// Whether the values of a smooth map fill the circle through its outermost nodes.
+bool is_round(const Map& map) {
+  if (!map.smooth || map.width != map.height || map.width < 8) return false;
+  const double middle = 0.5 * (map.width - 1);
+  for (int row = 0; row < map.height; ++row) {
+    for (int column = 0; column < map.width; ++column) {
+      const double outside = std::hypot(column - middle, row - middle) - middle;
+      const bool has_value =
+          std::isfinite(map.value[static_cast<size_t>(row) * map.width + column]);
+      if (std::abs(outside) > 1e-6 && has_value == (outside > 0.0)) return false;
+    }
+  }
+  return true;
+}
+
+// A round map whose field goes on straight along the radius beyond the rim, for interpolation
+// there.
+Map beyond_rim(Map map) {
+  const double middle_x = 0.5 * (map.width - 1), middle_y = 0.5 * (map.height - 1);
+  const double rim = std::min(middle_x, middle_y);
+  constexpr double step = 1.5;  // nodes: all four around a place so far inside have values
+  if (rim < 2.0 * step) return map;
+  const auto extend = [&](const std::vector<double>& values) {
+    if (values.empty()) return values;
+    Map inside = map;
+    inside.value = values;
+    std::vector<double> extended = values;
+    for (int row = 0; row < map.height; ++row) {
+      for (int column = 0; column < map.width; ++column) {
+        const double x = column - middle_x, y = row - middle_y, distance = std::hypot(x, y);
+        double& value = extended[static_cast<size_t>(row) * map.width + column];
+        if (std::isfinite(value) || distance > rim + 2.0 * step) continue;
+        const auto at = [&](double radius) {
+          return smooth_value(inside, middle_x + x * radius / distance,
+                              middle_y + y * radius / distance);
+        };
+        const double outer = at(rim - step), inner = at(rim - 2.0 * step);
+        value = outer + (outer - inner) * (distance - rim + step) / step;
+      }
+    }
+    return extended;
+  };
+  std::vector<double> value = extend(map.value), error = extend(map.standard_error);
+  map.value = std::move(value);
+  map.standard_error = std::move(error);
+  return map;
+}
+
+// The part of a pixel within the rim of a round map, from 0 to 1; 1 for other maps.
+double part_within_rim(bool round, int column, int row, int columns, int rows) {
+  if (!round) return 1.0;
+  const double x = (2.0 * (column + 0.5) / columns - 1.0), y = 2.0 * (row + 0.5) / rows - 1.0;
+  return std::clamp(0.5 * std::min(columns, rows) * (1.0 - std::hypot(x, y)) + 0.5, 0.0, 1.0);
+}
+
 Ticks contour_levels(const ColourScale& scale) {
   constexpr int most_levels = 17;
   return linear_ticks(scale.low, scale.high, most_levels);
@@ -94,14 +149,18 @@ Ticks contour_levels(const ColourScale& scale) {
 // A smooth field with a thin line, as dark as it is near, wherever it passes one of even levels.
 class SmoothField {
  public:
-  SmoothField(const Map& map, const ColourScale& scale, int columns, int rows)
+  SmoothField(const Map& stored, const ColourScale& scale, int columns, int rows)
       : scale_(scale), columns_(columns), rows_(rows) {
+    const bool round = is_round(stored);
+    const Map map = round ? beyond_rim(stored) : stored;
     const Ticks ticks = contour_levels(scale);
     if (ticks.values.size() > 1) step_ = ticks.values[1] - ticks.values[0];
     for (int row = 0; row < rows; ++row) {
       for (int column = 0; column < columns; ++column) {
-        value_.push_back(smooth_value(map, (column + 0.5) * (map.width - 1) / columns,
-                                      (rows - row - 0.5) * (map.height - 1) / rows));
+        value_.push_back(part_within_rim(round, column, row, columns, rows) > 0.0
+                             ? smooth_value(map, (column + 0.5) * (map.width - 1) / columns,
+                                            (rows - row - 0.5) * (map.height - 1) / rows)
+                             : std::numeric_limits<double>::quiet_NaN());
       }
     }
   }
@@ -163,8 +222,8 @@ std::vector<uint32_t> plain_pixels(const Map& map, const ColourScale& scale, int
 // Where a value is within two standard errors of zero.
 class UnsureArea {
  public:
-  explicit UnsureArea(const Map& map) : map_(map), errors_(map) {
-    errors_.value = map.standard_error;
+  explicit UnsureArea(const Map& map) : map_(is_round(map) ? beyond_rim(map) : map), errors_(map_) {
+    errors_.value = map_.standard_error;
   }
   bool at(int column, int row, int columns, int rows) const {
     const double error = value(errors_, column, row, columns, rows);
@@ -181,8 +240,7 @@ class UnsureArea {
                         (rows - row - 0.5) * (of.height - 1) / rows);
   }
 
-  const Map& map_;
-  Map errors_;
+  Map map_, errors_;
 };
 
 std::optional<UnsureArea> unsure_area(const Map& map) {
@@ -261,11 +319,15 @@ std::vector<uint32_t> map_pixels(const Map& map, const ColourScale& scale, int c
   std::vector<uint32_t> pixels = map.smooth ? smooth_pixels(map, scale, columns, rows)
                                             : plain_pixels(map, scale, columns, rows);
   const std::optional<UnsureArea> unsure = unsure_area(map);
-  if (!unsure) return pixels;
+  const bool round = is_round(map);
+  if (!unsure && !round) return pixels;
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       uint32_t& pixel = pixels[static_cast<size_t>(row) * columns + column];
-      if (pixel != 0u && unsure->at(column, row, columns, rows)) pixel = opaque(unsure_grey);
+      if (pixel == 0u) continue;
+      if (unsure && unsure->at(column, row, columns, rows)) pixel = opaque(unsure_grey);
+      const double part = part_within_rim(round, column, row, columns, rows);
+      pixel = (pixel & 0x00FFFFFFu) | static_cast<uint32_t>(std::lround(255.0 * part)) << 24;
     }
   }
   return pixels;

@@ -201,7 +201,9 @@ void draw_zero_line(Canvas& canvas, const ChartPanel& panel) {
   canvas.line({panel.frame.x, y}, {panel.frame.right(), y}, {{0.6, 0.6, 0.6}, 0.9});
 }
 
-void draw_shaded(Canvas& canvas, const ChartPanel& panel, const Plot& plot, bool with_label) {
+// The label stands at the top, or at the bottom where the legend covers the top.
+void draw_shaded(Canvas& canvas, const ChartPanel& panel, const Plot& plot, bool with_label,
+                 const PageBox& legend) {
   bool labelled = !with_label || plot.shaded_label.empty();
   for (const Plot::Interval& interval : plot.shaded) {
     const auto x_of = [&](double value) {
@@ -214,7 +216,12 @@ void draw_shaded(Canvas& canvas, const ChartPanel& panel, const Plot& plot, bool
     if (labelled || to - from < text_width(plot.shaded_label, tick_style) + 12.0) continue;
     TextStyle style = tick_style;
     style.align = TextAlign::right;
-    canvas.text(plot.shaded_label, {to - 6.0, panel.frame.y + 1.4 * style.size}, style);
+    const double left = to - 6.0 - text_width(plot.shaded_label, style);
+    const double top = panel.frame.y + 1.4 * style.size;
+    const bool is_covered =
+        legend.width > 0.0 && legend.x < to && left < legend.right() && legend.y < top;
+    canvas.text(plot.shaded_label,
+                {to - 6.0, is_covered ? panel.frame.bottom() - 0.7 * style.size : top}, style);
     labelled = true;
   }
 }
@@ -250,7 +257,7 @@ struct PlotPage {
 PlotPage page_of(const Plot& plot, const Provenance& provenance, PictureStyle style) {
   require_consistent(plot);
   PlotPage page;
-  page.plot = in_readable_time(plot);
+  page.plot = with_readable_time_unit(plot);
   page.width = std::round(page_width * page_scale(style));
   page.text = page_text(plot.title, caption_of(plot), provenance, page.width, style);
   page.layout = plot_layout(page.plot, {.left = page_margin,
@@ -335,7 +342,10 @@ void draw_plot(Canvas& canvas, const Plot& plot, const PlotLayout& layout) {
   const std::vector<Plot::Panel> panels = panels_of(plot);
   for (size_t i = 0; i < layout.panels.size(); ++i) {
     const ChartPanel& panel = layout.panels[i];
-    draw_shaded(canvas, panel, plot, i == 0);
+    const Legend& legend = layout.legends[i];
+    const PagePoint outside{panel.frame.right() + 6.0, panel.frame.y};
+    const PagePoint corner = layout.below.value_or(free_corner(panel, legend).value_or(outside));
+    draw_shaded(canvas, panel, plot, i == 0, {corner.x, corner.y, legend.width, legend.height});
     draw_grid(canvas, panel);
     draw_zero_line(canvas, panel);
     draw_curves(canvas, panel);
@@ -344,14 +354,7 @@ void draw_plot(Canvas& canvas, const Plot& plot, const PlotLayout& layout) {
     draw_vertical_axis(canvas, panel.frame, panel.y, layout.axis_width);
     if (i + 1 == layout.panels.size()) draw_horizontal_axis(canvas, panel.frame, panel.x);
     draw_names(canvas, panel);
-    if (layout.legends[i].curves.empty()) continue;
-    if (layout.below) {
-      draw_legend(canvas, panel, layout.legends[i], *layout.below);
-      continue;
-    }
-    const PagePoint outside{panel.frame.right() + 6.0, panel.frame.y};
-    draw_legend(canvas, panel, layout.legends[i],
-                free_corner(panel, layout.legends[i]).value_or(outside));
+    if (!legend.curves.empty()) draw_legend(canvas, panel, legend, corner);
   }
 }
 
@@ -366,13 +369,12 @@ constexpr TimeUnit long_units[] = {
     {"d", 86400.0, 259200.0}, {"h", 3600.0, 7200.0}, {"min", 60.0, 600.0}};
 
 bool is_time_in(const std::string& label, std::string_view unit) {
-  const std::string end = "[" + std::string(unit) + "]";
-  return label.ends_with("Time " + end) || label.ends_with("time " + end);
+  return label.ends_with("time [" + std::string(unit) + "]");
 }
 
 }  // namespace
 
-Plot in_readable_time(Plot plot) {
+Plot with_readable_time_unit(Plot plot) {
   if (plot.x_log || !is_time_in(plot.x_label, "s")) return plot;
   const AxisRange range = x_range(panels_of(plot), false);
   const auto* const unit = std::ranges::find_if(
@@ -423,7 +425,7 @@ std::string pdf_of(const Plot& plot, const Provenance& provenance, const PdfText
 
 std::string plot_html(const Plot& of) {
   require_consistent(of);
-  const Plot plot = in_readable_time(of);
+  const Plot plot = with_readable_time_unit(of);
   // Half of the last tick's label is beyond the frame.
   constexpr double half_label = 12.0;
   const PlotLayout layout = plot_layout(plot, {.left = 2.0,

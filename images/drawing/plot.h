@@ -41,16 +41,16 @@ PlotLayout plot_layout(const Plot& plot, const PlotRoom& room);
 // Shaded intervals, grids, curves, levels, frames, axes and legends.
 void draw_plot(Canvas& canvas, const Plot& plot, const PlotLayout& layout);
 
-// A plot whose x is "Time [s]", in minutes from ten minutes on, hours from two hours, days from
+// A plot whose x is "time [s]", in minutes from ten minutes on, hours from two hours, days from
 // three days.
-Plot in_readable_time(Plot plot);
-// Seconds in the unit of its x axis: 60 of "Time [min]", 1 where it is no other time.
+Plot with_readable_time_unit(Plot plot);
+// Seconds in the unit of its x axis: 60 of "time [min]", 1 where it is no other time.
 double seconds_of_unit(const Plot& plot);
 
-// Panels are stacked and share the x axis, of time as by in_readable_time(). Errors are drawn as ±1
-// standard error: bars on markers, bands around lines. The legend stands in a free corner, or
-// outside if there is none. Values that are not finite, or not positive on a logarithmic axis,
-// leave gaps. InputError if sizes disagree.
+// Panels are stacked and share the x axis, of time as by with_readable_time_unit(). Errors are
+// drawn as ±1 standard error: bars on markers, bands around lines. The legend stands in a free
+// corner, or outside if there is none. Values that are not finite, or not positive on a logarithmic
+// axis, leave gaps. InputError if sizes disagree.
 Picture plot_picture(const Plot& plot, const Provenance& provenance,
                      PictureStyle style = PictureStyle::page);
 std::string svg_of(const Plot& plot, const Provenance& provenance,

@@ -22,13 +22,12 @@ std::string summary_json(const Product& product, const Provenance& provenance,
     if (summary.contains(key) || key == "provenance") {
       throw InputError({}, name, "two results with this name", "different names");
     }
-    summary[key] = {{"value", json_number(estimate.value)},
-                    {"standard_error", json_number(estimate.standard_error)}};
+    summary[key] = {{"value", estimate.value}, {"standard_error", estimate.standard_error}};
   }
   nlohmann::ordered_json& made_by = summary["provenance"];
   made_by = provenance_json(provenance);
   if (cost.rays) made_by["rays"] = *cost.rays;
-  if (cost.wall_time_s) made_by["wall_time_s"] = json_number(*cost.wall_time_s);
+  if (cost.wall_time_s) made_by["wall_time_s"] = *cost.wall_time_s;
   return summary.dump(2) + "\n";
 }
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "core/errors.h"
-#include "core/own_file.h"
+#include "core/files.h"
 
 namespace photorque {
 namespace {

@@ -41,20 +41,16 @@ Json map_json(const Map& map, const Provenance& provenance) {
           {"unit", clean_text(map.unit)},
           {"x_label", clean_text(map.x_label)},
           {"y_label", clean_text(map.y_label)},
-          {"x_low", json_number(map.x_low)},
-          {"x_high", json_number(map.x_high)},
-          {"y_low", json_number(map.y_low)},
-          {"y_high", json_number(map.y_high)},
+          {"x_low", map.x_low},
+          {"x_high", map.x_high},
+          {"y_low", map.y_low},
+          {"y_high", map.y_high},
           {"rows", "top row is the largest y"},
           {"provenance", provenance_json(provenance)}};
 }
 
 std::string ascii_line(const Json& json) {
   return json.dump(-1, ' ', true);
-}
-
-Json json_number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
 std::vector<ImageChannel> map_channels(const Map& map) {
@@ -65,10 +61,10 @@ std::vector<ImageChannel> map_channels(const Map& map) {
 }
 
 ImageMetadata map_metadata(const Map& map, const Provenance& provenance) {
-  std::string inputs;
-  for (const auto& [file, hash] : provenance.inputs) {
-    inputs += (inputs.empty() ? "" : " ") + file + ":" + hash;
-  }
+  const std::string inputs = joined_text(provenance.inputs, " ", [&](const auto& item) {
+    const auto& [file, hash] = item;
+    return file + ":" + hash;
+  });
   return {.description = ascii_line(map_json(map, provenance)),
           .title = clean_text(map.title),
           .program = clean_text(provenance.program + " " + provenance.version),

@@ -18,9 +18,6 @@ nlohmann::ordered_json map_json(const Map& map, const Provenance& provenance);
 // One line of ASCII (other characters escaped), for formats whose text is ASCII or Latin-1.
 std::string ascii_line(const nlohmann::ordered_json& json);
 
-// A number, or null where it is not finite: JSON has no other way to state it.
-nlohmann::ordered_json json_number(double value);
-
 // "value" and "standard_error" (zeros where the map is exact), rounded to float. Image rows run
 // downwards: row 0 is the largest y. InputError if the map's sizes disagree.
 std::vector<ImageChannel> map_channels(const Map& map);

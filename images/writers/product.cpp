@@ -4,6 +4,7 @@
 
 #include "core/errors.h"
 #include "core/settings/settings.h"
+#include "core/text/format.h"
 #include "images/writers/kind.h"
 
 namespace photorque {
@@ -18,8 +19,7 @@ std::vector<WriterKind> kinds_named(const std::vector<std::string>& formats) {
   for (const std::string& format : formats) {
     const auto kind = std::ranges::find(all, format, &WriterKind::name);
     if (kind == all.end()) {
-      std::string known;
-      for (const WriterKind& each : all) known += (known.empty() ? "" : ", ") + each.name;
+      const std::string known = joined_text(all, ", ", &WriterKind::name);
       throw InputError({}, "format", "\"" + format + "\"", "one of " + known);
     }
     chosen.push_back(*kind);

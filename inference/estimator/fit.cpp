@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "core/errors.h"
@@ -86,7 +85,7 @@ class Outlook {
     return std::log(sums.chi2 / worth_chi2_) > acceleration * fall() * left;
   }
   // Call after is_out_of_reach(). A good fit is iterated to convergence.
-  bool creeps(const SumsOfRuns& sums) const {
+  bool is_stalling(const SumsOfRuns& sums) const {
     constexpr double misfit_per_sample = 1.2;
     if (fallen_.size() <= memory || fall() >= creep_) return false;
     return sums.chi2 > misfit_per_sample * static_cast<double>(sums.samples);
@@ -208,7 +207,7 @@ class Fitter {
         if (damping > options_.max_damping) return Termination::no_step_lowers;
         was_refused = true;
         if (outlook.is_out_of_reach(now.sums, iteration)) return Termination::out_of_reach;
-        if (outlook.creeps(now.sums)) return Termination::max_iterations;
+        if (outlook.is_stalling(now.sums)) return Termination::max_iterations;
         continue;
       }
       now_ = std::move(tried);
@@ -220,7 +219,7 @@ class Fitter {
       was_refused = false;
       now = at_once ? std::move(at) : evaluate(model_, now_, {true, window});
       if (outlook.is_out_of_reach(now.sums, iteration)) return Termination::out_of_reach;
-      if (outlook.creeps(now.sums)) return Termination::max_iterations;
+      if (outlook.is_stalling(now.sums)) return Termination::max_iterations;
     }
     return Termination::max_iterations;
   }
@@ -322,58 +321,6 @@ Eigen::MatrixXd Fit::shared_posterior() const {
 Fit fit(const ForwardModel& model, const Eigen::VectorXd& start, const Options& options) {
   options.check();
   return Fitter(model, start, options).run();
-}
-
-// Text report of a fit.
-
-namespace {
-
-const char* words_of(Termination termination) {
-  switch (termination) {
-    case Termination::converged:
-      return "converged";
-    case Termination::no_step_lowers:
-      return "no step lowers chi2 any more";
-    case Termination::max_iterations:
-      return "stopped at the largest number of iterations";
-    case Termination::out_of_reach:
-      return "stopped: the fit is far worse than the best one";
-    case Termination::not_evaluable:
-      return "the model cannot be evaluated";
-  }
-  return "";
-}
-
-// Reason for the value of a parameter other than the data; empty if the data determine it.
-const char* determined_by(const Parameter& p, double standard_error, bool is_determined) {
-  if (!is_determined) return "undetermined";
-  if (p.value <= p.lowest || p.value >= p.highest) return "on its bound";
-  // The data reduce the width of the prior by less than one per cent.
-  constexpr double by_prior_alone = 0.99;
-  if (p.has_prior() && standard_error > by_prior_alone * p.sigma) return "by its prior alone";
-  return "";
-}
-
-}  // namespace
-
-std::string Fit::report() const {
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "%s after %d iterations: chi2 %.6g (data %.6g) of %lld samples, %lld parameters\n",
-                words_of(termination), iterations, chi2, data_chi2, static_cast<long long>(samples),
-                static_cast<long long>(parameters.size()));
-  std::string all = text;
-  const Covariance known = covariance();
-  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
-    const Parameter& p = parameters[i];
-    const double error = known.standard_error(i);
-    std::snprintf(text, sizeof text, "  %-32s %14.8g +- %-10.3g %-8s %s", p.name.c_str(), p.value,
-                  error, p.unit.c_str(), determined_by(p, error, known.is_determined(i)));
-    all += text;
-    all.erase(all.find_last_not_of(' ') + 1);
-    all += '\n';
-  }
-  return all;
 }
 
 }  // namespace photorque::inference

@@ -97,10 +97,6 @@ struct Fit {
   Covariance shared() const;
   // Covariance of the shared parameters if every parameter has a prior: always finite.
   Eigen::MatrixXd shared_posterior() const;
-
-  // Text: one line on the termination, then every parameter with its error and whether data, prior
-  // or a bound determines it.
-  std::string report() const;
 };
 
 // `start` is a point of the model. Does not throw if the model cannot be evaluated there: χ² is

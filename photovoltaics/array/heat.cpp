@@ -44,11 +44,6 @@ constexpr NumberKey start("start_K", temperatures,
                           {.usually = "`air_K`; with a disturbance `\"orbit\"` 293.15"});
 }  // namespace thermal_key
 
-Settings table_or_empty(const Settings& array) {
-  if (array.has(array_key::thermal)) return array.get(array_key::thermal);
-  return Settings(std::make_shared<const SettingsNode>(), array.name() + ".thermal");
-}
-
 }  // namespace
 
 std::string CellHeat::in_words() const {
@@ -162,7 +157,7 @@ CellPlate::Step CellPlate::step(double from_K, double heating_W_m2, double step_
 
 CellHeat read_cell_heat(const Settings& array, const Surroundings& around) {
   using namespace thermal_key;
-  const Settings s = table_or_empty(array);
+  const Settings s = array.table_or_empty(array_key::thermal);
   CellHeat heat;
   heat.air_K = s.get_or(air, around.air_K);
   heat.air_pressure_Pa = around.air_pressure_Pa;

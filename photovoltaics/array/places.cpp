@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/numerics/connected.h"
+#include "core/numerics/order.h"
 #include "photovoltaics/array/keys.h"
 #include "receivers/surface_grid.h"
 
@@ -99,9 +100,8 @@ FoundCell found_cell(const FacePiece& piece, const Scene& scene, const SurfaceGr
 // The place of each number among the distinct ones, and how many of these there are; numbers closer
 // than `apart` are one.
 std::pair<std::vector<int>, int> ranks(const std::vector<double>& numbers, double apart) {
-  std::vector<size_t> order(numbers.size());
-  std::iota(order.begin(), order.end(), size_t{0});
-  std::ranges::sort(order, {}, [&](size_t i) { return numbers[i]; });
+  const std::vector<size_t> order =
+      sorted_indices(numbers.size(), [&](size_t a, size_t b) { return numbers[a] < numbers[b]; });
   std::vector<int> rank(numbers.size(), 0);
   int last = 0;
   for (size_t k = 1; k < order.size(); ++k) {

@@ -1,4 +1,6 @@
 // The results of an array as tables, curves and maps.
+#include <algorithm>
+
 #include "core/text/format.h"
 #include "photovoltaics/array/array.h"
 
@@ -17,7 +19,7 @@ Map cell_map(const ArrayResult& result, const std::string& name, const std::stri
   map.y_high = result.rows;
   map.x_label = "cell along u";
   map.y_label = "cell along v";
-  map.signed_values = signed_values;
+  map.signed_values = signed_values && *std::ranges::min_element(values) < 0.0;
   map.value = std::move(values);
   return map;
 }

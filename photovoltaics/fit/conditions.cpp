@@ -9,6 +9,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/numerics/order.h"
 #include "photovoltaics/fit/parts.h"
 
 namespace photorque {
@@ -256,9 +257,9 @@ inference::Fit best_fit(Task& task, const VectorXd& start, std::vector<OutlierRe
 // to the curve itself. Infinite if the fit fails.
 std::vector<double> predicted_squares(const Task& task, const VectorXd& start) {
   const size_t count = task.curves.size(), folds = std::min<size_t>(5, count);
-  std::vector<size_t> by_light(count);
-  std::iota(by_light.begin(), by_light.end(), size_t{0});
-  std::ranges::stable_sort(by_light, {}, [&](size_t k) { return start[static_cast<Index>(k)]; });
+  const std::vector<size_t> by_light = sorted_indices(count, [&](size_t a, size_t b) {
+    return start[static_cast<Index>(a)] < start[static_cast<Index>(b)];
+  });
   // The curves of one fold, or all others, with their lights and the shared values.
   const auto part = [&](size_t fold, bool others, const VectorXd& shared) {
     std::pair<Task, VectorXd> result{task, VectorXd(static_cast<Index>(count) + shared_count)};

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
+#include "core/numerics/order.h"
 #include "photovoltaics/fit/curve_text.h"
 
 namespace photorque {
@@ -18,13 +18,10 @@ double median(std::vector<double> values) {
 
 // Order of the readings: by rising voltage, and at equal voltage by falling current.
 std::vector<size_t> order_of(const IvSweep& sweep) {
-  std::vector<size_t> order(sweep.voltage_V.size());
-  std::iota(order.begin(), order.end(), size_t{0});
-  std::ranges::stable_sort(order, [&](size_t a, size_t b) {
+  return sorted_indices(sweep.voltage_V.size(), [&](size_t a, size_t b) {
     if (sweep.voltage_V[a] != sweep.voltage_V[b]) return sweep.voltage_V[a] < sweep.voltage_V[b];
     return sweep.current_A[a] > sweep.current_A[b];
   });
-  return order;
 }
 
 // A single reading off both neighbours, which agree with each other and with those beyond.

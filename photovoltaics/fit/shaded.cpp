@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
 
 #include "core/errors.h"
+#include "core/numerics/order.h"
 #include "photovoltaics/fit/parts.h"
 
 namespace photorque {
@@ -39,9 +39,8 @@ std::vector<ArrayCurve::SlopedPoint> string_points(const VectorXd& x,
   const ArrayCurve curve = string_curve(single_diode(std::exp(x[saturation]), std::exp(x[scale]),
                                                      std::exp(x[series]), std::exp(-x[shunt])),
                                         std::exp(x[drop]), light_A);
-  std::vector<size_t> order(voltage_V.size());
-  std::iota(order.begin(), order.end(), size_t{0});
-  std::ranges::sort(order, {}, [&](size_t i) { return voltage_V[i]; });
+  const std::vector<size_t> order = sorted_indices(
+      voltage_V.size(), [&](size_t a, size_t b) { return voltage_V[a] < voltage_V[b]; });
   std::vector<double> rising_V;
   for (const size_t i : order) rising_V.push_back(voltage_V[i]);
   const std::vector<ArrayCurve::SlopedPoint> rising = curve.at_voltages(rising_V);

@@ -66,7 +66,7 @@ ArrayCurve::ArrayCurve(const ArrayWiring& wiring, CellTables tables,
                      "one per photocurrent");
   }
   check(wiring, cells_);
-  put_in_light(photocurrents_A);
+  set_photocurrents(photocurrents_A);
   add_strings(wiring, photocurrents_A, changes);
   if (!by_current()) group_strings();
   for (const StringCurve& string : strings_) switches_.push_back(switches_of(string));
@@ -74,7 +74,7 @@ ArrayCurve::ArrayCurve(const ArrayWiring& wiring, CellTables tables,
 }
 
 // Cells whose shunt changes with the light: one law for each light.
-void ArrayCurve::put_in_light(const std::vector<double>& photocurrents_A) {
+void ArrayCurve::set_photocurrents(const std::vector<double>& photocurrents_A) {
   std::map<std::pair<const DiodeVoltageLaw*, double>, std::shared_ptr<const DiodeVoltageLaw>> known;
   std::vector<std::shared_ptr<const DiodeVoltageLaw>> replaced;  // alive, so that addresses differ
   for (size_t i = 0; i < cells_; ++i) {

@@ -129,7 +129,7 @@ class ArrayCurve {
   };
   CurrentGuess guess_current(size_t s, double x, Node& node, const Node* low,
                              const Node* high) const;
-  void put_in_light(const std::vector<double>& photocurrents_A);
+  void set_photocurrents(const std::vector<double>& photocurrents_A);
   void add_strings(const ArrayWiring& wiring, const std::vector<double>& photocurrents_A,
                    const ArrayChanges& changes);
   void group_strings();

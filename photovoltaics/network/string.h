@@ -185,7 +185,7 @@ class StringCurve {
   double tied_A(uint32_t index, double voltage_V, const StringRegime* regime, uint32_t but,
                 Slopes* slopes, StringState& state) const;
   // The part in parallel whose diodes hold the voltage of all; `nothing` where none does.
-  uint32_t holding_part(uint32_t index, const StringRegime& regime) const;
+  uint32_t clamping_part(uint32_t index, const StringRegime& regime) const;
   bool is_held(uint32_t index, const StringRegime& regime) const;
   // The current of a part at a voltage.
   double part_A(uint32_t index, double voltage_V, const StringRegime* regime,

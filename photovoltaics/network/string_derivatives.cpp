@@ -12,7 +12,7 @@ SlopeRange StringCurve::part_range(uint32_t index, const StringState& low_i,
   const Part& part = parts_[index];
   SlopeRange sum;
   if (part.in_parallel) {
-    if (holding_part(index, regime) != nothing) return {};
+    if (clamping_part(index, regime) != nothing) return {};
     for (uint32_t c = part.first_cell; c < part.first_cell + part.cells; ++c) {
       sum += inverted(cell_range(cells_[c], low_i.cells[c], high_i.cells[c]));
     }
@@ -62,7 +62,7 @@ StringCurve::PartMotion StringCurve::motion_of(uint32_t index, const StringState
   if (regime.clamped[index] != 0) return motion;
   const Part& part = parts_[index];
   if (part.in_parallel) {
-    if (holding_part(index, regime) != nothing) return motion;
+    if (clamping_part(index, regime) != nothing) return motion;
     Slopes all;  // of I(V)
     const auto add = [&](const Slopes& branch, std::vector<VoltageMotion> moved) {
       all += inverted(branch);

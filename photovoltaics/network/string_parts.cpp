@@ -134,12 +134,12 @@ bool StringCurve::is_held(uint32_t index, const StringRegime& regime) const {
   const Part& part = parts_[index];
   if (part.bypass.kind == Diode::Kind::clamp && regime.clamped[index] != 0) return true;
   if (part.bypass.kind == Diode::Kind::junction || !part.has_clamps) return false;
-  if (part.in_parallel) return holding_part(index, regime) != nothing;
+  if (part.in_parallel) return clamping_part(index, regime) != nothing;
   return part.runs == 0 &&
          std::ranges::all_of(inner(part), [&](uint32_t p) { return is_held(p, regime); });
 }
 
-uint32_t StringCurve::holding_part(uint32_t index, const StringRegime& regime) const {
+uint32_t StringCurve::clamping_part(uint32_t index, const StringRegime& regime) const {
   const Part& part = parts_[index];
   if (!part.has_clamps) return nothing;
   for (const uint32_t p : inner(part)) {
@@ -154,7 +154,8 @@ ElementPoint StringCurve::tied_at(uint32_t index, double current_A, const String
   if (regime == nullptr && part.has_clamps) {
     return tied_nested_at(index, current_A, nullptr, state);
   }
-  if (const uint32_t p = regime != nullptr ? holding_part(index, *regime) : nothing; p != nothing) {
+  if (const uint32_t p = regime != nullptr ? clamping_part(index, *regime) : nothing;
+      p != nothing) {
     // The part takes the remainder.
     const double voltage_V = part_at(p, parts_[p].light_A, regime, 1e-9, state).voltage_V;
     const double others_A = tied_A(index, voltage_V, regime, p, nullptr, state);

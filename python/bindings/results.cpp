@@ -25,10 +25,12 @@ py::dict columns_of(const py::object& self) {
 }
 
 py::object column_called(const py::object& self, const std::string& name) {
+  std::string names;
   for (const Table::Column& column : self.cast<const Table&>().columns) {
     if (column.name == name) return column_view(column, self);
+    names += (names.empty() ? "" : ", ") + column.name;
   }
-  throw py::key_error(name);
+  throw py::key_error("no column '" + name + "', expected one of " + names);
 }
 
 void bind_table(py::module_& module) {
@@ -164,8 +166,7 @@ void bind_results(py::module_& module) {
       .def_readonly("standard_error", &Estimate::standard_error)
       .def("__float__", [](const Estimate& estimate) { return estimate.value; })
       .def("__repr__", [](const Estimate& estimate) {
-        return "Estimate(" + std::string(py::str(py::float_(estimate.value))) + " ± " +
-               std::string(py::str(py::float_(estimate.standard_error))) + ")";
+        return "Estimate(" + std::string(trimmed(show(estimate, ""))) + ")";
       });
   bind_table(module);
   bind_map(module);

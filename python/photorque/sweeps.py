@@ -18,6 +18,10 @@ class Sweep:
         self.figures = figures
         self.standard_errors = standard_errors
 
+    def __repr__(self) -> str:
+        axes = ", ".join(f"{key}: {len(values)}" for key, values in self.axes.items())
+        return f"<sweep over {axes}; figures {', '.join(self.figures)}>"
+
     def best(self, figure: str, smallest: bool = False) -> dict[str, Any]:
         """The keys of the run with the largest (or smallest) figure."""
         values = self.figures[figure]

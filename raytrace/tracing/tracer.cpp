@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -418,7 +417,6 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
                   std::span<const Beam> beams, std::span<const Receiver* const> receivers,
                   const TraceOptions& options) {
   check(options, beams);
-  const auto start = std::chrono::steady_clock::now();
   const TraceableScene::Data& data = scene.data();
   const Plan plan = make_plan(data, lab_from_body, beams, options);
 
@@ -447,7 +445,6 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
   result.power_balance = make_power_balance(by_replicate, plan);
   result.rays = plan.rays;
   result.sent_W = plan.emitted_W - plan.untraced_W;
-  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }
 

@@ -84,7 +84,6 @@ struct TraceResult {
   uint64_t rays = 0;          // traced from the sources
   double sent_W = 0.0;        // their power: emitted, but for parallel light that meets nothing
   uint64_t segments = 0;      // traced, bounces included
-  double wall_s = 0.0;
 };
 
 // About how much memory [bytes] each of a receiver's bins takes in a trace and in what is made of

@@ -91,7 +91,7 @@ void add_ray(std::vector<float>& rays, const Sight& sight, const VisiblePoint& s
 
 }  // namespace
 
-bool stands_far(const Beam& beam, double radius_m) {
+bool is_too_far_to_draw(const Beam& beam, double radius_m) {
   return beam.lab_from_emitter.translation_m.norm() > far_radii * radius_m ||
          (beam.aperture && std::isinf(beam.aperture->radius_m));
 }

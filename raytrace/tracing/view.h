@@ -35,7 +35,7 @@ std::vector<VisiblePoint> look(const TraceableScene& scene, size_t count,
 
 // Whether a lamp is too far from a scene of `radius_m` about the lab origin to be drawn beside it,
 // or has no place at all (parallel light).
-bool stands_far(const Beam& beam, double radius_m);
+bool is_too_far_to_draw(const Beam& beam, double radius_m);
 
 // About so many rays, shared evenly by the lamps, as these emit them: lab frame, x, y, z of where
 // each starts (near the scene) and of where it first meets something, or leaves the scene's

@@ -1,7 +1,6 @@
 #include "receivers/gather/gather.h"
 
 #include <algorithm>
-#include <chrono>
 #include <numeric>
 
 #include "core/errors.h"
@@ -121,12 +120,9 @@ Gathered gather_direct(const TraceableScene& scene, const RigidTransform& lab_fr
     throw InputError({"gather"}, map.name(), "a surface or a source that needs rays",
                      "one side of a flat surface, and sources with uniform apertures");
   }
-  const auto start = std::chrono::steady_clock::now();
   const Gathering gathering(scene, lab_from_body, beams, {map.grid(), map.bands(), map.grid().side},
                             options.threads, true);
-  Gathered result = gather_on(gathering, map, options);
-  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  return gather_on(gathering, map, options);
 }
 
 }  // namespace photorque

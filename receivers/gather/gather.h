@@ -39,7 +39,6 @@ struct Gathered {
   size_t shaded_pairs = 0;
   uint64_t shadow_rays = 0;
   double worst_error = 0.0;  // relative standard error of the bins that `floor` names
-  double wall_s = 0.0;
 };
 
 // Whether gather_direct() applies: a flat map, one side of it that absorbs the same at every angle

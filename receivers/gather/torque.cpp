@@ -1,7 +1,6 @@
 #include "receivers/gather/gather.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "core/constants.h"
@@ -216,7 +215,6 @@ Gathered gather_torque(const TraceableScene& scene, const RigidTransform& lab_fr
     throw InputError({"gather"}, map.name(), "a surface or a source that needs rays",
                      "a flat, plain surface, and sources with uniform apertures");
   }
-  const auto start = std::chrono::steady_clock::now();
   Gathered total;
   const size_t entries = map.direct_entries();
   total.direct = {entries, options.replicates,
@@ -228,7 +226,6 @@ Gathered gather_torque(const TraceableScene& scene, const RigidTransform& lab_fr
       add_side(scene, lab_from_body, beams, map, side, options, total);
     }
   }
-  total.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return total;
 }
 

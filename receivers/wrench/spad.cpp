@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -33,28 +33,24 @@ std::string header_value(std::string text) {
 }
 
 std::string motion_text(int number, const char* name, double half_turn_deg, size_t nodes) {
-  char text[256];
-  std::snprintf(text, sizeof text,
-                "Motion    : %d\n  Name    : %s\n  Method  : Step\n  Minimum : %.0f\n"
-                "  Maximum : %.0f\n  Step    : %.12g\n",
-                number, name, -half_turn_deg, half_turn_deg,
-                2 * half_turn_deg / static_cast<double>(nodes - 1));
-  return text;
+  return printed(
+      "Motion    : %d\n  Name    : %s\n  Method  : Step\n  Minimum : %.0f\n"
+      "  Maximum : %.0f\n  Step    : %.12g\n",
+      number, name, -half_turn_deg, half_turn_deg,
+      2 * half_turn_deg / static_cast<double>(nodes - 1));
 }
 
 std::string row_text(const WrenchTable& table, size_t around, size_t polar, bool has_torque) {
   const Vec3& f = table.force_body_N[table.node(around, polar)];
   const Vec3& t = table.torque_body_N_m[table.node(around, polar)];
-  char text[256];
-  int length = std::snprintf(text, sizeof text, " %16.12g %16.12g %19.12e %19.12e %19.12e",
-                             table.around_rad[around] / degree_rad,
-                             table.polar_rad[polar] / degree_rad, f.x(), f.y(), f.z());
+  std::string text =
+      printed(" %16.12g %16.12g %19.12e %19.12e %19.12e", table.around_rad[around] / degree_rad,
+              table.polar_rad[polar] / degree_rad, f.x(), f.y(), f.z());
   if (has_torque) {
-    length += std::snprintf(text + length, sizeof text - static_cast<size_t>(length),
-                            " %19.12e %19.12e %19.12e %19.12e %19.12e", f.norm(), t.x(), t.y(),
-                            t.z(), t.norm());
+    text += printed(" %19.12e %19.12e %19.12e %19.12e %19.12e", f.norm(), t.x(), t.y(), t.z(),
+                    t.norm());
   }
-  return std::string(text, static_cast<size_t>(length)) + "\n";
+  return text + "\n";
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <span>
 #include <unordered_map>
 
+#include "core/text/format.h"
 #include "core/text/parse.h"
 #include "scenes/cad/part.h"
 
@@ -72,11 +74,7 @@ class ObjReader {
   }
 
   std::string rest() const {
-    std::string text;
-    for (size_t i = 1; i < words_.size(); ++i) {
-      text += (text.empty() ? "" : " ") + std::string(words_[i]);
-    }
-    return text;
+    return words_.empty() ? "" : joined_text(std::span(words_).subspan(1), " ");
   }
 
   // x, y, z, then a weight or a colour, which are ignored.

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/constants.h"
 #include "core/numerics/root.h"
 #include "core/settings/settings.h"
+#include "core/text/format.h"
 #include "photovoltaics/cell/front.h"
 
 namespace photorque {
@@ -82,11 +82,7 @@ std::string range_of(const EffectParameter& parameter) {
     return std::isinf(x) ? x : value_of(parameter, x) / unit_of_key(parameter.key).to_SI;
   };
   const auto [low, high] = std::minmax({end_of(parameter.lowest), end_of(parameter.highest)});
-  const auto shown = [](double end) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", end);
-    return std::string(text);
-  };
+  const auto shown = [](double end) { return printed("%.3g", end); };
   if (std::isinf(low) && std::isinf(high)) return "";
   if (std::isinf(high)) return "at least " + shown(low);
   if (std::isinf(low)) return "at most " + shown(high);

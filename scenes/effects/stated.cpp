@@ -5,8 +5,8 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/settings/settings.h"
 #include "core/text/format.h"
-#include "core/text/names.h"
 #include "scenes/effects/kind.h"
 #include "sources/lamps/kind.h"
 
@@ -156,7 +156,7 @@ std::vector<Beam> beams_with_divergence(const Experiment& experiment, double sca
     SourceContext context;
     context.scene_radius_m = experiment.scene.radius_m();
     context.folder = experiment.file.path.parent_path();
-    const Settings source(std::make_shared<const SettingsNode>(std::move(node)), written.name());
+    const Settings source(std::move(node), written.name());
     for (Beam& beam : kind->make(source, context)) beams.push_back(std::move(beam));
   }
   return beams;
@@ -177,10 +177,7 @@ RigidTransform displaced_pose(const Beam& beam, const Vec2& aim, const Vec3& shi
 }
 
 Quat biased_attitude(const Quat& lab_from_body, const Vec2& bias_rad) {
-  const double angle = bias_rad.norm();
-  if (angle == 0.0) return lab_from_body;
-  const Vec3 axis(bias_rad.x() / angle, bias_rad.y() / angle, 0.0);
-  return Quat(Eigen::AngleAxisd(angle, axis)) * lab_from_body;
+  return turn_by({bias_rad.x(), bias_rad.y(), 0.0}) * lab_from_body;
 }
 
 LightState stated_effects(const Experiment& experiment, const LightParts& parts) {

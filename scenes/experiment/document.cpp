@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "core/text/format.h"
@@ -42,9 +41,7 @@ std::string quoted_text(std::string_view text) {
     if (character == "\n") return std::string("\\n");
     if (character == "\t") return std::string("\\t");
     // For control characters from U+0080 on, the second UTF-8 byte is the code.
-    char code[8];
-    std::snprintf(code, sizeof code, "\\u%04x", static_cast<unsigned char>(character.back()));
-    return std::string(code);
+    return printed("\\u%04x", static_cast<unsigned char>(character.back()));
   };
   return '"' + for_each_character(text, escaped) + '"';
 }
@@ -108,15 +105,12 @@ struct ValueWriter {
   std::string operator()(double value) const { return real_text(value); }
   std::string operator()(const std::string& value) const { return quoted_text(value); }
   std::string operator()(const SettingsNode::Array& items) const {
-    std::string all;
-    for (const SettingsNode& item : items) all += (all.empty() ? "" : ", ") + toml_value(item);
-    return "[" + all + "]";
+    return "[" + joined_text(items, ", ", toml_value) + "]";
   }
   std::string operator()(const SettingsNode::Table& table) const {
-    std::string all;
-    for (const auto* entry : in_order(table)) {
-      all += (all.empty() ? "" : ", ") + key_text(entry->first) + " = " + toml_value(entry->second);
-    }
+    const std::string all = joined_text(in_order(table), ", ", [&](const auto* entry) {
+      return key_text(entry->first) + " = " + toml_value(entry->second);
+    });
     return all.empty() ? "{}" : "{ " + all + " }";
   }
 };

@@ -87,8 +87,8 @@ void add_unresolved_parts(const Scene& scene, std::vector<std::string>& lines) {
 
 }  // namespace
 
-std::vector<std::string> doubts_about(const Scene& scene, std::span<const Beam> beams,
-                                      const RigidTransform& lab_from_body) {
+std::vector<std::string> geometry_warnings(const Scene& scene, std::span<const Beam> beams,
+                                           const RigidTransform& lab_from_body) {
   std::vector<std::string> lines;
   add_lamps_inside(scene, beams, lab_from_body, lines);
   add_unresolved_parts(scene, lines);

@@ -14,7 +14,7 @@ namespace photorque {
 
 // Warnings, one line each: lamps whose centre is inside a closed opaque part, at this attitude;
 // parts that are too small, compared with the scene, for the single precision of ray casting.
-std::vector<std::string> doubts_about(const Scene& scene, std::span<const Beam> beams,
-                                      const RigidTransform& lab_from_body);
+std::vector<std::string> geometry_warnings(const Scene& scene, std::span<const Beam> beams,
+                                           const RigidTransform& lab_from_body);
 
 }  // namespace photorque

@@ -121,7 +121,7 @@ std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
   }
   require_sunlight_to_land(file, scene, beams);
   for (const Beam& beam : file.further_beams) {
-    const Settings lamp(std::make_shared<const SettingsNode>(), "lamp \"" + beam.name + "\"");
+    const Settings lamp(SettingsNode{}, "lamp \"" + beam.name + "\"");
     require_spectrum_inside(lamp, beam, scene.bands);
     require_traceable(lamp, beam);
     beams.push_back(beam);
@@ -258,7 +258,8 @@ Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture)
   experiment.lab_from_body =
       lab_from_body_at(experiment.file.attitude.tilt_rad, experiment.file.attitude.heading_rad);
   experiment.camera = camera;
-  experiment.warnings = doubts_about(experiment.scene, experiment.beams, experiment.lab_from_body);
+  experiment.warnings =
+      geometry_warnings(experiment.scene, experiment.beams, experiment.lab_from_body);
   experiment.notices = std::move(model.notices);
   experiment.inputs = experiment.file.inputs;
   experiment.inputs.insert(experiment.inputs.end(), model.inputs.begin(), model.inputs.end());

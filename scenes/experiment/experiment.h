@@ -75,7 +75,7 @@ Camera camera_framing(double radius_m);
 struct ExperimentFile {
   std::filesystem::path path;
   // The whole file, overrides included.
-  Settings settings{std::make_shared<const SettingsNode>()};
+  Settings settings{SettingsNode{}};
   std::vector<std::pair<std::string, std::string>> inputs;  // for Provenance: this file, overrides
 
   // Of an optical run; empty when the file has no [scene].
@@ -134,7 +134,7 @@ struct Experiment {
   RigidTransform lab_from_body;  // from [attitude]
   Camera camera;
   std::vector<std::string> notices;  // assumptions of the scene's reader, one line each
-  // Doubts about results, one line each: see doubts_about().
+  // Doubts about results, one line each: see geometry_warnings().
   std::vector<std::string> warnings = {};
   std::vector<std::pair<std::string, std::string>> inputs;  // experiment, overrides, scene files
 

@@ -207,13 +207,13 @@ std::vector<Settings> ExperimentFile::others(const std::string& key) const {
   if (!settings.has(key)) return all;
   const SettingsNode& node = settings.raw(key);
   if (node.is_table()) {
-    all.emplace_back(std::make_shared<const SettingsNode>(node), key);
+    all.emplace_back(node, key);
   } else if (const auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
     for (size_t i = 0; i < items->size(); ++i) {
       const SettingsNode& item = (*items)[i];
       const std::string name = key + "[" + std::to_string(i) + "]";
       if (!item.is_table()) throw InputError(item.where, name, describe(item), "a table");
-      all.emplace_back(std::make_shared<const SettingsNode>(item), name);
+      all.emplace_back(item, name);
     }
   } else {
     throw settings.error(key, describe(node), "a table [" + key + "]");

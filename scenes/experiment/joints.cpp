@@ -6,7 +6,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/text/names.h"
+#include "core/settings/settings.h"
 
 namespace photorque {
 namespace {

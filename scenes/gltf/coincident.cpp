@@ -440,8 +440,8 @@ std::vector<std::string> lines_about(const Scene& scene, const std::vector<Pair>
   std::vector<std::string> lines;
   for (const auto& [parts, faces] : most_first) {
     if (lines.size() == most_lines) {
-      lines.push_back("faces that lie in each other: " +
-                      std::to_string(most_first.size() - most_lines) + " more pairs of parts");
+      lines.push_back("coincident faces: " + std::to_string(most_first.size() - most_lines) +
+                      " more pairs of parts");
       break;
     }
     const auto& [opposite, first, second] = parts;
@@ -451,11 +451,11 @@ std::vector<std::string> lines_about(const Scene& scene, const std::vector<Pair>
     const std::string whose = a == b ? a : a + " and " + b;
     lines.push_back(
         count + whose +
-        (opposite ? " lie in each other back to back: they are one sheet; light meets the one "
-                    "whose front it comes to; if it passes through one, it passes both"
-                  : " lie in each other and face alike: only the first" +
-                        (a == b ? std::string() : ", of " + a + ",") +
-                        " meets light from the front; light that passes through one passes both"));
+        (opposite
+             ? " coincide back to back and act as one sheet: each side has the optical "
+               "properties of the face that is turned to it; transmitted light passes both"
+             : " coincide and face the same way: light from the front meets only the first" +
+                   (a == b ? std::string() : ", of " + a) + "; transmitted light passes both"));
   }
   return lines;
 }

@@ -7,7 +7,7 @@
 
 #include "core/constants.h"
 #include "core/files.h"
-#include "core/text/names.h"
+#include "core/settings/settings.h"
 #include "core/transform.h"
 #include "scenes/gltf/nodes.h"
 #include "scenes/gltf/validation.h"
@@ -239,7 +239,7 @@ Settings source_at_light(const Settings& source, const std::vector<GltfLight>& l
   SettingsNode root;
   root.where = source.where();
   root.value = std::move(keys);
-  return Settings(std::make_shared<const SettingsNode>(std::move(root)), source.name());
+  return Settings(std::move(root), source.name());
 }
 
 std::optional<std::string> profile_of_lights(const std::vector<GltfLight>& lights,

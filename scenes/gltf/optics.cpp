@@ -5,7 +5,7 @@
 #include <set>
 #include <sstream>
 
-#include "core/text/names.h"
+#include "core/settings/settings.h"
 #include "raytrace/surfaces/bsdf.h"
 #include "raytrace/surfaces/glass.h"
 #include "scenes/gltf/file/fault.h"
@@ -103,8 +103,7 @@ std::optional<Settings> extras_of(const Document& document, int index) {
   const json& table = (*extras)["photorque"];
   const std::string where = pointer("materials", index, "extras", "photorque");
   if (!table.is_object()) throw document.wrong(where, describe_json(table), "an object");
-  return Settings(std::make_shared<const SettingsNode>(settings_from_json(table, {document.file})),
-                  where);
+  return Settings(settings_from_json(table, {document.file}), where);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/constants.h"
+#include "core/text/format.h"
 #include "raytrace/surfaces/bsdf.h"
 #include "raytrace/surfaces/glass.h"
 #include "raytrace/surfaces/measured_brdf.h"
@@ -124,10 +125,7 @@ std::string sum_text(double sum, size_t band) {
 }
 
 std::string list(const std::vector<const Fraction*>& some) {
-  std::string text;
-  for (const Fraction* fraction : some)
-    text += (text.empty() ? "" : ", ") + std::string(fraction->key.name);
-  return text;
+  return joined_text(some, ", ", [](const Fraction* fraction) { return fraction->key.name; });
 }
 
 // "roughness 0.3", for notices.

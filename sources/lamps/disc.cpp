@@ -1,10 +1,10 @@
 #include "sources/lamps/disc.h"
 
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "core/constants.h"
+#include "core/text/format.h"
 #include "sources/profiles/sampling.h"
 
 namespace photorque {
@@ -32,13 +32,11 @@ std::optional<std::string> etendue_notice(const std::string& name, const Die& di
   const double aperture_m2 = 0.25 * pi * aperture_diameter_m * aperture_diameter_m;
   const double fraction = aperture_m2 * effective_solid_angle_sr / die_etendue;
   if (fraction >= 1.0) return std::nullopt;
-  char text[256];
-  std::snprintf(text, sizeof text,
-                ": no optics can put more than %.3g %% of this die's light into such a beam; "
-                "the aperture is %.4g mm, all of it needs at least %.4g mm",
-                100.0 * fraction, 1e3 * aperture_diameter_m,
-                1e3 * aperture_diameter_m / std::sqrt(fraction));
-  return name + text;
+  return name + printed(
+                    ": no optics can put more than %.3g %% of this die's light into such a beam; "
+                    "the aperture is %.4g mm, all of it needs at least %.4g mm",
+                    100.0 * fraction, 1e3 * aperture_diameter_m,
+                    1e3 * aperture_diameter_m / std::sqrt(fraction));
 }
 
 }  // namespace photorque

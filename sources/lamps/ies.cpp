@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <utility>
 
 #include "core/constants.h"
 #include "core/files.h"
 #include "core/numerics/vector_math.h"
+#include "core/text/format.h"
 #include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 #include "sources/photometry/file.h"
@@ -120,13 +120,11 @@ std::optional<std::string> coarseness_notice(const PhotometricLamp& lamp) {
   const double step_deg = (*above - *(above - 1)) / degree_rad;
   // Both errors are of second order in the step.
   const double enough_deg = step_deg * std::sqrt(allowed / std::abs(straight));
-  char text[320];
-  std::snprintf(text, sizeof text,
-                "angles %.3g deg apart are coarse for a beam of %.4g deg FWHM: read with straight "
-                "lines between them the flux would be %+.2f %%, as a sum of zones %+.2f %%, beside "
-                "the smooth curve used here; steps of %.2g deg would do",
-                step_deg, fwhm_rad / degree_rad, 100.0 * straight, 100.0 * zonal, enough_deg);
-  return text;
+  return printed(
+      "steps of %.3g deg are coarse for a beam of %.4g deg FWHM: compared with the smooth "
+      "interpolation used here, linear interpolation changes the flux by %+.2f %%, a sum "
+      "of zones by %+.2f %%; steps of %.2g deg suffice",
+      step_deg, fwhm_rad / degree_rad, 100.0 * straight, 100.0 * zonal, enough_deg);
 }
 
 }  // namespace photorque

@@ -8,10 +8,10 @@
 // Source: R. Simon, N. Mukunda, E. C. G. Sudarshan, Phys. Rev. A 29 (1984) 3273; A. E. Siegman,
 // Lasers (1986), section 17.1, for w(z) and the diffraction limit.
 #include <cmath>
-#include <cstdio>
 
 #include "core/constants.h"
 #include "core/numerics/vector_math.h"
+#include "core/text/format.h"
 #include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 #include "sources/profiles/sampling.h"
@@ -89,12 +89,11 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
                          "a wider waist");
   }
   if (half_angle_rad < limit_rad * (1.0 - 1e-6) && context.notice) {
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  ": diffraction spreads a waist of %.4g mm by %.4g deg (half-angle, 1/e²), more "
-                  "than the %.4g deg asked for",
-                  1e3 * waist_radius_m, limit_rad / degree_rad, half_angle_rad / degree_rad);
-    context.notice(name + text);
+    context.notice(
+        name +
+        printed(": diffraction spreads a waist of %.4g mm by %.4g deg (half-angle, 1/e²), more "
+                "than the %.4g deg asked for",
+                1e3 * waist_radius_m, limit_rad / degree_rad, half_angle_rad / degree_rad));
   }
   return {{name, std::make_shared<GaussianBeam>(power_W, waist_radius_m, std::tan(half_angle_rad)),
            frame_looking_along(direction, position_m), spectrum}};

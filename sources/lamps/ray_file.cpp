@@ -7,10 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 
 #include "core/numerics/vector_math.h"
+#include "core/text/format.h"
 #include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 
@@ -163,12 +163,10 @@ std::string sum_notice(const RaySet& set) {
   const double sum = set.ray_flux();
   constexpr double rounding = 1e-4;
   if (!stated || std::abs(sum - *stated) <= rounding * *stated) return "";
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "the fluxes of its rays sum to %.6g %s, the file states %.6g %s; "
-                "they are scaled by %.6g",
-                sum, watts ? "W" : "lm", *stated, watts ? "W" : "lm", *stated / sum);
-  return text;
+  return printed(
+      "the fluxes of its rays sum to %.6g %s, the file states %.6g %s; "
+      "they are scaled by %.6g",
+      sum, watts ? "W" : "lm", *stated, watts ? "W" : "lm", *stated / sum);
 }
 
 double read_power(const Settings& settings, const RaySet& set) {

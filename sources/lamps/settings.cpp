@@ -1,12 +1,12 @@
 #include "sources/lamps/settings.h"
 
-#include <cstdio>
 #include <optional>
 #include <utility>
 
 #include "core/constants.h"
 #include "core/files.h"
 #include "core/provenance.h"
+#include "core/text/format.h"
 #include "sources/lamps/disc.h"
 #include "sources/lamps/keys.h"
 
@@ -99,9 +99,7 @@ std::optional<Die> read_die(const Settings& settings) {
 }
 
 std::string describe(const Vec3& v) {
-  char text[96];
-  std::snprintf(text, sizeof text, "[%g, %g, %g]", v.x(), v.y(), v.z());
-  return text;
+  return printed("[%g, %g, %g]", v.x(), v.y(), v.z());
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ TabulatedIntensity::TabulatedIntensity(IntensityTable table) : table_(std::move(
     const size_t first = j * knot_rad_.size();
     samplers_.emplace_back(knot_rad_, &value_[first], &slope_[first]);
   }
-  find_hats();
+  find_hat_functions();
 }
 
 double TabulatedIntensity::between_planes(size_t angle, double azimuth_rad) const {
@@ -104,7 +104,7 @@ void TabulatedIntensity::find_knots() {
   }
 }
 
-void TabulatedIntensity::find_hats() {
+void TabulatedIntensity::find_hat_functions() {
   const std::vector<double>& azimuth = table_.azimuth_rad;
   const size_t planes = azimuth.size(), knots = knot_rad_.size();
   mean_.assign(knots, 0.0);

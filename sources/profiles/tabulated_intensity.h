@@ -86,7 +86,7 @@ class TabulatedIntensity {
   // The value at an angle of the table between the planes, all the way round.
   double between_planes(size_t angle, double azimuth_rad) const;
   void find_knots();
-  void find_hats();
+  void find_hat_functions();
 
   struct Hat {
     double before;                // fraction of the flux in the planes before this one

@@ -35,10 +35,11 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"attitude/disturbances/fields/helmholtz_cage.cpp", {"orbit"}},
     // `new` writes these kinds.
     {"tools/verbs/new_experiment.cpp", {"bearing_drag", "static_unbalance"}},
-    // Light in the run is this kind; kinds with the same effect are refused, and the orbit takes
-    // the direction of the Sun.
+    // The orbit takes the direction of the Sun, and the planet's light that of the orbit.
+    {"tools/runs/attitude_run.cpp", {"orbit", "planet_light"}},
+    // Light in the run is this kind; kinds with the same effect are refused.
     {"attitude/disturbances/fields/light_pressure.cpp", {"radiation_pressure"}},
-    {"tools/coupling/couple.cpp", {"orbit", "planet_light", "power_balance", "radiation_pressure"}},
+    {"tools/coupling/couple.cpp", {"power_balance", "radiation_pressure"}},
     // Around a platform in orbit there is no air that cools its cells.
     {"tools/runs/array_power.cpp", {"orbit"}},
     // The trade compares ways by the disturbances that they are.

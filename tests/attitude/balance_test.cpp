@@ -98,7 +98,7 @@ TEST(Balance, ACameraAloneSuffices) {
 // errors come near to holding the truth; by noise alone it would be fifty of them away.
 TEST(Balance, WhatTheModelLacksIsSaidAndWidensTheErrors) {
   BalanceRun run = unbalanced(true, 7);
-  EXPECT_FALSE(balance(run).leaves_more_than_noise());
+  EXPECT_FALSE(balance(run).exceeds_noise());
   PropagationRun truth;
   truth.model =
       with(bench_model(), "static_unbalance",
@@ -111,7 +111,7 @@ TEST(Balance, WhatTheModelLacksIsSaidAndWidensTheErrors) {
   run.recording = propagate(truth).recording;
   run.model.schedule = run.recording.schedule();
   const BalanceResult result = balance(run);
-  EXPECT_TRUE(result.leaves_more_than_noise());
+  EXPECT_TRUE(result.exceeds_noise());
   EXPECT_NE(result.warning(), "");
   EXPECT_GT(result.chi2_per_sample, 2.0);
   for (int k = 0; k < 3; ++k) {

@@ -120,10 +120,10 @@ TEST(BlockMeans, FirstBlocksOfPartsAreReadings) {
   EXPECT_GT(part.spread[1].readings_s, 0.0);
   const PlatformState then =
       propagated(body.run.model, body.run.initial, part.time_s.front(), 1e-13);
-  const Vec3 turn = rotation_vector(part.attitude.front() * then.lab_from_body.conjugate());
+  const Vec3 turn = turn_vector(part.attitude.front() * then.lab_from_body.conjugate());
   EXPECT_LT(turn.norm() / arcsecond_rad, 2.0);
   EXPECT_LT((part.gyro_rad_s.front() - then.rate_body_rad_s).norm(), 2e-5);
-  const Vec3 of_mean = rotation_vector(seen.attitude[100] * then.lab_from_body.conjugate());
+  const Vec3 of_mean = turn_vector(seen.attitude[100] * then.lab_from_body.conjugate());
   EXPECT_GT(of_mean.norm() / arcsecond_rad, 20.0);
   EXPECT_GT((seen.gyro_rad_s[100] - then.rate_body_rad_s).norm(), 2e-4);
 }

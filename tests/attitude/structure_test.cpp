@@ -131,7 +131,7 @@ TEST(MovingMasses, BalanceToHalfAStepAlongEachAxis) {
   for (int i = 0; i < 50; ++i) {
     const Vec3 offset_m(1e-5 * std::sin(1.0 + i), 2e-5 * std::cos(2.3 * i),
                         -6e-5 * std::sin(0.7 * i));
-    const BalanceCommand command = steps_that_remove(offset_m, masses, 7.0);
+    const BalanceCommand command = balancing_steps(offset_m, masses, 7.0);
     EXPECT_LE(command.left_over_m.cwiseAbs().maxCoeff(), resolution_m * (1 + 1e-9));
     Vec3 moved_m = offset_m;
     for (size_t k = 0; k < masses.size(); ++k) {
@@ -142,7 +142,7 @@ TEST(MovingMasses, BalanceToHalfAStepAlongEachAxis) {
 }
 
 TEST(MovingMasses, UnreachableDirectionsAreLeftOver) {
-  const BalanceCommand command = steps_that_remove({1e-5, 2e-5, 0}, {usual_mass()}, 7.0);
+  const BalanceCommand command = balancing_steps({1e-5, 2e-5, 0}, {usual_mass()}, 7.0);
   EXPECT_LT(std::abs(command.left_over_m.x()), com_resolution_m(usual_mass(), 7.0));
   EXPECT_EQ(command.left_over_m.y(), 2e-5);
 }

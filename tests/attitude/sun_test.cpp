@@ -166,6 +166,17 @@ TEST(Sun, ComesFromATableToo) {
   EXPECT_THROW(sun_at("direction = [1, 0, 0]\ndate = \"2020-01-01\""), InputError);
   EXPECT_THROW(sun_at("distance_au = 2"), InputError);
   EXPECT_THROW(sun_at("direction = [0, 0, 0]"), InputError);
+  EXPECT_DOUBLE_EQ(sun_at("direction = [0, 1, 0]\ndistance_au = 9.54").y(), 9.54);
+  const auto orbit = [](const std::string& key) {
+    return sun_at(
+        "date = \"2020-01-01\"\norbit = { semi_major_axis_au = 9.54, mean_anomaly_deg = 1, " + key +
+        " }");
+  };
+  EXPECT_NEAR(orbit("eccentricity = 0").norm(), 9.54, 1e-12);
+  EXPECT_THROW(
+      sun_at("date = \"2020-01-01\"\norbit = { semi_major_axis_au = 1e-9, mean_anomaly_deg = 1 }"),
+      InputError);
+  EXPECT_THROW(orbit("perihelion_deg = 1e30"), InputError);
   EXPECT_THROW(sun_at("date = \"yesterday\""), InputError);
 }
 

@@ -84,7 +84,7 @@ TEST_F(FilesInAFolder, LeftoversOfTheDeadGoAndThoseOfTheLivingStay) {
   const fs::path dead =
       folder_ / name.replace(name.find(mine), mine.size(), std::to_string(dead_process()));
   for (const fs::path& path : {own, dead, folder_ / ".of_the_user.part"}) std::ofstream(path) << 1;
-  remove_leftovers_of_the_dead(folder_);
+  remove_leftovers_of_ended_processes(folder_);
   EXPECT_FALSE(fs::exists(dead));
   EXPECT_TRUE(fs::exists(own));
   remove_leftovers(folder_, ::getpid());

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "core/numerics/adaptive_quadrature.h"
 #include "core/numerics/interpolation.h"
 #include "core/numerics/quadrature.h"
 #include "core/numerics/root.h"
@@ -32,6 +33,20 @@ TEST(Quadrature, PanelsConvergeToRounding) {
                              gauss_8, [&](double x) { return f(9 * x); }, 0.0, 1.0, 16) -
                      1.0),
             1e-12);
+}
+
+// A step of height 1, whose halves never agree, and one below the smallest normal number.
+TEST(AdaptiveQuadrature, EndsWhereNumbersLoseTheirDigits) {
+  for (const double height : {1.0, 1e-310}) {
+    int calls = 0;
+    const auto step = [&](double x) {
+      ++calls;
+      return x < 1.0 / 3.0 ? 0.0 : height;
+    };
+    const double value = integrate_adaptively(step, 0.0, 1.0, 0.0).value;
+    EXPECT_NEAR(value / height, 2.0 / 3.0, height == 1.0 ? 1e-7 : 0.1);
+    EXPECT_EQ(calls < 10, height < 1.0) << calls;
+  }
 }
 
 TEST(GaussLegendre, RulesIntegratePowersUpToTheirDegree) {

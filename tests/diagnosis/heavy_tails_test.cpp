@@ -182,7 +182,7 @@ TEST(HeavyTails, AnAttitudeIsTurnedAboutItsLabAxisAlone) {
   tails[0] = HeavyTail{3.0, 0.1, 1e-4};
   std::vector<Observation> runs = {seen};
   robustify(tails, {residuals}, runs);
-  const Vec3 left = rotation_vector(runs[0].attitude[wrong] * attitude.conjugate());
+  const Vec3 left = turn_vector(runs[0].attitude[wrong] * attitude.conjugate());
   // An error of a hundred scales is as good as none.
   EXPECT_LT(std::abs(left.x()), 4e-4);
   EXPECT_NEAR(left.y(), residuals.off[wrong][1], 2e-6);

@@ -24,17 +24,12 @@ const Names not_screened = {
     "empirical_torque", "helmholtz_cage", "mass_error",         "orbit",
     "planet_light",     "power_balance",  "radiation_pressure", "stepper_quantization",
     "wheel_control"};
-// Instruments exert no torque; an orbit is where others do, in which alone a planet shines; lamps
-// press at an instant's current.
-const Names not_ranked = {"attitude_latency",    "body_force",
-                          "camera_misalignment", "gyro_bias",
-                          "gyro_misalignment",   "gyro_scale",
-                          "lamp_pressure",       "marker_positions",
-                          "mass_error",          "orbit",
-                          "planet_light",        "sliding_air_drag",
-                          "sliding_drag",        "sliding_friction",
-                          "sliding_spring",      "table_slope",
-                          "thrust_saturation"};
+// Instruments exert no torque; an orbit is where others do; lamps press at an instant's current.
+const Names not_ranked = {
+    "attitude_latency",  "body_force",     "camera_misalignment", "gyro_bias",
+    "gyro_misalignment", "gyro_scale",     "lamp_pressure",       "marker_positions",
+    "mass_error",        "orbit",          "sliding_air_drag",    "sliding_drag",
+    "sliding_friction",  "sliding_spring", "table_slope",         "thrust_saturation"};
 Names all_names() {
   Names names;
   for (const DisturbanceKind& kind : disturbance_kinds()) names.insert(kind.name);

@@ -157,7 +157,7 @@ TEST_F(LightWithWall, ReadingsStrayAlone) {
   }
   ASSERT_GT(line.size(), 8u);
   for (const size_t i : line) residuals[static_cast<Eigen::Index>(i)] -= 6.5;
-  const std::vector<size_t> good = rows_without_strays(run, residuals);
+  const std::vector<size_t> good = rows_within_noise(run, residuals);
   EXPECT_EQ(std::ranges::count(good, middle), 0);
   for (const size_t i : line) EXPECT_EQ(std::ranges::count(good, i), 1) << i;
   EXPECT_GE(good.size() + 1, run.rows());

@@ -280,8 +280,8 @@ TEST(Machines, WhatADriveDidBeforeItLetGoIsLeftOut) {
   EXPECT_GT(cut.all[0].time_s.front(), 59.9);
   EXPECT_LT(cut.all[0].time_s.front(), 62.0);
   EXPECT_DOUBLE_EQ(cut.all[0].time_s.back(), recording.time_s.back());
-  ASSERT_EQ(cut.lawless.size(), 1u);
-  EXPECT_THAT(cut.lawless[0], HasSubstr("something else acts before"));
+  ASSERT_EQ(cut.exclusions.size(), 1u);
+  EXPECT_THAT(cut.exclusions[0], HasSubstr("something else acts before"));
 
   const Diagnosis d = diagnose(wheel, {{"wheel.csv", recording}}, {});
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("dry_friction", "air_pressure_drag"));
@@ -305,7 +305,7 @@ TEST(Machines, WhatFollowsOneLawIsNotCut) {
   for (const std::vector<Channel>& channels :
        {std::vector<Channel>{stops}, {swings}, {commanded, command}, {even}}) {
     const Segments cut = observe_segments(recording_of(0.25, channels), "axle.csv", axle);
-    EXPECT_TRUE(cut.lawless.empty()) << cut.lawless.front();
+    EXPECT_TRUE(cut.exclusions.empty()) << cut.exclusions.front();
     EXPECT_EQ(cut.all.size(), 1U);
     EXPECT_EQ(cut.all.front().blocks(), 1500U);
   }
@@ -507,6 +507,21 @@ TEST(Machines, WhatIsLeftCountsAsNoiseAsCorrelatedAsItIs) {
   EXPECT_EQ(noise.gyro_rad_s[0], 0.5);
   EXPECT_FALSE(is_quieter(noise, noise));
   EXPECT_TRUE(is_quieter(own, noise));
+}
+
+// A wheel that speeds up as if its drag were −5e-4 N m s, which no experiment can state.
+TEST(Machines, FittedPriorsStayWithinTheRangeOfTheirKeys) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0.0, 0.003);
+  Channel rate{"gyro_z_rad_s", {}};
+  for (int i = 0; i < 1200; ++i) {
+    rate.values.push_back(3.0 * std::exp(5e-4 * 0.25 * i) + noise(random));
+  }
+  const Diagnosis d =
+      diagnose(machine(wheel_toml), {{"wheel.csv", recording_of(0.25, {rate})}}, {});
+  ASSERT_EQ(d.priors_refined.size(), 1u) << d.sentence;
+  EXPECT_EQ(d.priors_refined[0].key, "disturbance[0].coefficient_N_m_s");
+  EXPECT_EQ(d.priors_refined[0].value[0], 0.0) << d.sentence;
 }
 
 }  // namespace

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <random>
+#include <sstream>
 
 #include "diagnosis/light/module/curve.h"
 #include "diagnosis/light/module/diagnose.h"
@@ -95,6 +97,27 @@ TEST(ModuleCurve, OfCrackedCellsIsThatOfPartsTiedInParallel) {
   ModuleState state;
   state.cracked = {{1, fraction, resistance_ohm}};
   expect_like(network.curve(), {cells, 0, 0.5}, state);
+}
+
+// A half-cut module: half a cell with less light in one of two chains beside the first diode.
+TEST(ModuleCurve, OfHalfCutCellsIsThatOfTheNetwork) {
+  Network network(6, false);
+  const auto half = table_of(parameters_of(usual, 0.5));
+  std::vector<CellGroup> chains[2];
+  for (int i = 0; i < 6; ++i) {
+    for (auto& chain : chains) {
+      chain.emplace_back(static_cast<int>(network.tables.size()));
+      network.tables.push_back(half);
+      network.light_A.push_back(0.5 * usual.photocurrent_A);
+    }
+  }
+  network.light_A[cells] *= 0.3;
+  network.wiring.strings[0].substrings[0].rows = {
+      CellGroup(CellGroup::Join::parallel, {CellGroup(CellGroup::Join::series, chains[0]),
+                                            CellGroup(CellGroup::Join::series, chains[1])})};
+  ModuleState state;
+  state.shaded = {{1, 0.3}};
+  expect_like(network.curve(), {cells, 6, 0.5, 2}, state);
 }
 
 // Voltages by bisection in NumPy of 11 usual cells and one with 0.4 of the light, whose diode is
@@ -341,6 +364,87 @@ TEST(ModuleDiagnosis, NamesTheCurvesOfADayThatDiffer) {
   }
   ASSERT_FALSE(d.where.depends_on.empty());
   EXPECT_EQ(d.where.depends_on.front().variable, "time");
+}
+
+// A curve of tests/data/ngspice_modules.py, which holds the true numbers.
+LightRecording by_ngspice(const std::string& name, double temperature_K) {
+  LightRecording r;
+  r.kind = LightRecording::Kind::sweep;
+  r.name = name;
+  std::ifstream in(outside::reference_data("electrical/ngspice_modules.csv"));
+  for (std::string line; std::getline(in, line);) {
+    std::stringstream fields(line);
+    std::string curve, voltage, current;
+    std::getline(fields, curve, ',');
+    std::getline(fields, voltage, ',');
+    std::getline(fields, current, ',');
+    if (curve != name) continue;
+    r.voltage_V.push_back(std::stod(voltage));
+    r.current_A.push_back(std::stod(current));
+  }
+  const size_t rows = r.voltage_V.size();
+  r.temperature_K.assign(rows, temperature_K);
+  r.lab_from_body.assign(rows, Quat::Identity());
+  r.sweep.assign(rows, 0);
+  r.rows_read = static_cast<int64_t>(rows);
+  return r;
+}
+
+Diagnosis of_ngspice(const std::string& name, double temperature_K) {
+  ModuleDesign design;
+  design.cells = 60;
+  design.bypass_every = 20;
+  design.reference_temperature_K = 318.15;
+  design.temperature_K = temperature_K;
+  design.references = {by_ngspice("reference", design.reference_temperature_K)};
+  return diagnose_module(design, {by_ngspice(name, temperature_K)}, {});
+}
+
+double number_of(const FoundEffect& effect, const std::string& key) {
+  for (const auto& parameter : effect.parameters) {
+    if (parameter.key == key) return parameter.value[0];
+  }
+  return NAN;
+}
+
+TEST(ModuleOfNgspice, HasNothingMissing) {
+  const Diagnosis d = of_ngspice("healthy", 313.15);
+  EXPECT_EQ(d.verdict, Verdict::consistent) << d.sentence;
+}
+
+// Resistances and temperatures far outside their errors also reproduce these curves, and would
+// hide the fault: they contradict the reference and the thermometer.
+TEST(ModuleOfNgspice, NamesAContactThatTheReferenceLacks) {
+  const Diagnosis d = of_ngspice("contact", 317.15);
+  ASSERT_EQ(d.effects.size(), 1u) << d.sentence;
+  EXPECT_EQ(d.effects[0].kind, "series_resistance");
+  EXPECT_NEAR(number_of(d.effects[0], "resistance_ohm"), 0.12, 0.01);
+}
+
+TEST(ModuleOfNgspice, NamesATemperatureThatTheThermometerLacks) {
+  const Diagnosis d = of_ngspice("hot", 318.15);
+  ASSERT_EQ(d.effects.size(), 1u) << d.sentence;
+  EXPECT_EQ(d.effects[0].kind, "temperature");
+  EXPECT_NEAR(number_of(d.effects[0], "change_K"), 16.0, 2.5);
+}
+
+bool can_be(const FoundEffect& effect, const std::string& kind) {
+  return effect.kind == kind || std::ranges::count(effect.indistinguishable_from, kind) > 0;
+}
+
+TEST(ModuleOfNgspice, NamesHalfASubstringInTheShade) {
+  const Diagnosis d = of_ngspice("half_shaded", 318.15);
+  ASSERT_EQ(d.effects.size(), 1u) << d.sentence;
+  EXPECT_TRUE(can_be(d.effects[0], "cell_shaded")) << d.sentence;
+  EXPECT_NEAR(number_of(d.effects[0], "count"), 10.0, 2.0);
+}
+
+TEST(ModuleOfNgspice, NamesTwoFaults) {
+  const Diagnosis shorted = of_ngspice("shorted_and_contact", 318.15);
+  ASSERT_EQ(shorted.effects.size(), 2u) << shorted.sentence;
+  EXPECT_EQ(shorted.effects[0].kind, "bypass_shorted");
+  EXPECT_EQ(shorted.effects[1].kind, "series_resistance");
+  EXPECT_NEAR(number_of(shorted.effects[1], "resistance_ohm"), 0.4, 0.02);
 }
 
 // Curves of a healthy module at other light and temperature (pvlib, ../shared): measured, so that

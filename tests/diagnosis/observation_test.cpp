@@ -51,7 +51,7 @@ Observation seen_by(size_t camera_every, bool gyro) {
 TEST(Observation, TheTopObeysEulersEquation) {
   constexpr double h_s = 1e-4;
   const Quat step = Top::lab_from_body(3.0 - h_s).conjugate() * Top::lab_from_body(3.0 + h_s);
-  EXPECT_LT((rotation_vector(step) / (2.0 * h_s) - Top::rate_rad_s(3.0)).norm(), 1e-7);
+  EXPECT_LT((turn_vector(step) / (2.0 * h_s) - Top::rate_rad_s(3.0)).norm(), 1e-7);
 }
 
 // Blocks of 0.1 s. The mean of positions over a turn of 0.1 rad lies inside the arc, by 8″; the
@@ -67,7 +67,7 @@ TEST(Observation, BlocksStandWhereTheMotionIs) {
         const Quat off = blocks.attitude[i] * Top::lab_from_body(t_s).conjugate();
         // The curvature remains: of the wobble 0.06 rad/s² T²/24 = 5″ and more in blocks of odd
         // rows.
-        EXPECT_LT(rotation_vector(off).norm(), 7.0 * arcsec) << t_s;
+        EXPECT_LT(turn_vector(off).norm(), 7.0 * arcsec) << t_s;
         if (!gyro) continue;
         // And of the rate, ω″ T²/24 = 1.5e-5 rad/s.
         EXPECT_LT((blocks.gyro_rad_s[i] - Top::rate_rad_s(t_s)).norm(), 2.5e-5) << t_s;
@@ -84,7 +84,7 @@ TEST(Observation, AGyroThatDisagreesMovesNoAttitude) {
   const Observation blocks = seen.averaged(100);
   for (size_t i = 0; i < blocks.blocks(); ++i) {
     const Quat off = blocks.attitude[i] * Top::lab_from_body(blocks.time_s[i]).conjugate();
-    EXPECT_LT(rotation_vector(off).norm(), 7.0 * arcsecond_rad) << blocks.time_s[i];
+    EXPECT_LT(turn_vector(off).norm(), 7.0 * arcsecond_rad) << blocks.time_s[i];
   }
 }
 

@@ -171,7 +171,7 @@ TEST(TextbookMachines, WhatMovesFromTheFirstRowIsNotTakenForARest) {
   }
   const Platform upright = machine(about("z", "gyro]\nnoise_rad_s = 1")).model.platform;
   const auto notes = [&](const Channel& channel) {
-    return observe_segments(recording_of(0.02, {channel}), "run.csv", upright).lawless;
+    return observe_segments(recording_of(0.02, {channel}), "run.csv", upright).exclusions;
   };
   EXPECT_THAT(notes(noisy("rate_rad_s", run_up, 0.5, 1)), testing::IsEmpty());
   EXPECT_THAT(notes(noisy("angle_rad", swing, 0.01, 2)), testing::IsEmpty());
@@ -211,7 +211,7 @@ TEST(TextbookMachines, APendulumByItsRateAlone) {
   expect_number(d, "bearing_drag", "coefficient_N_m_s", 0, c);
 }
 
-// A rate that is computed from the angle is no second reading; one with errors of its own is.
+// A rate that is computed from the angle adds no information; a rate with independent errors does.
 TEST(TextbookMachines, ARateComputedFromTheAngleIsLeftOut) {
   constexpr double k = 21.5, viscous = 0.16, interval_s = 0.01;
   const std::vector<double> angle_rad =

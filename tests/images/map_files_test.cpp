@@ -246,6 +246,34 @@ TEST(MapPicture, SmoothMapsAreDrawnBetweenTheirNodes) {
   EXPECT_LT(dark, 0.1 * drawn.grid_width);
 }
 
+// A field on a disc of 21 nodes a side fills the circle through the outermost nodes to a pixel.
+TEST(MapPicture, DiscsHaveARoundRim) {
+  constexpr int side = 21, size = 200;
+  Map map;
+  map.name = "disc";
+  map.width = map.height = side;
+  map.smooth = true;
+  for (int row = 0; row < side; ++row) {
+    for (int column = 0; column < side; ++column) {
+      const bool is_inside = std::hypot(column - 10, row - 10) <= 10.0;
+      map.value.push_back(is_inside ? column : std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  const std::vector<uint32_t> drawn = map_pixels(map, colour_scale(map), size, size);
+  constexpr double middle = 0.5 * size;
+  double area = 0.0;
+  for (int row = 0; row < size; ++row) {
+    for (int column = 0; column < size; ++column) {
+      const double opacity = (drawn[static_cast<size_t>(row) * size + column] >> 24) / 255.0;
+      const double distance = std::hypot(column + 0.5 - middle, row + 0.5 - middle);
+      if (distance < middle - 0.6) EXPECT_EQ(opacity, 1.0) << column << " " << row;
+      if (distance > middle + 0.6) EXPECT_EQ(opacity, 0.0) << column << " " << row;
+      area += opacity;
+    }
+  }
+  EXPECT_NEAR(area, std::numbers::pi * middle * middle, 1e-3 * area);
+}
+
 TEST(MapPicture, IsAPageOfVectorsTooWhoseLettersAreText) {
   const Map map = sample_map();
   const std::string page = svg_of(map, {}, PictureStyle::page);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <regex>
 
 #include "images/drawing/curves.h"
 #include "images/drawing/plot.h"
@@ -348,16 +349,16 @@ TEST(TimeAxis, HasTheUnitOfItsLength) {
     plot.curves = {{"", {0.0, duration_s}, {1.0, 2.0}}};
     plot.below = {{"y", {{"", {0.0, duration_s}, {1.0, 2.0}}}}};
     plot.shaded = {{0.5 * duration_s, duration_s}};
-    return in_readable_time(plot);
+    return with_readable_time_unit(plot);
   };
   const std::vector<std::tuple<double, const char*, double>> known = {
-      {599.0, "Time [s]", 599.0},
-      {600.0, "Time [min]", 10.0},
-      {7199.0, "Time [min]", 7199.0 / 60},
-      {86400.0, "Time [h]", 24.0},
-      {259200.0, "Time [d]", 3.0}};
+      {599.0, "time [s]", 599.0},
+      {600.0, "time [min]", 10.0},
+      {7199.0, "time [min]", 7199.0 / 60},
+      {86400.0, "time [h]", 24.0},
+      {259200.0, "time [d]", 3.0}};
   for (const auto& [duration_s, label, end] : known) {
-    const Plot plot = drawn(duration_s, "Time [s]");
+    const Plot plot = drawn(duration_s, "time [s]");
     EXPECT_EQ(plot.x_label, label);
     EXPECT_DOUBLE_EQ(plot.curves[0].x[1], end);
     EXPECT_DOUBLE_EQ(plot.below[0].curves[0].x[1], end);
@@ -365,6 +366,23 @@ TEST(TimeAxis, HasTheUnitOfItsLength) {
     EXPECT_DOUBLE_EQ(end * seconds_of_unit(plot), duration_s);
   }
   EXPECT_EQ(drawn(1e6, "Voltage [V]").curves[0].x[1], 1e6);
+}
+
+// A band up to the corner that the legend takes: the label of the band stands elsewhere.
+TEST(Plot, LegendsDoNotCoverTheLabelOfABand) {
+  Plot plot{"p", "p", "x", "y"};
+  plot.curves = {{"measured", {0.0, 1.0}, {1.0, 0.0}}, {"model", {0.0, 1.0}, {0.9, 0.1}}};
+  plot.shaded = {{0.5, 1.0}};
+  plot.shaded_label = "held out";
+  const std::string page = svg_of(plot, {});
+  const auto height_of = [&](const std::string& text) {
+    const std::regex element("translate\\([0-9.-]+ ([0-9.-]+)\\)[^>]*>" + text + "</text>");
+    std::smatch found;
+    EXPECT_TRUE(std::regex_search(page, found, element)) << text;
+    return found.empty() ? 0.0 : std::stod(found[1]);
+  };
+  EXPECT_LT(height_of("measured"), height_of("model"));
+  EXPECT_GT(height_of("held out"), height_of("model") + 12.0);
 }
 
 // Forty bars of 100 and of 30 before them: the colours share the picture like that, without gaps.

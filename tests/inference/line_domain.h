@@ -92,7 +92,7 @@ class LineDomain {
     predicted.fit.chi2 = predicted.fit.data_chi2;
     return predicted;
   }
-  std::vector<Begin> begins_of(const Trial& t) const {
+  std::vector<Begin> initial_conditions_of(const Trial& t) const {
     const Eigen::VectorXd& v = t.fit.value;
     return {v.begin(), v.end() - (1 + amplitudes(t))};
   }
@@ -101,7 +101,7 @@ class LineDomain {
     for (const Series& run : runs) begins.push_back(run.y[0]);
     return begins;
   }
-  Trial with_begins(Trial t, const std::vector<Begin>& begins) const {
+  Trial with_initial_conditions(Trial t, const std::vector<Begin>& begins) const {
     const auto intercepts = static_cast<Eigen::Index>(begins.size());
     const Eigen::VectorXd shared = t.fit.value.tail(1 + amplitudes(t));
     t.fit.value.resize(intercepts + shared.size());

@@ -109,7 +109,6 @@ TEST(Bounds, TheOtherParametersAreFittedWithTheOneOnItsBound) {
   EXPECT_NEAR(found.at[1], alone, 1e-9);
   const Eigen::Vector2d free = run.design.colPivHouseholderQr().solve(run.data);
   EXPECT_GT(std::abs(alone - free[1]), 0.1);  // a solution cut off would not pass
-  EXPECT_NE(found.report().find("on its bound"), std::string::npos);
 }
 
 // The one policy. An error of zero, or a finite one, fails here.
@@ -131,9 +130,7 @@ TEST(Undetermined, IsFlaggedAndNeverGetsAnErrorOfZero) {
   const Eigen::MatrixXd two = duplicate.design.leftCols(2);
   const Eigen::MatrixXd covariance = (two.transpose() * two).inverse();
   EXPECT_NEAR(known.matrix(0, 0) / covariance(0, 0), 1.0, 1e-9);
-  EXPECT_NE(found.report().find("undetermined"), std::string::npos);
-  // A prior determines a parameter that the data do not; the report states that it was the prior
-  // alone.
+  // A prior determines a parameter that the data do not.
   Parameters with_prior = parameters;
   with_prior.shared[2].sigma = 1e-6;
   with_prior.shared[3].sigma = 0.5;
@@ -141,7 +138,6 @@ TEST(Undetermined, IsFlaggedAndNeverGetsAnErrorOfZero) {
   const Fit again = fit(constrained, constrained.start(), Options::to_rounding());
   EXPECT_TRUE(again.covariance().undetermined.empty());
   EXPECT_NEAR(again.covariance().standard_error(3), 0.5, 1e-12);
-  EXPECT_NE(again.report().find("by its prior alone"), std::string::npos);
 }
 
 // Data without noise are fitted exactly, and that is the end of the fit, not a failure of it.

@@ -56,28 +56,28 @@ Beam lamp_at(const Vec3& position_m) {
 TEST(Doubts, NameLampsInsideClosedParts) {
   const Scene scene = scene_of({cube()});
   const std::vector<Beam> inside = {lamp_at({0.3, -0.9, 0.5})};
-  const auto lines = doubts_about(scene, inside, {});
+  const auto lines = geometry_warnings(scene, inside, {});
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0], testing::HasSubstr("lamp stands inside the closed part part0"));
   for (const Vec3& outside : {Vec3(0, 0, 1.0), Vec3(0, 0, 1.5), Vec3(5, 0, 0)}) {
-    EXPECT_TRUE(doubts_about(scene, std::vector<Beam>{lamp_at(outside)}, {}).empty());
+    EXPECT_TRUE(geometry_warnings(scene, std::vector<Beam>{lamp_at(outside)}, {}).empty());
   }
   // A lamp outside is inside after the platform has turned.
   const std::vector<Beam> corner = {lamp_at({1.2, 0, 0})};
-  EXPECT_TRUE(doubts_about(scene, corner, {}).empty());
-  EXPECT_EQ(doubts_about(scene, corner, lab_from_body_at(M_PI / 4, M_PI / 2)).size(), 0u);
-  EXPECT_EQ(
-      doubts_about(scene, corner, {Quat(Eigen::AngleAxisd(M_PI / 4, Vec3::UnitZ())), {}}).size(),
-      1u);
+  EXPECT_TRUE(geometry_warnings(scene, corner, {}).empty());
+  EXPECT_EQ(geometry_warnings(scene, corner, lab_from_body_at(M_PI / 4, M_PI / 2)).size(), 0u);
+  EXPECT_EQ(geometry_warnings(scene, corner, {Quat(Eigen::AngleAxisd(M_PI / 4, Vec3::UnitZ())), {}})
+                .size(),
+            1u);
 }
 
 TEST(Doubts, NamePartsThatSinglePrecisionDoesNotResolve) {
   Mesh tiny = square_mesh();
   for (Vec3& vertex : tiny.vertices_m) vertex = 1e-6 * vertex + Vec3(0, 0, 5);
-  EXPECT_TRUE(doubts_about(scene_of({square_mesh()}), {}, {}).empty());
+  EXPECT_TRUE(geometry_warnings(scene_of({square_mesh()}), {}, {}).empty());
   Mesh far = square_mesh();
   for (Vec3& vertex : far.vertices_m) vertex += Vec3(1e3, 0, 0);
-  const auto lines = doubts_about(scene_of({tiny, far}), {}, {});
+  const auto lines = geometry_warnings(scene_of({tiny, far}), {}, {});
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0], testing::HasSubstr("the smallest is part0"));
 }

@@ -157,7 +157,7 @@ TEST(TabulatedIntensity, TablesThatAreTooCoarseAreNamedWithTheirError) {
   // Straight lines hold h²/12 · I''(0)/I(0) more flux: (h/σ)²/12 (Euler and Maclaurin).
   const PhotometricLamp coarse(1.0, {}, TabulatedIntensity(axial(0.25 * deg, 30 * deg, beam)));
   EXPECT_NEAR(coarse.intensity().coarseness().straight, std::pow(0.25 * deg / sigma, 2) / 12, 2e-5);
-  EXPECT_THAT(coarseness_notice(coarse).value_or(""), testing::HasSubstr("0.25 deg apart"));
+  EXPECT_THAT(coarseness_notice(coarse).value_or(""), testing::HasSubstr("steps of 0.25 deg"));
 }
 
 // A disc of radius R that shines by Lambert's law with exitance M lights a point of its axis at z

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
 
 #include "tests/outside.h"
@@ -172,6 +173,37 @@ TEST_F(AttitudeCommands, BudgetOfAnotherPlatformIsNotComparedWithThePaper) {
   EXPECT_TRUE(all.contains("budget.csv"));
   EXPECT_FALSE(all.contains("paper_figures.csv"));
   EXPECT_THAT(all.at("budget.csv"), testing::Not(HasSubstr("paper")));
+}
+
+// The planet's light has the Sun of the orbit in every command, and the orbit itself no torque.
+TEST_F(AttitudeCommands, BudgetRanksTheLightOfThePlanet) {
+  // The torque z × s of light from the direction s.
+  std::string table = "azimuth_deg,elevation_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n";
+  for (int azimuth = -180; azimuth <= 180; azimuth += 30) {
+    for (int elevation = -90; elevation <= 90; elevation += 30) {
+      const double degree = std::numbers::pi / 180.0, a = azimuth * degree, e = elevation * degree;
+      table += std::to_string(azimuth) + "," + std::to_string(elevation) + "," +
+               std::to_string(-std::cos(e) * std::sin(a)) + "," +
+               std::to_string(std::cos(e) * std::cos(a)) + ",0\n";
+    }
+  }
+  write("table.csv", table);
+  const std::string experiment =
+      write("orbit.toml",
+            "[platform]\ntopology = \"free\"\nmass_kg = 50\n"
+            "inertia_kg_m2 = [[4, 0, 0], [0, 3, 0], [0, 0, 2]]\n"
+            "[[disturbance]]\nkind = \"orbit\"\naltitude_m = 600e3\ninclination_deg = 97.8\n"
+            "date_year = 2026\nsun_direction = [0.3, 0.9, 0.3]\n"
+            "[[disturbance]]\nkind = \"planet_light\"\ntable = \"table.csv\"\n");
+  for (const std::string& command :
+       {std::string("check "), "budget --format svg --out " + at("o") + " "}) {
+    const Outcome got = run(command + experiment);
+    EXPECT_EQ(got.status, 0) << got.err;
+  }
+  const auto all = files("o");
+  EXPECT_THAT(all.at("budget.csv"), HasSubstr("\nplanet_light,"));
+  EXPECT_THAT(all.at("torque_by_tilt.svg"), HasSubstr(">planet_light<"));
+  EXPECT_THAT(all.at("torque_by_tilt.svg"), testing::Not(HasSubstr(">orbit<")));
 }
 
 TEST_F(AttitudeCommands, WrongInputIsOneLineAndExitTwo) {

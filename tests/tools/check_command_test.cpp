@@ -1,4 +1,5 @@
 // photorque check: planted mistakes are found with one line each, and shipped files have none.
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 
@@ -51,6 +52,20 @@ TEST_F(CheckCommand, SaysWhatEachCommandWouldDo) {
         "reads [scene] [source] [receiver] [attitude] [trace] [torque_map] [array]"}) {
     EXPECT_THAT(got.out, HasSubstr(line));
   }
+}
+
+TEST_F(CheckCommand, ReportsInJson) {
+  const Outcome good = run("check " + (shipped / "stasis" / "nominal.toml").string() + " --json");
+  EXPECT_EQ(good.status, 0) << good.err;
+  const auto report = nlohmann::json::parse(good.out);
+  EXPECT_EQ(report.at("schema"), "photorque.check/1");
+  EXPECT_TRUE(report.at("mistakes").empty());
+  std::set<std::string> commands;
+  for (const auto& command : report.at("commands")) commands.insert(command.at("name"));
+  EXPECT_THAT(commands, testing::IsSupersetOf({"trace", "power", "torque-map", "render"}));
+  const Outcome bad = run("check " + planted("nominal.toml", "fwhm_deg", "fwhm_dog") + " --json");
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_THAT(nlohmann::json::parse(bad.out).at("mistakes").dump(), HasSubstr("fwhm_dog"));
 }
 
 // Every command that reads experiments: its effect, or the missing tables.

@@ -126,7 +126,10 @@ TEST_F(Limits, CoincidentFacesAreNamed) {
       write("e.toml", file_text(scenes_of_limits / "dumbbell" / "dumbbell.toml"));
   const Outcome got = run("trace " + experiment + quick_run + " --out " + at("o"));
   ASSERT_EQ(got.status, 0) << got.err;
-  EXPECT_THAT(got.out, HasSubstr("twin\" lie in each other and face alike: only the first"));
+  EXPECT_THAT(
+      got.out,
+      HasSubstr(
+          "twin\" coincide and face the same way: light from the front meets only the first"));
 }
 
 TEST_F(Limits, SelftestPasses) {

@@ -48,8 +48,8 @@ TEST_F(OpticalTruth, ASheetDrawnFromBothSidesCountsOnceAndRaisesNoWarning) {
   EXPECT_EQ(checked.status, 0) << checked.err;
   const Outcome map = run("torque-map " + file + " --out " + at("o"));
   ASSERT_EQ(map.status, 0) << map.err;
-  EXPECT_THAT(map.out, HasSubstr("largest force    3.3356×10⁻⁶ N, over pressure 1 m2"));
-  EXPECT_THAT(map.out, HasSubstr("lie in each other back to back"));
+  EXPECT_THAT(map.out, HasSubstr("largest force    3.3356×10⁻⁶ N, divided by the pressure 1 m2"));
+  EXPECT_THAT(map.out, HasSubstr("coincide back to back"));
   EXPECT_THAT(map.out + map.err, Not(HasSubstr("WARNING")));
 }
 

@@ -82,6 +82,27 @@ TEST_F(OutputFolders, WhoseResultIsTheInputAreFoundBeforeTheWork) {
   EXPECT_EQ(file_text(at("o/again.toml")), text);
 }
 
+TEST_F(OutputFolders, AWorkingFolderThatWasRemovedIsNamed) {
+  const std::string gone = at("gone");
+  fs::create_directories(gone);
+  const int status = std::system(("cd " + gone + " && rmdir " + gone + " && " +
+                                  PHOTORQUE_BINARY_DIR + "/photorque check x.toml 2>" + at("err"))
+                                     .c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 2);
+  EXPECT_EQ(
+      file_text(at("err")),
+      "photorque: found a working directory that was removed, expected an existing one (cd)\n");
+}
+
+TEST_F(OutputFolders, AFullStandardOutputIsNamed) {
+  const int status = std::system((std::string(PHOTORQUE_BINARY_DIR) + "/photorque schema --key " +
+                                  "trace.rays >/dev/full 2>" + at("err"))
+                                     .c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 2);
+  EXPECT_EQ(file_text(at("err")),
+            "standard output: found a write that failed, expected space and permission\n");
+}
+
 TEST_F(OutputFolders, ThatCannotBeWrittenAreFoundBeforeTheWork) {
   fs::create_directory_symlink("loop", at("loop"));
   const Outcome loop = run("trace " + lit_platform + endless + " --out " + at("loop"));

@@ -92,7 +92,7 @@ TEST(Packets, AMillionOfNonsenseAreRefused) {
     }
     ASSERT_FALSE(gate.admit(std::span(bytes).first(size), 5, 0)) << i;
   }
-  EXPECT_EQ(gate.refused_in_all(), count);
+  EXPECT_EQ(gate.total_refused(), count);
   EXPECT_GT(refused(gate, Refusal::checksum), count / 5);
   EXPECT_GT(refused(gate, Refusal::magic), count / 8);
   EXPECT_GT(refused(gate, Refusal::size), 0u);
@@ -154,12 +154,12 @@ struct Fates {
 };
 
 Fates fates(const LinkSettings& settings, int count) {
-  LinkFate fate(settings, 4, 1);
+  LinkImpairment impairment(settings, 4, 1);
   Fates all;
   for (int i = 0; i < count; ++i) {
-    all.delays_s.push_back(fate.next().value_or(std::nan("")));
+    all.delays_s.push_back(impairment.next().value_or(std::nan("")));
   }
-  all.lost = static_cast<double>(fate.lost()) / count;
+  all.lost = static_cast<double>(impairment.lost()) / count;
   return all;
 }
 

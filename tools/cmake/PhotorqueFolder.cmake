@@ -63,7 +63,7 @@ function(photorque_precompiled target)
 endfunction()
 
 # No kernel is in this target: without the costly passes GCC compiles it in less time. Sums are rounded as elsewhere
-# (multiply-add comes with the expensive optimisations). Clang gains little, and wants its compiled header at one level.
+# (multiply-add comes with the expensive optimisations). Clang gains little, and its compiled header is for one level.
 function(photorque_cold target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1 -fexpensive-optimizations>)

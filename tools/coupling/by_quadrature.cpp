@@ -3,6 +3,7 @@
 
 #include "core/constants.h"
 #include "core/parallel.h"
+#include "core/text/format.h"
 #include "receivers/gather/bodies/sunlit_body.h"
 #include "tools/coupling/direction_map.h"
 
@@ -100,11 +101,11 @@ class SunlitDirections final : public LightDirections {
     const double scale_N_m = arm_m * *std::ranges::max_element(emitted_W) / speed_of_light_m_s;
     const double rounding_N_m = 1e-7 * scale_N_m;
     const double largest_N_m = std::max(largest_torque_N_m(table), 1e-6 * scale_N_m);
-    console.line("  by quadrature over lit pieces, with all that bounces: torque error " +
-                 show(stated_N_m / largest_N_m) + " of the largest (rms); rays in " +
-                 std::to_string(fresh) + " fresh directions differ by " +
-                 show(std::sqrt(squares) / largest_N_m) + ", of which " +
-                 show(std::sqrt(noises) / largest_N_m) + " is their own noise");
+    console.line("  by quadrature over lit pieces, scattered light included; error of the torque " +
+                 readable_number(stated_N_m / largest_N_m, 2) + " of the largest (rms); in " +
+                 std::to_string(fresh) + " other directions, traced torques differ by " +
+                 readable_number(std::sqrt(squares) / largest_N_m, 2) + ", with a noise of " +
+                 readable_number(std::sqrt(noises) / largest_N_m, 2));
     constexpr double loud = 3.0;  // of a root mean square over 48 numbers
     const double sigmas =
         std::sqrt(squares / (noises + stated_N_m * stated_N_m + rounding_N_m * rounding_N_m));

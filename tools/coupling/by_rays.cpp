@@ -3,6 +3,7 @@
 
 #include "core/constants.h"
 #include "core/parallel.h"
+#include "core/text/format.h"
 #include "tools/coupling/direction_map.h"
 
 namespace photorque {
@@ -133,11 +134,12 @@ class TracedDirections final : public LightDirections {
     const double stated = std::sqrt((std::pow(smooth.error[3], 2) + std::pow(smooth.error[4], 2) +
                                      std::pow(smooth.error[5], 2)) /
                                     3.0);
-    console.line("  light that bounced is smoothed by spherical harmonics up to degree " +
-                 std::to_string(smooth.series.degree()) + ": torque error " +
-                 show(stated / largest_N_m) + " of the largest (rms); " + std::to_string(fresh) +
-                 " fresh directions differ by " + show(std::sqrt(squares) / largest_N_m) +
-                 ", of which " + show(std::sqrt(noises) / largest_N_m) + " is their own noise");
+    console.line("  scattered light is smoothed by spherical harmonics up to degree " +
+                 std::to_string(smooth.series.degree()) + "; error of the torque " +
+                 readable_number(stated / largest_N_m, 2) + " of the largest (rms); in " +
+                 std::to_string(fresh) + " other directions, traced torques differ by " +
+                 readable_number(std::sqrt(squares) / largest_N_m, 2) + ", with a noise of " +
+                 readable_number(std::sqrt(noises) / largest_N_m, 2));
   }
 
   const OpticalRun& run_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 
 #include "attitude/propagation/recorded.h"
@@ -167,61 +166,6 @@ std::optional<PowerSupply> supply_of(const ExperimentFile& file, const LightMode
   }
   return PowerSupply(std::move(design), stored_J);
 }
-
-std::string vector_override(size_t disturbance, const Vec3& v) {
-  char text[160];
-  std::snprintf(text, sizeof text, "disturbance[%zu].sun_direction=[%.17g,%.17g,%.17g]",
-                disturbance, v.x(), v.y(), v.z());
-  return text;
-}
-
-std::optional<Vec3> direction_of_sun_source(const ExperimentFile& file) {
-  std::optional<Vec3> to_sun;
-  if (!has_light(file)) return to_sun;
-  for (const Settings& source : file.sources) {
-    if (source.text_or("kind", "") == "sun" && source.has("direction")) {
-      to_sun = -source.vector3("direction").normalized();
-    }
-  }
-  return to_sun;
-}
-
-}  // namespace
-
-std::vector<std::string> orbit_overrides(const ExperimentFile& file) {
-  std::optional<Vec3> to_sun = direction_of_sun_source(file);
-  const std::vector<Settings> disturbances = file.others("disturbance");
-  std::vector<std::string> overrides;
-  bool in_orbit = false;
-  for (size_t i = 0; i < disturbances.size(); ++i) {
-    const Settings& orbit = disturbances[i];
-    if (orbit.text_or("kind", "") != "orbit") continue;
-    in_orbit = true;
-    if (!orbit.has("sun_direction")) {
-      if (to_sun) overrides.push_back(vector_override(i, *to_sun));
-      continue;
-    }
-    const Vec3 named = orbit.vector3("sun_direction").normalized();
-    constexpr double alike_rad = 0.1 * degree_rad;
-    if (to_sun && std::atan2(named.cross(*to_sun).norm(), named.dot(*to_sun)) > alike_rad) {
-      throw orbit.error("sun_direction", "a direction away from that of [[source]] \"sun\"",
-                        "the opposite of its `direction`, or nothing");
-    }
-    to_sun = named;
-  }
-  for (size_t i = 0; i < disturbances.size(); ++i) {
-    const Settings& planet = disturbances[i];
-    if (planet.text_or("kind", "") != "planet_light") continue;
-    if (!in_orbit) {
-      throw planet.error("kind", "\"planet_light\" of a platform on the ground",
-                         "a disturbance \"orbit\" beside it");
-    }
-    if (!planet.has("sun_direction") && to_sun) overrides.push_back(vector_override(i, *to_sun));
-  }
-  return overrides;
-}
-
-namespace {
 
 std::vector<LampGroup> lamp_groups(const std::vector<GroupOutput>& outputs) {
   std::vector<LampGroup> groups;

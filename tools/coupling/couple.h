@@ -36,6 +36,11 @@ class CheckpointFile {
   void write(const std::string& identity, double table_tilt_rad, const std::string& state);
 
   const std::filesystem::path& path() const { return path_; }
+  // Once the results are complete it is not needed; never throws.
+  void remove() const {
+    std::error_code stays;
+    std::filesystem::remove(path_, stays);
+  }
 
  private:
   void wait();
@@ -56,10 +61,6 @@ struct CoupledResult {
   std::optional<double> attitude_error_rad;
   std::vector<std::string> warnings;  // where the table is further off than light.tolerance
 };
-
-// Overrides that an experiment in light needs before its platform is read: an orbit takes the
-// direction of the sun of [[source]]. InputError where both name a direction and differ.
-std::vector<std::string> orbit_overrides(const ExperimentFile& file);
 
 // InputError for light or power that an experiment states twice: as a disturbance beside a scene.
 void require_light_once(const ExperimentFile& file);

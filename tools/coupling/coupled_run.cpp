@@ -316,7 +316,7 @@ void CoupledRun::exchange(Propagator& motion) {
         std::max(max_correction_C_, std::abs(power_.last().charge_drawn_C - drawn_C));
     drawn_C = power_.last().charge_drawn_C;
   }
-  power_.know_until(now_s);
+  power_.set_known_until(now_s);
   if (!motion.ended()) plan(now_s);
   motion.exchange({current_A, held_, drawn_C, segment_end_s_});
 }

@@ -8,6 +8,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/parallel.h"
+#include "core/text/format.h"
 #include "receivers/wrench/spad.h"
 #include "receivers/wrench/table_product.h"
 #include "tools/coupling/table_cache.h"
@@ -93,17 +94,17 @@ void print_summary(const Console& console, const WrenchTable& table, const SunLi
   };
   console.heading("Light pressure over " + std::to_string(table.nodes()) + " directions");
   console.line("  torques are about the origin of the body frame (of the model's file)");
-  console.line("  largest force    " + show(force_N, "N") + ", over pressure " +
+  console.line("  largest force    " + show(force_N, "N") + ", divided by the pressure " +
                show(over_pressure(force_N), "m2"));
-  console.line("  largest torque   " + show(torque_N_m, "N m") + ", over pressure " +
+  console.line("  largest torque   " + show(torque_N_m, "N m") + ", divided by the pressure " +
                show(over_pressure(torque_N_m), "m3"));
   double worst_N_m = 0.0;
   for (const Vec3& error : table.torque_error_N_m) {
     worst_N_m = std::max(worst_N_m, error.cwiseAbs().maxCoeff());
   }
-  console.line("  standard errors of torques are at most " +
-               show(worst_N_m / std::max(torque_N_m.value, 1e-300)) + " of the largest torque");
-  console.line("  mean push along the light's travel over all directions " +
+  console.line("  largest standard error of a torque, relative to the largest torque " +
+               readable_number(worst_N_m / std::max(torque_N_m.value, 1e-300), 2));
+  console.line("  mean force along the light, divided by the pressure " +
                show(mean_push_N(table) / sun.pressure_Pa) + " m2");
 }
 
@@ -270,7 +271,7 @@ DirectionMap map_over_directions(const Console& console, const OpticalRun& run, 
         {body + ".spo",
          [text = format_spad(spad, run.provenance().one_line())](
              const std::filesystem::path& path) { write_file_whole(path, text); },
-         "force and torque over pressure in the SPAD layout"});
+         "force and torque divided by the pressure, as a SPAD file"});
   }
   return {std::move(table), std::move(result)};
 }

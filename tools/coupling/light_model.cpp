@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <set>
 
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/parallel.h"
-#include "core/text/names.h"
+#include "core/settings/settings.h"
+#include "core/text/format.h"
 #include "tools/coupling/table_cache.h"
 
 namespace photorque {
@@ -163,9 +162,7 @@ LightModel::Light LightModel::make_light(std::unique_ptr<OpticalRun> run, const 
   if (!light.run) {
     RunOptions posed = options_;
     if (joint_rad) {
-      char text[80];
-      std::snprintf(text, sizeof text, "joint[%zu].angle_rad=%.17g", joint_number_, *joint_rad);
-      posed.overrides.emplace_back(text);
+      posed.overrides.push_back(printed("joint[%zu].angle_rad=%.17g", joint_number_, *joint_rad));
     }
     light.run = std::make_unique<OpticalRun>(posed, Console());
   }
@@ -233,29 +230,25 @@ std::string LightModel::content_key(const ExperimentFile& file) const {
   std::string text = table_cache_version();
   for (const char* table : {"scene", "material", "source", "receiver", "joint", "trace"}) {
     if (file.settings.has(table))
-      text += std::string(table) + written_out(file.settings.raw(table));
+      text += std::string(table) + canonical_text(file.settings.raw(table));
   }
   if (file.settings.has("array")) {
     // Keys behind the cells do not change the light.
-    text += "array" + written_out(file.settings.raw("array"),
-                                  {"day", "thermal", "tracker", "target", "layout", "chain"});
+    text += "array" + canonical_text(file.settings.raw("array"),
+                                     {"day", "thermal", "tracker", "target", "layout", "chain"});
   }
   for (const auto& [name, hash] : inputs_) {
     if (name != file.path.filename().string() && !name.starts_with("--set ")) text += hash;
   }
   for (const std::string& name : switched_sources(settings_)) text += "group " + name;
-  char numbers[160];
-  std::snprintf(numbers, sizeof numbers, "%.17g %llu %zu", settings_.tolerance,
-                static_cast<unsigned long long>(settings_.rays), settings_.max_traces);
-  return text + numbers;
+  return text + printed("%.17g %llu %zu", settings_.tolerance,
+                        static_cast<unsigned long long>(settings_.rays), settings_.max_traces);
 }
 
 std::shared_ptr<const RotationTable> LightModel::make_table(const Console& console,
                                                             double max_angle_rad) const {
   auto table = std::make_shared<RotationTable>();
-  char limit[40];
-  std::snprintf(limit, sizeof limit, " angle %.17g", max_angle_rad);
-  const std::string key = content_hash(key_ + limit);
+  const std::string key = content_hash(key_ + printed(" angle %.17g", max_angle_rad));
   const std::string what =
       "light over attitude" + (max_angle_rad < pi
                                    ? ", up to " + show(max_angle_rad / degree_rad) + " deg of tilt"
@@ -278,7 +271,7 @@ std::shared_ptr<const RotationTable> LightModel::make_table(const Console& conso
       options.group_of_channel.push_back(kind);
     }
   }
-  const auto start = std::chrono::steady_clock::now();
+  const WallTime wall;
   std::atomic<size_t> traced = 0;
   std::string stage;
   const auto trace_all = [&](std::span<const Quat> attitudes) {
@@ -298,9 +291,8 @@ std::shared_ptr<const RotationTable> LightModel::make_table(const Console& conso
   *table = make_rotation_table(trace_all, options,
                                [&](size_t, const std::string& what) { stage = what; });
   console.done();
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   console.line(what + ": " + std::to_string(traced) + " attitudes traced in " +
-               show(std::round(10 * wall.count()) / 10) + " s");
+               show(std::round(10 * wall.elapsed_s()) / 10) + " s");
   if (settings_.cache && !write_cached_table(*settings_.cache, key, *table)) {
     console.line("note: the table could not be stored in " + settings_.cache->string());
   }

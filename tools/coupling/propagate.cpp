@@ -83,15 +83,6 @@ std::vector<RunFile> trajectory_files(const std::shared_ptr<const PropagationRun
   return {{"recording.csv", recording}, {"attitude.aem", attitude}};
 }
 
-RunOptions with_orbit_overrides(const RunOptions& options) {
-  RunOptions full = options;
-  for (const std::string& one : orbit_overrides(read_experiment_text(
-           options.experiment, options.experiment_text(), options.overrides))) {
-    full.overrides.push_back(one);
-  }
-  return full;
-}
-
 // Adds the inputs that are missing in the provenance: scene and lamps.
 void add_inputs(Provenance& provenance,
                 const std::vector<std::pair<std::string, std::string>>& inputs) {
@@ -128,8 +119,7 @@ MotionRun run_propagate(const RunOptions& options, const Console& console,
                         const std::function<void(const Settings&, PropagationRun&)>& prepare,
                         CheckpointFile* checkpoint) {
   const WallTime wall;
-  const RunOptions full = with_orbit_overrides(options);
-  const AttitudeExperiment experiment(full);
+  const AttitudeExperiment experiment(options);
   const auto run = std::make_shared<PropagationRun>(read_propagation(experiment.settings()));
   if (options.seed) run->seed = *options.seed;
   for (const Disturbance& one : further.disturbances) run->model.disturbances.push_back(one);
@@ -138,7 +128,7 @@ MotionRun run_propagate(const RunOptions& options, const Console& console,
   RunResult result;
   result.provenance = experiment.provenance(run->seed);
   const auto coupled = std::make_shared<CoupledResult>(propagate_in_light(
-      full, console, experiment.file(), *run, checkpoint,
+      options, console, experiment.file(), *run, checkpoint,
       checkpoint == nullptr ? std::string() : identity(result.provenance, seen)));
   PropagationResult& motion = coupled->motion;
   if (coupled->beside) {

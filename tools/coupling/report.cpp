@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/constants.h"
+#include "core/numerics/extremes.h"
 
 namespace photorque {
 namespace {
@@ -47,33 +48,15 @@ std::vector<double> sizes_of(const Table& history, const std::string& stem) {
   return sizes;
 }
 
-bool has_column(const Table& table, const std::string& name) {
-  return std::ranges::any_of(table.columns,
-                             [&](const auto& column) { return column.name == name; });
-}
-
 Plot::Curve curve(const std::string& label, const std::vector<double>& x,
                   const std::vector<double>& y) {
-  // Number of intervals of a plot; each has its minimum and maximum.
-  constexpr size_t intervals = 700;
+  constexpr size_t most = 1400;
   Plot::Curve c;
   c.label = label;
   c.width = 1.2;
-  if (x.size() <= 2 * intervals) {
-    c.x = x;
-    c.y = y;
-    return c;
-  }
-  for (size_t s = 0; s < intervals; ++s) {
-    const size_t from = s * x.size() / intervals, to = (s + 1) * x.size() / intervals;
-    const auto [low, high] = std::minmax_element(y.begin() + static_cast<std::ptrdiff_t>(from),
-                                                 y.begin() + static_cast<std::ptrdiff_t>(to));
-    for (const auto at : {std::min(low, high), std::max(low, high)}) {
-      const auto i = static_cast<size_t>(at - y.begin());
-      if (!c.x.empty() && c.x.back() == x[i]) continue;
-      c.x.push_back(x[i]);
-      c.y.push_back(y[i]);
-    }
+  for (const size_t i : lows_and_highs(y, most)) {
+    c.x.push_back(x[i]);
+    c.y.push_back(y[i]);
   }
   return c;
 }
@@ -81,19 +64,19 @@ Plot::Curve curve(const std::string& label, const std::vector<double>& x,
 Plot together(const Table& power, const Table& history) {
   const std::vector<double>& t = power.column("t_s").values;
   const std::vector<double>& moved = history.column("t_s").values;
-  Plot plot{"power_and_attitude", "Power, charge, attitude and torque", "Time [s]", "Power [W]"};
+  Plot plot{"power_and_attitude", "Power, charge, attitude and torque", "time [s]", "power [W]"};
   Plot::Curve load = curve("load served", t, power.column("load_power_W").values);
   load.colour = Plot::Colour::grey;
   plot.curves = {load, curve("array", t, power.column("array_power_W").values)};
-  if (has_column(power, "battery_charge_Wh")) {
+  if (power.find("battery_charge_Wh") != nullptr) {
     plot.below.push_back(
-        {"Battery [Wh]", {curve("", t, power.column("battery_charge_Wh").values)}});
+        {"battery [Wh]", {curve("", t, power.column("battery_charge_Wh").values)}});
   }
-  plot.below.push_back({"Cells [K]", {curve("", t, power.column("cell_temperature_K").values)}});
-  plot.below.push_back({"Tilt [deg]", {curve("", moved, history.column("tilt_deg").values)}});
-  if (has_column(history, "torque_radiation_pressure_x_N_m")) {
+  plot.below.push_back({"cells [K]", {curve("", t, power.column("cell_temperature_K").values)}});
+  plot.below.push_back({"tilt [deg]", {curve("", moved, history.column("tilt_deg").values)}});
+  if (history.find("torque_radiation_pressure_x_N_m") != nullptr) {
     plot.below.push_back(
-        {"Light [N m]", {curve("", moved, sizes_of(history, "torque_radiation_pressure"))}});
+        {"light [N m]", {curve("", moved, sizes_of(history, "torque_radiation_pressure"))}});
   }
   return plot;
 }

@@ -1,10 +1,8 @@
 #include "tools/coupling/table_cache.h"
 
-#include <cstdio>
-
 #include "core/files.h"
-#include "core/own_file.h"
 #include "core/provenance.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -23,8 +21,8 @@ std::string table_cache_version() {
   return format + build_provenance().version + " " + content_hash(read_file(own_file())) + "\n";
 }
 
-std::string written_out(const SettingsNode& node, const std::set<std::string>& without,
-                        const std::function<std::string(const std::string& text)>& behind) {
+std::string canonical_text(const SettingsNode& node, const std::set<std::string>& without,
+                           const std::function<std::string(const std::string& text)>& behind) {
   struct Writer {
     const std::set<std::string>& without;
     const std::function<std::string(const std::string& text)>& behind;
@@ -34,24 +32,20 @@ std::string written_out(const SettingsNode& node, const std::set<std::string>& w
     }
     std::string operator()(bool value) const { return value ? "true" : "false"; }
     std::string operator()(int64_t value) const { return (*this)(static_cast<double>(value)); }
-    std::string operator()(double value) const {
-      char text[40];
-      std::snprintf(text, sizeof text, "%.17g", value);
-      return text;
-    }
+    std::string operator()(double value) const { return printed("%.17g", value); }
     std::string operator()(const std::string& value) const {
       return counted(value) + (behind ? behind(value) : "");
     }
     std::string operator()(const SettingsNode::Array& items) const {
       std::string text = "[";
-      for (const SettingsNode& item : items) text += written_out(item, {}, behind) + ",";
+      for (const SettingsNode& item : items) text += canonical_text(item, {}, behind) + ",";
       return text + "]";
     }
     std::string operator()(const SettingsNode::Table& table) const {
       std::string text = "{";
       for (const auto& [key, value] : table) {
         if (without.contains(key)) continue;
-        text += counted(key) + "=" + written_out(value, {}, behind) + ";";
+        text += counted(key) + "=" + canonical_text(value, {}, behind) + ";";
       }
       return text + "}";
     }

@@ -16,8 +16,8 @@ std::string table_cache_version();
 
 // A value as text, equal for equal values (3 is 3.0); without the named keys of the top level.
 // `behind` adds what a text of the tree names.
-std::string written_out(const SettingsNode& node, const std::set<std::string>& without = {},
-                        const std::function<std::string(const std::string& text)>& behind = {});
+std::string canonical_text(const SettingsNode& node, const std::set<std::string>& without = {},
+                           const std::function<std::string(const std::string& text)>& behind = {});
 
 // False where there is none or the file is damaged.
 bool read_cached_table(const std::filesystem::path& folder, const std::string& key,

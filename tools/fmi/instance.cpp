@@ -82,8 +82,8 @@ fmi3Status Instance::refuse(const std::string& message) const {
   return fmi3Error;
 }
 
-void Instance::tell_words() {
-  for (const std::string& line : run_->take_words()) {
+void Instance::log_messages() {
+  for (const std::string& line : run_->take_messages()) {
     if (tells_events_ && !line.empty()) say(fmi3OK, "logEvents", line);
   }
 }
@@ -98,7 +98,7 @@ fmi3Status Instance::set_debug_logging(bool on, size_t count, const char* const 
 
 fmi3Status Instance::begin(std::vector<Vec3> commands) {
   run_->begin(start_s_, stop_s_, std::move(commands));
-  tell_words();
+  log_messages();
   return fmi3OK;
 }
 
@@ -144,7 +144,7 @@ fmi3Status Instance::step(double now_s, double step_s, bool& ended) {
                   std::to_string(stop_s_) + " s");
   }
   run_->advance_to(now_s + step_s, command_body_N_m_);
-  tell_words();
+  log_messages();
   ended = run_->ended();
   now_s_ = ended ? run_->tick_s() : now_s + step_s;
   return fmi3OK;

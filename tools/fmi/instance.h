@@ -76,7 +76,7 @@ class Instance {
 
  private:
   void say(fmi3Status status, const char* category, const std::string& message) const;
-  void tell_words();
+  void log_messages();
   // Null, and a message, where no flag has the reference.
   const bool* flag(uint32_t reference) const;
   // Restarts the run and follows `commands`.

@@ -222,7 +222,7 @@ void CoSimulation::advance_to(double time_s, const Vec3& command_body_N_m) {
   }
 }
 
-std::vector<std::string> CoSimulation::take_words() {
+std::vector<std::string> CoSimulation::take_messages() {
   return std::exchange(words_, {});
 }
 

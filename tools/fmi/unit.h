@@ -85,7 +85,7 @@ class CoSimulation {
   // Commands of all ticks so far.
   const std::vector<Vec3>& commands() const { return commands_; }
   // Messages of the run since the last call, a line each.
-  std::vector<std::string> take_words();
+  std::vector<std::string> take_messages();
 
  private:
   enum class Turn { run, importer };

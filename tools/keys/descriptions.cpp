@@ -1,8 +1,9 @@
-#include "tools/keys/descriptions.h"
+#include "tools/keys/registry.h"
 
 #include <cmath>
 #include <sstream>
 
+#include "core/text/format.h"
 #include "core/text/parse.h"
 #include "scenes/experiment/document.h"
 
@@ -51,11 +52,8 @@ std::string range_in_words(const Key& key) {
     return count_in_words(key.low) + " … " + count_in_words(key.high);
   }
   if (key.type == Key::Type::choice) {
-    std::string words;
-    for (const Key::Choice& choice : key.choices) {
-      words += (words.empty() ? "" : ", ") + quoted(choice.name);
-    }
-    return words;
+    return joined_text(key.choices, ", ",
+                       [&](const Key::Choice& choice) { return quoted(choice.name); });
   }
   if (key.type != Key::Type::number && key.type != Key::Type::numbers) return "";
   return interval(key.range, unit_of_key(key.name).to_SI);

@@ -1,4 +1,4 @@
-#include "tools/keys/document.h"
+#include "tools/keys/registry.h"
 
 #include <algorithm>
 #include <regex>
@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/errors.h"
-#include "tools/keys/descriptions.h"
 
 namespace photorque {
 namespace {

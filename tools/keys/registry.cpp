@@ -16,6 +16,7 @@
 #include "diagnosis/light/keys.h"
 #include "diagnosis/light/model/lab.h"
 #include "diagnosis/light/module/design.h"
+#include "photovoltaics/fit/rated_keys.h"
 #include "scenes/experiment/keys.h"
 #include "tools/coupling/light_model.h"
 #include "tools/keys/fit.h"
@@ -81,6 +82,17 @@ std::vector<Key> with_errors_of_lamps(std::vector<Key> tables) {
 }
 
 }  // namespace
+
+Key fit_table() {
+  using namespace fit_key;
+  return fit_key::fit.of(
+      joined({{curves, curve.of({curve_file, curve_irradiance, curve_temperature}),
+               datasheet.of(rated_point_keys()), module_file, module_name, cells_in_series,
+               temperature, shunt},
+              rated_slope_keys(),
+              {rounding_current, rounding_voltage, tolerance, current_noise, voltage_noise,
+               correlation_points, substrings, even_voltage_steps}}));
+}
 
 std::vector<Key> experiment_keys() {
   return joined({with_errors_of_lamps(scene_tables()),

@@ -1,11 +1,11 @@
-#include "tools/keys/schema.h"
+#include "tools/keys/registry.h"
 
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "tools/keys/descriptions.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -165,10 +165,7 @@ std::vector<std::string> names_of(const Key& key) {
 std::string pattern_of(const Key& key) {
   const KeyUnit own = unit_of_key(key.name);
   if (own.unit.empty()) return key.name;
-  std::string units;
-  for (const KeyUnit& unit : units_of(own.dimension)) {
-    units += (units.empty() ? "" : "|") + unit.unit;
-  }
+  const std::string units = joined_text(units_of(own.dimension), "|", &KeyUnit::unit);
   return own.stem + "_(" + units + ")";
 }
 

@@ -4,12 +4,13 @@
 #include <cmath>
 
 #include "core/constants.h"
+#include "core/numerics/median.h"
 #include "core/text/format.h"
 #include "images/drawing/canvas.h"
 
 namespace photorque {
 
-std::string spoken(std::string name) {
+std::string name_in_text(std::string name) {
   std::ranges::replace(name, '_', ' ');
   return name;
 }
@@ -17,17 +18,14 @@ std::string spoken(std::string name) {
 namespace {
 
 std::string name_of(const Alternative& alternative) {
-  if (!alternative.label.empty()) return spoken(alternative.label);
-  std::string name;
-  for (const std::string& kind : alternative.kinds) {
-    name += (name.empty() ? "" : " + ") + spoken(kind);
-  }
+  if (!alternative.label.empty()) return name_in_text(alternative.label);
+  const std::string name = joined_text(alternative.kinds, " + ", name_in_text);
   return name.empty() ? "nothing missing" : name;
 }
 
 // Beside a bar of the length of the best one, only the difference is informative.
 std::string note_on(const Alternative& alternative, double best_log_evidence) {
-  if (!alternative.remark.empty()) return spoken(alternative.remark);
+  if (!alternative.remark.empty()) return name_in_text(alternative.remark);
   const double behind = best_log_evidence - alternative.log_evidence_relative;
   std::string note = behind > 0.0 ? "−" + readable_number(behind, 3) + " to the best" : "";
   if (alternative.holdout_chi2_per_sample) {
@@ -75,9 +73,8 @@ Steps steps_of(const std::vector<double>& values, size_t readings) {
   if (all.size() == 1) return {all.front(), 0.01, 1};
   std::vector<double> gaps;
   for (size_t i = 1; i < all.size(); ++i) gaps.push_back(all[i] - all[i - 1]);
-  std::ranges::nth_element(gaps, gaps.begin() + static_cast<ptrdiff_t>(gaps.size() / 2));
   const double span = all.back() - all.front();
-  double step = gaps[gaps.size() / 2];
+  double step = upper_median(gaps);
   const double most =
       std::min(static_cast<double>(most_bins_across), static_cast<double>(readings));
   if (!(span / step < most)) step = span / std::sqrt(static_cast<double>(readings));
@@ -100,8 +97,8 @@ const std::vector<ScanView>& scan_views() {
 }  // namespace
 
 Plot empirical_plot(const EmpiricalTorque& torque) {
-  Plot plot{"empirical_torque", "Empirical torque over " + spoken(torque.variable),
-            spoken(torque.variable) + " [" + torque.unit + "]", "torque [N m]"};
+  Plot plot{"empirical_torque", "Empirical torque over " + name_in_text(torque.variable),
+            name_in_text(torque.variable) + " [" + torque.unit + "]", "torque [N m]"};
   plot.levels = {0.0};
   const std::string axes = torque.about_lab_axes ? "about lab " : "about body ";
   constexpr std::array colours = {Plot::Colour::blue, Plot::Colour::vermilion, Plot::Colour::green};
@@ -134,7 +131,7 @@ BarChart dependence_chart(const Where& where) {
                  {}};
   for (const Where::Dependence& d : where.depends_on) {
     if (!(d.strength > 0.0)) continue;
-    chart.bars.push_back({spoken(d.variable), 100.0 * d.strength, "", chart.bars.empty()});
+    chart.bars.push_back({name_in_text(d.variable), 100.0 * d.strength, "", chart.bars.empty()});
   }
   return chart;
 }
@@ -291,7 +288,7 @@ Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_
   Plot plot{"sweep_" + std::to_string(sweep) + "_of_" + recording.recording,
             "Curve " + (is_only ? "" : std::to_string(sweep) + " ") + "of " + recording.recording +
                 (recording.is_held_out ? ", never fitted" : ""),
-            "Voltage [V]", "Current [A]"};
+            "voltage [V]", "current [A]"};
   Plot::Curve measured, before, after, off_before, off_after;
   measured.dots = true;
   measured.colour = Plot::Colour::grey;
@@ -319,7 +316,7 @@ Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_
     off_after.y.push_back(light.measured[i] - light.after[i]);
   }
   plot.curves = {std::move(measured), std::move(before)};
-  Plot::Panel residual{"Difference [A]", {std::move(off_before)}};
+  Plot::Panel residual{"difference [A]", {std::move(off_before)}};
   if (something_was_found) {
     plot.curves.push_back(std::move(after));
     residual.curves.push_back(std::move(off_after));

@@ -9,7 +9,7 @@
 namespace photorque {
 
 // "magnetic_dipole" as "magnetic dipole".
-std::string spoken(std::string name);
+std::string name_in_text(std::string name);
 
 // Blue is the improved model, vermilion the nominal model, grey the measurement: in every chart and
 // in the legend of the page. Colours that are distinct for colour-blind readers: M. Okabe and K.

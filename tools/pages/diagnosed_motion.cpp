@@ -10,12 +10,6 @@ namespace {
 
 constexpr size_t most_diagnosed_states = 4000;  // of all recordings together
 
-Quat turned(const Vec3& rotation_rad) {
-  const double angle = rotation_rad.norm();
-  if (!(angle > 0.0)) return Quat::Identity();
-  return Quat(Eigen::AngleAxisd(angle, rotation_rad / angle));
-}
-
 const ChannelSeries* series_channel(const RecordingSeries& recording, const std::string& name) {
   const auto at = std::ranges::find(recording.channels, name, &ChannelSeries::name);
   return at == recording.channels.end() || at->time_s.empty() ? nullptr : &*at;
@@ -273,7 +267,7 @@ class MotionStage {
     const auto add = [&](const std::vector<Vec3>& off) {
       const auto [off_rad, error_rad] = mean_about(a, off, i);
       const Vec3 shown_rad = off_rad.allFinite() ? Vec3(factor_ * off_rad) : Vec3::Zero();
-      state.lab_from_body.push_back((turned(-shown_rad) * q).normalized());
+      state.lab_from_body.push_back((turn_by(-shown_rad) * q).normalized());
       const Difference d = difference_of(q, off_rad, error_rad, unit_rad());
       state.arrow_body.push_back(d.body);
       state.arrow_error_body.push_back(d.error_body);

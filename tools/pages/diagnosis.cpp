@@ -88,9 +88,7 @@ bool found_something(const Diagnosis& d) {
 }
 
 bool is_of_module(const RunOptions& options) {
-  return Settings(std::make_shared<const SettingsNode>(
-                      parse_toml(options.experiment_text(), options.experiment.string())))
-      .has("module");
+  return Settings(parse_toml(options.experiment_text(), options.experiment.string())).has("module");
 }
 
 }  // namespace

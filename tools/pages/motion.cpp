@@ -14,12 +14,6 @@ namespace {
 
 constexpr size_t most_states = 2000;
 
-const std::vector<double>* column_of(const Table* table, const std::string& name) {
-  if (table == nullptr) return nullptr;
-  const auto at = std::ranges::find(table->columns, name, &Table::Column::name);
-  return at == table->columns.end() ? nullptr : &at->values;
-}
-
 // The value of a column at the row nearest to a time.
 double at_time(const Table& table, const std::vector<double>& values, double time_s) {
   return values[nearest_instant(table.column("t_s").values, time_s)];
@@ -59,8 +53,8 @@ std::vector<Shown> shown_figures(const Product& product) {
   const Table* power = find_table(product, "power");
   std::vector<Shown> shown;
   const auto add = [&](const char* label, const char* unit, const Table* table, const char* name) {
-    if (const auto* values = column_of(table, name))
-      shown.push_back({{label, unit}, table, values});
+    const Table::Column* const column = table == nullptr ? nullptr : table->find(name);
+    if (column != nullptr) shown.push_back({{label, unit}, table, &column->values});
   };
   add("tilt", "deg", history, "tilt_deg");
   add("yaw", "deg", history, "yaw_deg");
@@ -162,7 +156,7 @@ StagePart rod_along_x(double length_m) {
 RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageHead& head) {
   RunPage page = page_of(run.result, head,
                          {"largest_tilt_deg", "final_yaw_deg", "final_rate_rad_s",
-                          "mean_array_power_W", "battery_left_J", "pointing_rms_deg"});
+                          "mean_array_power_W", "load_unserved_Wh", "battery_left_Wh"});
   const std::optional<OpticalRun> light = optical_run(run, options);
   SceneStage stage =
       light ? stage_of(*light, StageMaps::own) : platform_stage(run.run->model.platform);
@@ -202,7 +196,7 @@ RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageH
   }
   page.stage = std::move(stage);
   for (const Plot& plot : run.result.product.plots) {
-    if (plot.x_label == "Time [s]") page.cursors.push_back({plot.name, 0, 1.0});
+    if (plot.x_label == "time [s]") page.cursors.push_back({plot.name, 0, 1.0});
   }
   // A page draws no areas.
   std::erase_if(page.product.plots,

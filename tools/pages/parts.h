@@ -35,6 +35,9 @@ void add_sentence(std::string& text, const std::string& sentence);
 enum class StageMaps { of_product, own };
 SceneStage stage_of(const OpticalRun& run, StageMaps maps);
 
+// A grey that shows how much a surface reflects; the eye takes reflectance in powers.
+Rgb reflectance_grey(const OpticalSurface& surface);
+
 // Force and torque of the light at an attitude, about the centre of rotation.
 StageState lit_state(const OpticalRun& run, const RigidTransform& lab_from_body,
                      const OpticalResult& result);

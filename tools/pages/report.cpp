@@ -56,9 +56,8 @@ std::string estimate_text(const Estimate& number) {
 }
 
 std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + xml_text(spoken(name));
-  return text;
+  return joined_text(names, ", ",
+                     [](const std::string& name) { return xml_text(name_in_text(name)); });
 }
 
 std::string percent(double probability) {
@@ -147,11 +146,11 @@ std::string parameter_table(const std::vector<FittedParameter>& parameters,
 }
 
 std::string effect_card(const FoundEffect& effect, const std::string& where) {
-  std::string card = tag("h3", xml_text(spoken(effect.kind)) + "<small> probability " +
+  std::string card = tag("h3", xml_text(name_in_text(effect.kind)) + "<small> probability " +
                                    percent(effect.probability) + "</small>");
   card += tag("p", xml_text(effect.explanation));
   for (const auto& [key, text] : effect.texts) {
-    card += tag("p", xml_text(spoken(key)) + ": " + xml_text(text));
+    card += tag("p", xml_text(name_in_text(key)) + ": " + xml_text(text));
   }
   card += parameter_table(effect.parameters, where, "from no effect");
   for (const std::string& text : effect.known_together) {
@@ -203,7 +202,7 @@ std::string empirical(const Diagnosis& d) {
     if (!torque.looks_like.empty()) {
       section += tag("p", "Commonly this is " + xml_text(torque.looks_like) + ".");
     }
-    section += tag("p", "Torque as a function of " + xml_text(spoken(torque.variable)) +
+    section += tag("p", "Torque as a function of " + xml_text(name_in_text(torque.variable)) +
                             ", fitted without any law; bands are ± 1 σ.");
     section += plot_html(empirical_plot(torque));
   }
@@ -213,11 +212,9 @@ std::string empirical(const Diagnosis& d) {
 std::string where_section(const Where& where) {
   std::string facts;
   if (!where.intervals_s.empty()) {
-    std::string text;
-    for (const auto& i : where.intervals_s) {
-      text += (text.empty() ? "" : ", ") + readable_number(i.from) + " to " +
-              readable_number(i.to) + " s";
-    }
+    const std::string text = joined_text(where.intervals_s, ", ", [&](const auto& i) {
+      return readable_number(i.from) + " to " + readable_number(i.to) + " s";
+    });
     facts += tag("li", "Strongest between " + text + ".");
   }
   if (where.band_Hz) {
@@ -336,10 +333,10 @@ std::string data_section(const DataQuality& data) {
   std::string rows = row({"Rows in the files", count(data.rows)});
   rows += row({"Rows used", count(data.used)});
   for (const auto& [reason, n] : data.rejected) {
-    rows += row({"Left out: " + xml_text(spoken(reason)), count(n)});
+    rows += row({"Left out: " + xml_text(name_in_text(reason)), count(n)});
   }
   for (const auto& [reason, n] : data.repaired) {
-    rows += row({"Repaired: " + xml_text(spoken(reason)), count(n)});
+    rows += row({"Repaired: " + xml_text(name_in_text(reason)), count(n)});
   }
   if (data.median_interval_s > 0.0) rows += times_of(data);
   return tag("section", tag("h2", "Data quality") + table({}, rows));

@@ -16,13 +16,6 @@ namespace {
 
 constexpr size_t most_lamps = 2000;
 
-// A grey that shows how much a surface reflects; the eye takes reflectance in powers.
-Rgb reflectance_grey(const OpticalSurface& surface) {
-  const float reflectance = static_cast<float>(surface.specular[0] + surface.diffuse[0]);
-  const float grey = 0.30f + 0.60f * std::sqrt(reflectance);
-  return {grey, grey, grey};
-}
-
 StagePart part_of(const Scene& scene, const Instance& instance) {
   const Mesh& mesh = scene.meshes[instance.mesh];
   StagePart part{instance.path, reflectance_grey(scene.surfaces[instance.front_surface]), {}, {}};
@@ -120,7 +113,7 @@ std::vector<StageLamp> lamps_of(const std::vector<Beam>& beams, double radius_m)
         {beam.name, beam.lab_from_emitter.translation_m,
          beam.lab_from_emitter.direction(Vec3::UnitZ()),
          beam.aperture && std::isfinite(beam.aperture->radius_m) ? beam.aperture->radius_m : 0.0,
-         stands_far(beam, radius_m)});
+         is_too_far_to_draw(beam, radius_m)});
   }
   return lamps;
 }
@@ -131,6 +124,12 @@ StageCamera camera_of(const Experiment& experiment) {
 }
 
 }  // namespace
+
+Rgb reflectance_grey(const OpticalSurface& surface) {
+  const float reflectance = static_cast<float>(surface.specular[0] + surface.diffuse[0]);
+  const float grey = 0.30f + 0.60f * std::sqrt(reflectance);
+  return {grey, grey, grey};
+}
 
 SceneStage stage_of(const OpticalRun& run, StageMaps maps) {
   const Experiment& experiment = run.experiment();

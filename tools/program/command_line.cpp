@@ -69,10 +69,8 @@ std::string in_quotes(const std::string& text) {
 }
 
 std::string words_of(const CLI::App& app) {
-  std::string words;
-  for (const CLI::Option* option : options_of(app))
-    words += (words.empty() ? "" : " ") + name_of(*option);
-  return words;
+  return joined_text(options_of(app), " ",
+                     [&](const CLI::Option* option) { return name_of(*option); });
 }
 
 std::string bash_script(const CLI::App& app) {

@@ -75,6 +75,11 @@ int run(int argc, char** argv, Interruption& interruption) {
   const CommandLine line = read_command_line(argc, argv, verbs);
   if (line.status) return *line.status;
   const CommandOptions& options = *line.command.options;
+  std::error_code failure;
+  if (std::filesystem::current_path(failure).empty()) {
+    throw InputError({"photorque"}, "", "a working directory that was removed",
+                     "an existing one (cd)");
+  }
   if (options.out && options.out->empty()) throw InputError({"--out"}, "", "nothing", "a folder");
   hold_memory(options.max_memory_GB);
   return run_command(line.command, {verbs, &interruption});
@@ -141,8 +146,9 @@ int main(int argc, char** argv) {
     photorque::Interruption interruption;
     const int status = photorque::run(argc, argv, interruption);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      std::fprintf(stderr, "photorque: standard output could not be written\n");
-      return 3;
+      std::fputs("standard output: found a write that failed, expected space and permission\n",
+                 stderr);
+      return status == 0 ? 2 : status;
     }
     return status;
   } catch (const photorque::InputError& error) {
@@ -151,6 +157,10 @@ int main(int argc, char** argv) {
   } catch (const photorque::NumericalError& error) {
     photorque::print_error(std::string("numerical failure: ") + error.what());
     return 3;
+  } catch (const std::filesystem::filesystem_error& error) {
+    photorque::print_error(error.path1().string() + ": found \"" + error.code().message() +
+                           "\", expected a file or folder that exists and is accessible");
+    return 2;
   } catch (const std::bad_alloc&) {
     // Threads of libraries that are short of memory may never be ready to be joined.
     std::fputs("numerical failure: not enough memory\n", stderr);

@@ -20,7 +20,7 @@ bool Gate::is_silent(int64_t now_ns) const {
   return client_ && now_ns - last_heard_ns_ > silence_ns_;
 }
 
-uint64_t Gate::refused_in_all() const {
+uint64_t Gate::total_refused() const {
   return std::accumulate(refused_.begin(), refused_.end(), uint64_t{0});
 }
 
@@ -51,8 +51,8 @@ std::optional<Refusal> Gate::fault_of(std::span<const std::byte> bytes,
 }
 
 // Whether this sender may send this packet now.
-std::optional<Refusal> Gate::stands_against(const ClientPacket& packet, uint64_t sender,
-                                            int64_t now_ns) const {
+std::optional<Refusal> Gate::reason_to_refuse(const ClientPacket& packet, uint64_t sender,
+                                              int64_t now_ns) const {
   const photorque_header& header = packet.command.header;
   const bool is_hello = packet.kind == PHOTORQUE_HELLO;
   if (header.run != run_ && !(is_hello && header.run == 0)) return Refusal::run;
@@ -69,7 +69,7 @@ std::optional<ClientPacket> Gate::admit(std::span<const std::byte> bytes, uint64
                                         int64_t now_ns) {
   ClientPacket packet;
   std::optional<Refusal> fault = fault_of(bytes, packet);
-  if (!fault) fault = stands_against(packet, sender, now_ns);
+  if (!fault) fault = reason_to_refuse(packet, sender, now_ns);
   if (fault) {
     ++refused_[static_cast<size_t>(*fault)];
     return {};

@@ -51,12 +51,12 @@ class Gate {
   // Whether there is a client, and nothing came from it for longer than `silence_ns`.
   bool is_silent(int64_t now_ns) const;
   const std::array<uint64_t, refusal_names.size()>& refused() const { return refused_; }
-  uint64_t refused_in_all() const;
+  uint64_t total_refused() const;
 
  private:
   std::optional<Refusal> fault_of(std::span<const std::byte> bytes, ClientPacket& packet) const;
-  std::optional<Refusal> stands_against(const ClientPacket& packet, uint64_t sender,
-                                        int64_t now_ns) const;
+  std::optional<Refusal> reason_to_refuse(const ClientPacket& packet, uint64_t sender,
+                                          int64_t now_ns) const;
 
   uint64_t run_;
   double max_torque_N_m_;

@@ -68,14 +68,14 @@ LinkSettings read_link(const Settings& settings, const std::filesystem::path& fo
   return link;
 }
 
-LinkFate::LinkFate(LinkSettings settings, uint64_t seed, uint64_t stream)
+LinkImpairment::LinkImpairment(LinkSettings settings, uint64_t seed, uint64_t stream)
     : settings_(std::move(settings)), seed_(seed), stream_(stream) {}
 
-double LinkFate::draw(uint64_t dimension) const {
+double LinkImpairment::draw(uint64_t dimension) const {
   return unit_interval(hash_words(seed_, stream_, sent_, dimension));
 }
 
-double LinkFate::jitter_s() const {
+double LinkImpairment::jitter_s() const {
   if (settings_.jitter_s == 0.0) return 0.0;
   const double u = draw(jitter_u);
   switch (settings_.jitter) {
@@ -91,7 +91,7 @@ double LinkFate::jitter_s() const {
   return 0.0;
 }
 
-std::optional<double> LinkFate::next() {
+std::optional<double> LinkImpairment::next() {
   std::optional<double> delay_s;
   if (!settings_.trace_s.empty()) {
     const double measured_s = settings_.trace_s[sent_ % settings_.trace_s.size()];

@@ -36,9 +36,9 @@ LinkSettings read_link(const Settings& settings, const std::filesystem::path& fo
 std::vector<Key> link_keys();
 
 // Fates of successive packets on a link.
-class LinkFate {
+class LinkImpairment {
  public:
-  LinkFate(LinkSettings settings, uint64_t seed, uint64_t stream);
+  LinkImpairment(LinkSettings settings, uint64_t seed, uint64_t stream);
 
   // The delay of the next packet [s]; nothing: it is lost.
   std::optional<double> next();
@@ -88,7 +88,7 @@ class SimulatedLink {
   }
   // Whatever is on its way never arrives.
   void clear() { on_the_way_.clear(); }
-  const LinkFate& fate() const { return fate_; }
+  const LinkImpairment& impairment() const { return fate_; }
 
  private:
   struct OnTheWay {
@@ -96,7 +96,7 @@ class SimulatedLink {
     Packet packet;
   };
   bool keeps_order_;
-  LinkFate fate_;
+  LinkImpairment fate_;
   double last_due_s_ = -std::numeric_limits<double>::infinity();
   std::vector<OnTheWay> on_the_way_;  // by due_s
 };

@@ -222,7 +222,7 @@ void Session::send(const photorque_measurement_packet& packet, uint32_t flags) {
   last_sent_.now_tick = tick_;
   last_sent_.step_s = 1.0 / settings_.rate_Hz;
   last_sent_.flags = flags | (settings_.send_truth ? uint32_t{PHOTORQUE_TRUTH} : 0);
-  last_sent_.refused = static_cast<uint32_t>(gate_.refused_in_all());
+  last_sent_.refused = static_cast<uint32_t>(gate_.total_refused());
   last_sent_.header.run = run_;
   last_sent_.header.sequence = ++sequence_;
   last_sent_.header.sent_ns = static_cast<uint64_t>(monotonic_ns());
@@ -366,9 +366,9 @@ Product Session::product() const {
   if (is_paced()) put("ticks_at_packet_limit", full_ticks_);
   put("packets_sent", sent_);
   put("packets_received", received_);
-  put("packets_refused", gate_.refused_in_all());
-  put("measurements_lost_by_link", to_client_.fate().lost());
-  put("commands_lost_by_link", from_client_.fate().lost());
+  put("packets_refused", gate_.total_refused());
+  put("measurements_lost_by_link", to_client_.impairment().lost());
+  put("commands_lost_by_link", from_client_.impairment().lost());
   put("commands_overtaken", overtaken_);
   if (!is_paced()) put("answers_that_came_twice", unanswered_);
   Table table = Table::of("refused", "Packets that were refused");

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 
 #include "core/files.h"
+#include "core/text/format.h"
 #include "raytrace/tracing/shadow.h"
 #include "scenes/experiment/named_files.h"
 #include "scenes/gltf/reader.h"
@@ -37,9 +37,7 @@ bool is_optical(const std::string& key) {
 
 std::string brief(double value) {
   if (std::isnan(value)) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
+  return printed("%.3g", value);
 }
 
 // Smallest height above a marker at which its light starts, for models without thickness.
@@ -61,11 +59,77 @@ bool is_shaded(const TraceableScene& scene, const Marker& marker, const Vec3& ca
   return lit == 0;
 }
 
+std::string vector_override(size_t disturbance, const Vec3& v) {
+  return printed("disturbance[%zu].sun_direction=[%.17g,%.17g,%.17g]", disturbance, v.x(), v.y(),
+                 v.z());
+}
+
+// False for a kind that is no text, too, which the reader of the table reports.
+bool is_of_kind(const Settings& table, const std::string& kind) {
+  if (!table.has("kind")) return false;
+  const auto* name = std::get_if<std::string>(&table.raw("kind").value);
+  return name != nullptr && *name == kind;
+}
+
+std::optional<Vec3> direction_of_sun_source(const ExperimentFile& file) {
+  std::optional<Vec3> to_sun;
+  if (!file.scene_file) return to_sun;
+  for (const Settings& source : file.sources) {
+    if (is_of_kind(source, "sun") && source.has("direction")) {
+      to_sun = -source.vector3("direction").normalized();
+    }
+  }
+  return to_sun;
+}
+
+// An orbit takes the direction of the sun of [[source]], and planet_light that of the orbit.
+// InputError where both name a direction and differ.
+std::vector<std::string> orbit_overrides(const ExperimentFile& file) {
+  std::optional<Vec3> to_sun = direction_of_sun_source(file);
+  const std::vector<Settings> disturbances = file.others("disturbance");
+  std::vector<std::string> overrides;
+  bool in_orbit = false;
+  for (size_t i = 0; i < disturbances.size(); ++i) {
+    const Settings& orbit = disturbances[i];
+    if (!is_of_kind(orbit, "orbit")) continue;
+    in_orbit = true;
+    if (!orbit.has("sun_direction")) {
+      if (to_sun) overrides.push_back(vector_override(i, *to_sun));
+      continue;
+    }
+    const Vec3 named = orbit.vector3("sun_direction").normalized();
+    constexpr double alike_rad = 0.1 * degree_rad;
+    if (to_sun && std::atan2(named.cross(*to_sun).norm(), named.dot(*to_sun)) > alike_rad) {
+      throw orbit.error("sun_direction", "a direction away from that of [[source]] \"sun\"",
+                        "the opposite of its `direction`, or nothing");
+    }
+    to_sun = named;
+  }
+  for (size_t i = 0; i < disturbances.size(); ++i) {
+    const Settings& planet = disturbances[i];
+    if (!is_of_kind(planet, "planet_light")) continue;
+    if (!in_orbit) {
+      throw planet.error("kind", "\"planet_light\" of a platform on the ground",
+                         "a disturbance \"orbit\" beside it");
+    }
+    if (!planet.has("sun_direction") && to_sun) overrides.push_back(vector_override(i, *to_sun));
+  }
+  return overrides;
+}
+
+ExperimentFile read_with_overrides(const RunOptions& options) {
+  std::vector<std::string> all = options.overrides;
+  const auto read = [&] {
+    return read_experiment_text(options.experiment, options.experiment_text(), all);
+  };
+  for (const std::string& one : orbit_overrides(read())) all.push_back(one);
+  return read();
+}
+
 }  // namespace
 
 AttitudeExperiment::AttitudeExperiment(const RunOptions& options)
-    : file_(
-          read_experiment_text(options.experiment, options.experiment_text(), options.overrides)) {
+    : file_(read_with_overrides(options)) {
   const Settings& root = file_.settings;
   for (const char* table : optical_tables) {
     if (root.has(table)) root.raw(table);
@@ -111,9 +175,8 @@ void print_table(const Console& console, const Table& table,
   std::vector<std::vector<std::string>> cells;
   std::vector<bool> is_text;
   for (const PrintedColumn& wanted : columns) {
-    const auto column = std::find_if(table.columns.begin(), table.columns.end(),
-                                     [&](const auto& c) { return c.name == wanted.name; });
-    if (column == table.columns.end()) continue;
+    const Table::Column* const column = table.find(wanted.name);
+    if (column == nullptr) continue;
     std::vector<std::string> texts = {wanted.title};
     is_text.push_back(!column->texts.empty());
     texts.insert(texts.end(), column->texts.begin(), column->texts.end());
@@ -132,6 +195,13 @@ void print_table(const Console& console, const Table& table,
     line.erase(line.find_last_not_of(' ') + 1);
     (row <= most_rows ? console : console.details()).line(line);
   }
+}
+
+void print_reasons(const Console& console, const Table& figures) {
+  const auto& quantity = figures.column("quantity").texts;
+  const auto& why = figures.column("why").texts;
+  console.heading("Why");
+  for (size_t i = 0; i < quantity.size(); ++i) console.line("  " + quantity[i] + ": " + why[i]);
 }
 
 }  // namespace photorque

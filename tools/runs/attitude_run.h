@@ -13,8 +13,9 @@
 
 namespace photorque {
 
-// An experiment file with its overrides. InputError for tables that no command
-// reads; those of optical commands are left alone.
+// An experiment file with its overrides; an orbit without `sun_direction` has that of the sun of
+// [[source]], and `planet_light` that of the orbit. InputError for tables that no command reads;
+// those of optical commands are left alone.
 class AttitudeExperiment {
  public:
   explicit AttitudeExperiment(const RunOptions& options);
@@ -43,5 +44,8 @@ struct PrintedColumn {
 // At most so many rows without --verbose.
 void print_table(const Console& console, const Table& table,
                  const std::vector<PrintedColumn>& columns, size_t most_rows = 1000000);
+
+// The columns "quantity" and "why" of a table of published figures.
+void print_reasons(const Console& console, const Table& figures);
 
 }  // namespace photorque

@@ -2,22 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
 
-std::string superscript(int number) {
-  static const char* const digits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  std::string text = number < 0 ? "⁻" : "";
-  for (const char c : std::to_string(std::abs(number))) text += digits[c - '0'];
-  return text;
-}
-
 std::string fixed(double value, int decimals) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", std::clamp(decimals, 0, 15), value);
-  return text;
+  return printed("%.*f", std::clamp(decimals, 0, 15), value);
 }
 
 int magnitude(double value) {
@@ -69,7 +61,7 @@ std::string show(double value) {
     }
     return text;
   }
-  return fixed(value / std::pow(10.0, exponent), 4) + "×10" + superscript(exponent);
+  return fixed(value / std::pow(10.0, exponent), 4) + "×" + power_of_ten(exponent);
 }
 
 std::string show(const Estimate& estimate, const std::string& unit) {
@@ -90,7 +82,7 @@ std::string show(const Estimate& estimate, const std::string& unit) {
   const double scale = std::pow(10.0, exponent);
   const int decimals = exponent - last;
   return "(" + fixed(estimate.value / scale, decimals) + " ± " + fixed(error / scale, decimals) +
-         ")×10" + superscript(exponent) + " " + unit;
+         ")×" + power_of_ten(exponent) + " " + unit;
 }
 
 std::string show_percent(double fraction) {
@@ -104,7 +96,7 @@ std::string show_brief(double value) {
   if (value == 0.0 || !std::isfinite(value)) return show(value);
   const int exponent = magnitude(value);
   if (exponent >= 6 || exponent < -3)
-    return fixed(value / std::pow(10.0, exponent), 1) + "×10" + superscript(exponent);
+    return fixed(value / std::pow(10.0, exponent), 1) + "×" + power_of_ten(exponent);
   const double unit = std::pow(10.0, exponent - 2);
   return show(std::round(value / unit) * unit);
 }

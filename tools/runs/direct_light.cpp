@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/constants.h"
+#include "core/text/format.h"
 #include "receivers/gather/bodies/wrench.h"
 
 namespace photorque {
@@ -134,13 +134,12 @@ DirectTorque compare(const WrenchReceiver& receiver, const Gathered& gathered, c
 }
 
 std::string cost_notice(const std::string& what, size_t pairs, uint64_t rays) {
-  char text[256];
-  std::snprintf(text, sizeof text,
-                " by rays alone: to gather it over %.2g pairs of a bin and a lamp would take about "
-                "%.2g s of one thread, the rays take %.2g s; trace.direct = \"gather\" does so all "
-                "the same",
-                static_cast<double>(pairs), gathering_cost_s(pairs), tracing_cost_s(rays));
-  return what + text;
+  return what +
+         printed(
+             " by rays alone: to gather it over %.2g pairs of a bin and a lamp would take about "
+             "%.2g s of one thread, the rays take %.2g s; trace.direct = \"gather\" does so all "
+             "the same",
+             static_cast<double>(pairs), gathering_cost_s(pairs), tracing_cost_s(rays));
 }
 
 // Data shared by all maps and bodies of one run.

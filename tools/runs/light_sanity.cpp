@@ -76,7 +76,7 @@ double lit_W(const NamedReceiver& receiver, const BinSums& sums) {
 
 }  // namespace
 
-std::vector<InputError> light_mistakes(const OpticalRun& run) {
+std::vector<InputError> unlit_receiver_errors(const OpticalRun& run) {
   constexpr size_t max_lamps = 256;
   constexpr double rounding = 1e-9;
   const Experiment& experiment = run.experiment();

@@ -3,9 +3,10 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <fstream>
 #include <limits>
+
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -39,9 +40,7 @@ std::optional<uint64_t> left_of_group_bytes() {
 }
 
 std::string in_GB(uint64_t bytes) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g GB", static_cast<double>(bytes) / bytes_per_GB);
-  return text;
+  return printed("%.3g GB", static_cast<double>(bytes) / bytes_per_GB);
 }
 
 }  // namespace

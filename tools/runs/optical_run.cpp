@@ -1,15 +1,14 @@
 #include "tools/runs/optical_run.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <set>
 #include <thread>
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/settings/settings.h"
 #include "core/text/format.h"
-#include "core/text/names.h"
 #include "images/writers/image_file.h"
 #include "receivers/gather/bodies/wrench.h"
 #include "receivers/kind.h"
@@ -152,10 +151,7 @@ std::shared_ptr<const WrenchGather> OpticalRun::bodies() const {
 OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
                               const std::function<void(double)>& progress,
                               std::optional<uint64_t> rays) const {
-  const auto start = std::chrono::steady_clock::now();
-  const auto elapsed_s = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
+  const WallTime wall;
   const TraceEffort& effort = experiment_.file.effort;
   TraceOptions options = experiment_.file.trace;
   options.rays = rays.value_or(options.rays);
@@ -166,12 +162,12 @@ OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
   options.progress = progress;
   const auto receivers = experiment_.receiver_pointers();
   for (;; options.rays *= 2) {
-    const double before_s = elapsed_s();
+    const double before_s = wall.elapsed_s();
     OpticalResult result{trace(scene_, lab_from_body, experiment_.beams, receivers, options), {}};
     result.direct =
         gather_into(experiment_, scene_, bodies().get(), lab_from_body, options, result);
     result.worst_bin_error = worst_bin_error(experiment_, result);
-    result.wall_s = elapsed_s();
+    result.wall_s = wall.elapsed_s();
     const double next_s = 2.0 * (result.wall_s - before_s);
     const bool reached = !effort.target_error || result.worst_bin_error <= *effort.target_error;
     const bool late = effort.max_time_s && result.wall_s + next_s > *effort.max_time_s;

@@ -24,6 +24,7 @@ namespace photorque {
 // The result of a run: the trace, the direct light of its flux maps gathered where possible.
 struct OpticalResult : TraceResult {
   DirectRoute direct;
+  double wall_s = 0.0;
   double worst_bin_error = 0.0;  // see worst_bin_error()
 };
 

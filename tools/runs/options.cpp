@@ -1,8 +1,7 @@
 #include "tools/runs/options.h"
 
-#include <cstdio>
-
 #include "core/files.h"
+#include "core/text/format.h"
 
 namespace photorque {
 
@@ -15,9 +14,7 @@ std::vector<std::string> RunOptions::all_overrides() const {
   std::vector<std::string> all = overrides;
   if (seed) all.push_back("trace.seed=" + std::to_string(*seed));
   const auto add = [&all](const char* key, double value) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%s=%.17g", key, value);
-    all.emplace_back(text);
+    all.push_back(printed("%s=%.17g", key, value));
   };
   if (target_error) add("trace.target_error", *target_error);
   if (max_time_s) add("trace.max_time_s", *max_time_s);

@@ -85,7 +85,7 @@ OutputFolder::OutputFolder(const fs::path& path, Others others) : path_(place_of
     // The previous holder of the lock may have removed the folder meanwhile: then it is recreated.
     do make();
     while (!lock(others));
-    remove_leftovers_of_the_dead(path_);
+    remove_leftovers_of_ended_processes(path_);
     try_to_write();
   } catch (...) {
     remove_empty();

@@ -1,21 +1,16 @@
 #include "tools/runs/result.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <sstream>
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/parse.h"
 #include "images/writers/product.h"
 #include "images/writers/staged_files.h"
 
 namespace photorque {
 namespace {
-
-int64_t now_ns() {
-  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
-}
 
 bool is_one_of(const std::string& name, const std::vector<std::string>& names) {
   return std::ranges::find(names, name) != names.end();
@@ -42,11 +37,8 @@ void check_figures(const RunResult& result) {
 }
 
 std::vector<std::string> formats_in(const std::string& list) {
-  std::vector<std::string> formats;
-  std::istringstream words(list);
-  for (std::string word; std::getline(words, word, ',');) {
-    if (!word.empty()) formats.push_back(word);
-  }
+  const std::vector<std::string_view> words = words_of(list, ",");
+  const std::vector<std::string> formats(words.begin(), words.end());
   require_formats(formats);
   return formats;
 }
@@ -78,12 +70,6 @@ std::vector<std::filesystem::path> write_run(const RunResult& result,
   write_file_whole(staged.path() / "summary.json", result.summary());
   staged.publish_as(command, result.provenance);
   return paths;
-}
-
-WallTime::WallTime() : start_ns_(now_ns()) {}
-
-double WallTime::elapsed_s() const {
-  return 1e-9 * static_cast<double>(now_ns() - start_ns_);
 }
 
 }  // namespace photorque

@@ -1,7 +1,7 @@
 // The results of a run.
 #pragma once
 
-#include <cstdint>
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -54,11 +54,12 @@ std::vector<std::string> formats_in(const std::string& list);
 // Seconds since `start`, for RunCost.
 class WallTime {
  public:
-  WallTime();
-  double elapsed_s() const;
+  double elapsed_s() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
 
  private:
-  int64_t start_ns_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace photorque

@@ -177,10 +177,7 @@ void print_supply(const Console& console, const Product& product, const SupplyTr
   details.heading("Section III.B of the paper compared with ours");
   const Table& paper = table_named(product, "paper_supply");
   print_table(details, paper, {{"quantity", "quantity"}, {"paper", "published"}, {"ours", "ours"}});
-  details.heading("Why");
-  const auto& quantity = paper.column("quantity").texts;
-  const auto& why = paper.column("why").texts;
-  for (size_t i = 0; i < quantity.size(); ++i) details.line("  " + quantity[i] + ": " + why[i]);
+  print_reasons(details, paper);
 }
 
 }  // namespace photorque

@@ -9,6 +9,7 @@
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -40,9 +41,7 @@ std::string sql_name(const std::string& text) {
 }
 
 std::string joined(const Changes& changes) {
-  std::string all;
-  for (const std::string& one : changes) all += (all.empty() ? "" : "\n") + one;
-  return all;
+  return joined_text(changes, "\n");
 }
 
 }  // namespace

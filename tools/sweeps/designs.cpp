@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text/format.h"
+
 namespace photorque {
 namespace {
 
@@ -96,9 +98,7 @@ std::vector<Figure> worst_of(const SweepPlan& plan,
 }
 
 std::string where_it_failed(const SweepPlan& plan, size_t run) {
-  std::string where;
-  const std::vector<Changes> runs = plan.runs_of({});
-  for (const std::string& change : runs[run]) where += (where.empty() ? "" : ", ") + change;
+  const std::string where = joined_text(plan.runs_of({})[run], ", ");
   return where.empty() ? "" : " (" + where + ")";
 }
 

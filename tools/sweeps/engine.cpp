@@ -7,6 +7,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/provenance.h"
+#include "tools/runs/result.h"
 
 namespace photorque {
 namespace {
@@ -94,6 +95,8 @@ RunOutcome RunEngine::make(const Changes& changes) {
     return {task_.run(run), 0, ""};
   } catch (const InputError& error) {
     return {{}, 2, without_origin(error.what())};
+  } catch (const std::filesystem::filesystem_error& error) {
+    return {{}, 2, error.what()};
   } catch (const NumericalError& error) {
     return {{}, 3, std::string("numerical failure: ") + error.what()};
   }
@@ -129,17 +132,16 @@ bool RunEngine::settle(const Changes& changes, RunOutcome& outcome) {
     ++kept_;
     return true;
   }
-  const auto begin = std::chrono::steady_clock::now();
+  const WallTime wall;
   outcome = make(changes);
   ++made_;
   if (!outcome.failed() && task_.first) {
     task_.first(outcome.figures);
     task_.first = {};
   }
-  const double wall_s =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const Provenance build = build_provenance();
-  keep({hash, task_.command, build.version + " " + build.git_hash, changes, outcome, wall_s});
+  keep({hash, task_.command, build.version + " " + build.git_hash, changes, outcome,
+        wall.elapsed_s()});
   return true;
 }
 

@@ -48,7 +48,7 @@ std::string RunIdentity::of(const Changes& changes) {
     return file.empty() ? std::string() : "@" + content_of_file(file);
   };
   return content_hash(command_ + '\n' + program_ + '\n' +
-                      written_out(changed(changes), {}, file_behind));
+                      canonical_text(changed(changes), {}, file_behind));
 }
 
 SettingsNode RunIdentity::value(const Changes& changes, const std::string& key) const {

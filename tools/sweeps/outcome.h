@@ -1,6 +1,7 @@
 // The outcome of one run of a command, as a sweep stores it.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <span>
@@ -32,15 +33,25 @@ struct Figure {
   Estimate estimate;
 };
 
-std::vector<Figure> figures_of(std::span<const Quantity> quantities);
+inline std::vector<Figure> figures_of(std::span<const Quantity> quantities) {
+  std::vector<Figure> figures;
+  for (const Quantity& q : quantities) figures.push_back({FigureName(q.name), q.estimate});
+  return figures;
+}
 
 // The figure of this name; null where there is none.
-const Figure* find_figure(std::span<const Figure> figures, const std::string& name);
+inline const Figure* find_figure(std::span<const Figure> figures, const std::string& name) {
+  const auto at = std::ranges::find(
+      figures, name, [](const Figure& f) -> const std::string& { return f.name.text(); });
+  return at == figures.end() ? nullptr : &*at;
+}
 
 // The names that the runs of a sweep have in common: kept once, not once for each run.
 class FigureNames {
  public:
-  void share(std::vector<Figure>& figures);
+  void share(std::vector<Figure>& figures) {
+    for (Figure& f : figures) f.name = known_.try_emplace(f.name.text(), f.name).first->second;
+  }
 
  private:
   std::map<std::string, FigureName> known_;

@@ -1,8 +1,7 @@
-#include "tools/sweeps/pictures.h"
+#include "tools/sweeps/report.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "core/text/format.h"
@@ -12,13 +11,9 @@
 namespace photorque {
 namespace {
 
-double nothing() {
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
 double value_or_nothing(const Design& design, const std::string& column) {
   const auto value = figure_of(design, column);
-  return value ? value->value : nothing();
+  return value ? value->value : std::nan("");
 }
 
 // The numbers of an axis' values; empty where one is none.
@@ -76,7 +71,7 @@ Map pair_map(const SweepPlan& plan, const SweepResult& result, const std::string
   map.x_label = x_label.text();
   map.y_label = y_label.text();
   map.equal_scale = false;
-  map.value.assign(x.size() * y.size(), nothing());
+  map.value.assign(x.size() * y.size(), std::nan(""));
   map.standard_error.assign(map.value.size(), 0.0);
   const Objective* objective = objective_of(plan, column);
   for (size_t d = 0; d < result.designs.size(); ++d) {
@@ -112,8 +107,8 @@ Plot curves_over_last(const SweepPlan& plan, const SweepResult& result, const st
     for (size_t k = 0; k < along.size(); ++k) {
       const auto value = figure_of(result.designs[begin + k], column);
       curve.x.push_back(along[k]);
-      curve.y.push_back(value ? value->value : nothing());
-      curve.y_error.push_back(value ? value->standard_error : nothing());
+      curve.y.push_back(value ? value->value : std::nan(""));
+      curve.y_error.push_back(value ? value->standard_error : std::nan(""));
     }
     plot.curves.push_back(std::move(curve));
   }
@@ -277,7 +272,7 @@ Plot search_plot(const SweepPlan& plan, const SweepResult& result) {
   const AxisLabel y = label_of_figure(column);
   Plot plot{"search", title_of_figure(plan, column) + ": the search", "evaluation", y.text()};
   Cloud inside, outside, so_far;
-  double best = nothing();
+  double best = std::nan("");
   for (size_t d = 0; d < result.designs.size(); ++d) {
     const double value = value_or_nothing(result.designs[d], column);
     const double at = static_cast<double>(d + 1);

@@ -164,7 +164,7 @@ SearchPlan read_search(const Settings& sweep) {
 
 }  // namespace
 
-std::string lacks_for_search(const SweepPlan& plan) {
+std::string missing_search_keys(const SweepPlan& plan) {
   if (plan.objectives.empty()) return "maximise or minimise";
   for (const SweepAxis& axis : plan.axes) {
     if (!axis.low || !axis.high || !(*axis.low < *axis.high)) {
@@ -286,6 +286,27 @@ SweepPlan read_sweep_plan(const Settings& sweep) {
   }
   sweep.finish();
   return plan;
+}
+
+Key sweep_table() {
+  using namespace axis_key;
+  const std::vector<Key> grid = {axis_key::values, from, to, count, spacing};
+  const Key axis = sweep_key::axis.of(joined({{key, name}, grid, {mean, sigma}}));
+  const Key mean_over =
+      sweep_key::mean_over.of({key, axis_key::values.meaning("numbers; *or*"), weights,
+                               from.meaning("start of an interval for the Gauss–Legendre rule"),
+                               to.meaning("end of the interval"), nodes});
+  const Key worst_over = sweep_key::worst_over.of(joined({{key}, grid}));
+  const Key tolerance =
+      sweep_key::tolerance.of({key, sigma.meaning("normal with this standard deviation; *or*"),
+                               half_width, seed, relative});
+  const Key constraint = sweep_key::constraint.of(
+      {constraint_key::figure, constraint_key::at_least, constraint_key::at_most});
+  using namespace sweep_key;
+  return sweep.of({verb, figures, maximise, minimise, designs, sweep_key::seed, axis, mean_over,
+                   worst_over, constraint, tolerance, built_copies,
+                   built_fraction.with_default(BuiltCopies{}.fraction), built_of, built_seed,
+                   global, local, precision.with_default(SearchPlan{}.precision)});
 }
 
 }  // namespace photorque

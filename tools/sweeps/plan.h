@@ -125,6 +125,6 @@ struct SweepPlan {
 SweepPlan read_sweep_plan(const Settings& sweep);
 
 // The keys that a plan lacks for an optimisation; empty if it lacks none.
-std::string lacks_for_search(const SweepPlan& plan);
+std::string missing_search_keys(const SweepPlan& plan);
 
 }  // namespace photorque

@@ -7,9 +7,9 @@
 
 #include "core/errors.h"
 #include "core/settings/settings.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 #include "tools/sweeps/labels.h"
-#include "tools/sweeps/pictures.h"
 #include "tools/sweeps/tolerances.h"
 
 namespace photorque {
@@ -21,10 +21,6 @@ constexpr const char* error_suffix = "_standard_error";
 // Figure of `power`: the temperature of the cells.
 constexpr const char* cell_temperature = "cell_temperature_K";
 constexpr const char* above_rated = "cell_temperature_above_rated_K";
-
-double not_a_number() {
-  return std::numeric_limits<double>::quiet_NaN();
-}
 
 // The value of an axis as a column: numbers where all are numbers.
 void add_axis(Table& table, const SweepPlan& plan, size_t axis) {
@@ -45,7 +41,7 @@ void add_axis(Table& table, const SweepPlan& plan, size_t axis) {
 void add_figure(Table& table, const std::vector<Design>& designs, const std::string& name) {
   std::vector<double> values, errors;
   for (const Design& design : designs) {
-    const Estimate none{not_a_number(), not_a_number()};
+    const Estimate none{std::nan(""), std::nan("")};
     const Estimate estimate = figure_of(design, name).value_or(none);
     values.push_back(estimate.value);
     errors.push_back(estimate.standard_error);
@@ -289,10 +285,10 @@ void print_best(const Console& console, const SweepPlan& plan, const SweepResult
     if (!best) return;
     std::string text = "  " + what + "  " + shown(*best);
     if (nominal) {
-      text += ", of the nominal experiment " + shown(*nominal);
+      text += "; nominal experiment " + shown(*nominal);
       const double percent = 100.0 * (best->value / nominal->value - 1.0);
       if (std::isfinite(percent)) {
-        text += " (" + std::string(percent < 0.0 ? "" : "+") + show(percent) + " %)";
+        text += " (" + std::string(percent < 0.0 ? "" : "+") + readable_number(percent, 3) + " %)";
       }
     }
     console.line(text);

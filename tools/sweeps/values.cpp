@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <numeric>
 
 #include "core/numerics/quadrature.h"
 #include "core/numerics/random.h"
 #include "core/numerics/root.h"
+#include "core/text/format.h"
 #include "scenes/experiment/document.h"
 #include "tools/sweeps/keys.h"
 
@@ -77,18 +77,14 @@ WeightedValues weighted_list(const Settings& axis) {
 }  // namespace
 
 std::string toml_number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.15g", value);
-  return text;
+  return printed("%.15g", value);
 }
 
 std::string toml_text(const SettingsNode& node) {
   if (const auto* real = std::get_if<double>(&node.value)) return toml_number(*real);
   const auto* array = std::get_if<SettingsNode::Array>(&node.value);
   if (array == nullptr) return toml_value(node);
-  std::string items;
-  for (const SettingsNode& item : *array) items += (items.empty() ? "" : ", ") + toml_text(item);
-  return "[" + items + "]";
+  return "[" + joined_text(*array, ", ", toml_text) + "]";
 }
 
 std::vector<std::string> grid_values(const Settings& axis) {

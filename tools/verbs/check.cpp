@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "attitude/camera/study.h"
@@ -133,7 +134,7 @@ class Checker {
     report_.notes = run->experiment().notices;
     for (const std::string& doubt : run->experiment().warnings) report_.notes.push_back(doubt);
     attempt([&] { read_published(file_->others("published")); });
-    for (const InputError& mistake : light_mistakes(*run)) add_mistake(mistake);
+    for (const InputError& mistake : unlit_receiver_errors(*run)) add_mistake(mistake);
     say_light(*run);
     if (file_->settings.has("array")) attempt([&] { check_array(*run); });
     check_recordings_of_light(*run);
@@ -196,12 +197,8 @@ class Checker {
   }
 
   void check_motion() {
-    RunOptions full = options_;
-    attempt([&] {
-      for (const std::string& one : orbit_overrides(*file_)) full.overrides.push_back(one);
-    });
     std::unique_ptr<AttitudeExperiment> experiment;
-    if (!attempt([&] { experiment = std::make_unique<AttitudeExperiment>(full); })) return;
+    if (!attempt([&] { experiment = std::make_unique<AttitudeExperiment>(options_); })) return;
     const Settings& settings = experiment->settings();
     if (!attempt([&] { read_attitude_model(settings); })) return;
     attempt([&] { say_propagation(read_propagation(settings)); });
@@ -211,7 +208,7 @@ class Checker {
     });
     add("fmu", "a unit for co-simulation by FMI 3.0 or 2.0");
     if (settings.has("supply_trade")) {
-      attempt([&] { add("supply", supply_in_words(full)); });
+      attempt([&] { add("supply", supply_in_words(options_)); });
     }
     attempt([&] {
       const EstimateStudy study = read_estimate(settings);
@@ -257,7 +254,7 @@ class Checker {
   }
 
   void check_fit() {
-    attempt([&] { add("fit-cell", what_fit_asks(options_)); });
+    attempt([&] { add("fit-cell", describe_fit(options_)); });
   }
 
   void check_module() {
@@ -275,7 +272,7 @@ class Checker {
   void check_sweep() {
     attempt([&] {
       const SweepPlan plan = read_sweep_plan(file_->others("sweep").front());
-      const std::string lacks = lacks_for_search(plan);
+      const std::string lacks = missing_search_keys(plan);
       const bool can_run = check_designs(plan);
       const std::string over = counted(plan.designs(), "design") + " by " + plan.verb;
       std::string no_search, no_sweep;
@@ -378,9 +375,32 @@ void print_lacking(const Console& console, const CheckReport& report,
   }
 }
 
+void print_json(const CheckReport& report) {
+  using Json = nlohmann::ordered_json;
+  const auto listed = [](const std::vector<CheckReport::Command>& commands) {
+    Json list = Json::array();
+    for (const CheckReport::Command& one : commands) {
+      list.push_back({{"name", one.name}, {"what", clean_text(one.what)}});
+    }
+    return list;
+  };
+  Json json = {{"schema", "photorque.check/1"},
+               {"commands", listed(report.commands)},
+               {"impossible", listed(report.impossible)},
+               {"tables", report.tables},
+               {"mistakes", Json::array()},
+               {"notes", Json::array()}};
+  for (const InputError& mistake : report.mistakes) {
+    json["mistakes"].push_back(clean_text(mistake.what()));
+  }
+  for (const std::string& note : report.notes) json["notes"].push_back(clean_text(note));
+  std::puts(json.dump(2).c_str());
+}
+
 void run(const CommandOptions& options, const Program& program) {
   const Console console = terminal(options);
   const CheckReport report = run_check(options);
+  if (options.json) print_json(report);
   print_commands(console, report, program.verbs);
   if (report.mistakes.empty()) print_lacking(console, report, program.verbs);
   for (const CheckReport::Command& command : report.impossible) {

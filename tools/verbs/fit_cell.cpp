@@ -234,9 +234,10 @@ void check_rms(double rms_A, const FitTask& task) {
 void print_misfit(const Console& console, double scatter) {
   constexpr double usual = 3.0;
   if (scatter < usual) return;
-  console.line("  warning: the scatter is " + show(scatter) +
-               " times what the noise makes: one diode does not describe these data. The errors "
-               "are widened to the scatter; `photorque diagnose` with [module] finds the cause");
+  console.line(
+      "  warning: the scatter is " + readable_number(scatter, 3) +
+      " times that of the stated noise: one diode does not describe these data. The errors "
+      "follow from the scatter; `photorque diagnose` with [module] searches for the cause");
 }
 
 void print_left_out(const Console& console, const FitTask& task,
@@ -302,7 +303,8 @@ Product fit_even_light(const FitTask& task, const Console& console) {
   print_ideality_note(console, fit.diode, task);
   print_left_out(console, task, fit.outliers);
   console.line("  rms of current " + show(fit.rms_A) + " A over " + std::to_string(fit.points) +
-               " points; scatter over that expected " + show(std::sqrt(fit.variance)));
+               " points; scatter " + readable_number(std::sqrt(fit.variance), 3) +
+               " times that of the stated noise");
   print_misfit(console, std::sqrt(fit.variance));
   print_light_note(console, fit.uses_light, task.sweeps.size() == 1);
   if (fit.storage) print_storage(console, *fit.storage, rows);
@@ -360,7 +362,8 @@ Product fit_several_conditions(const FitTask& given, const Console& console) {
                    false);
   console.line("  rms of current " + show_percent(fit.rms) + " of the photocurrent over " +
                std::to_string(fit.points) + " points of " + std::to_string(fit.curves.size()) +
-               " curves; scatter over that expected " + show(std::sqrt(fit.variance)));
+               " curves; scatter " + readable_number(std::sqrt(fit.variance), 3) +
+               " times that of the stated noise");
   print_misfit(console, std::sqrt(fit.variance));
   Table table = Table::of("curves", "The curves");
   FitTask at_first = task;
@@ -516,13 +519,12 @@ Product list_module(const ListedModule& module, const Console& console) {
 FitTask task_of(const RunOptions& options, const std::string& text) {
   SettingsNode root = parse_toml(text, options.experiment.string());
   for (const std::string& assignment : options.overrides) apply_override(root, assignment);
-  return read_fit_task(Settings(std::make_shared<const SettingsNode>(std::move(root))),
-                       options.experiment.parent_path());
+  return read_fit_task(Settings(std::move(root)), options.experiment.parent_path());
 }
 
 }  // namespace
 
-std::string what_fit_asks(const RunOptions& options) {
+std::string describe_fit(const RunOptions& options) {
   const FitTask task = task_of(options, options.experiment_text());
   const std::string cells = std::to_string(task.cells_in_series) + " in series";
   if (task.module) return "a module of a library: " + task.module->name;

@@ -13,6 +13,6 @@ namespace photorque {
 RunResult run_fit_cell(const RunOptions& options, const Console& console);
 
 // Reads all input without fitting, and describes the fit.
-std::string what_fit_asks(const RunOptions& options);
+std::string describe_fit(const RunOptions& options);
 
 }  // namespace photorque

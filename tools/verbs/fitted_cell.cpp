@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "core/constants.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -91,15 +91,13 @@ void print_undetermined(const Console& console, const std::vector<CellRow>& rows
 
 void print_bounds(const Console& console, const std::vector<BoundReached>& bounds) {
   for (const BoundReached& bound : bounds) {
-    console.line("  warning: " + bound.key + " ended on its bound, " + show(bound.value) + ": " +
-                 bound.meaning);
+    console.line("  warning: " + bound.key + " is at its bound, " +
+                 readable_number(bound.value, 3) + ": " + bound.meaning);
   }
 }
 
 void print_key(const Console& console, const char* name, double value, const std::string& comment) {
-  char text[80];
-  std::snprintf(text, sizeof text, "  %s = %.9g", name, value);
-  console.line(text + (comment.empty() ? "" : "   # " + comment));
+  console.line(printed("  %s = %.9g", name, value) + (comment.empty() ? "" : "   # " + comment));
 }
 
 void print_cell(const Console& console, const SingleDiode& d, const FitTask& task,
@@ -181,7 +179,7 @@ void add_fit_plot(const FitTask& task, const std::vector<ArrayPoint>& fitted,
   plot.curves = {measured, line};
   plot.below.push_back(power);
   if (line.x.size() > 1) {
-    plot.below.push_back({"left [A]", {residuals_of(measured, line)}, false, {0.0}});
+    plot.below.push_back({"residual [A]", {residuals_of(measured, line)}, false, {0.0}});
   }
   product.plots.push_back(plot);
 }

@@ -1,12 +1,12 @@
 // photorque new: a first experiment, commented, for a model of one's own or for a platform alone.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <set>
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 #include "receivers/surface_grid.h"
 #include "scenes/cad/model.h"
@@ -71,9 +71,7 @@ std::string quoted(const std::string& text) {
 }
 
 std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
+  return printed("%.3g", value);
 }
 
 // Around all parts of that name, or around the whole scene.
@@ -152,7 +150,7 @@ SceneWords scene_words(const Options& options) {
   for (const std::string& assignment : options.overrides) {
     if (assignment.starts_with("scene.")) apply_override(root, assignment);
   }
-  const Settings settings(std::make_shared<const SettingsNode>(std::move(root)));
+  const Settings settings(std::move(root));
   if (!settings.has("scene") || !settings.table("scene").has("unit")) {
     throw InputError({options.scene->string()}, "scene.unit", "nothing",
                      "a unit of length, because the file contains none: --set scene.unit=mm");

@@ -4,7 +4,7 @@
 
 #include "core/text/parse.h"
 #include "tools/sweeps/optimiser.h"
-#include "tools/sweeps/pictures.h"
+#include "tools/sweeps/report.h"
 #include "tools/sweeps/values.h"
 #include "tools/verbs/studies.h"
 
@@ -46,7 +46,7 @@ class Search {
         plan_(read_study_plan(file_, verbs)),
         engine_(study_task(options, plan_, verbs, SweepFiles{options.out_folder()}.database())),
         evaluator_(plan_, engine_) {
-    const std::string lacks = lacks_for_search(plan_);
+    const std::string lacks = missing_search_keys(plan_);
     if (!lacks.empty()) throw file_.settings.error("sweep", "no plan of a search", lacks);
     // The further designs are those of the search.
     plan_.grid = false;

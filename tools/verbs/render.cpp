@@ -7,6 +7,7 @@
 #include "images/scene/picture.h"
 #include "images/writers/staged_files.h"
 #include "raytrace/tracing/view.h"
+#include "tools/pages/parts.h"
 #include "tools/verbs/verb.h"
 
 namespace photorque {
@@ -14,13 +15,6 @@ namespace {
 
 constexpr int oversampling = 3;  // per pixel and direction
 constexpr size_t drawn_rays = 200;
-
-// A grey that shows how much a surface reflects; the eye takes reflectance in powers.
-Rgb part_colour(const OpticalSurface& surface) {
-  const float reflectance = static_cast<float>(surface.specular[0] + surface.diffuse[0]);
-  const float grey = 0.30f + 0.60f * std::sqrt(reflectance);
-  return {grey, grey, grey};
-}
 
 float irradiance_at(const OpticalRun& run, const std::vector<std::pair<size_t, FluxMap>>& maps,
                     const VisiblePoint& point) {
@@ -51,7 +45,7 @@ std::vector<DrawnLamp> drawn_lamps(const Experiment& experiment) {
   const double radius_m = experiment.scene.radius_m();
   std::vector<DrawnLamp> lamps;
   for (const Beam& beam : experiment.beams) {
-    if (stands_far(beam, radius_m)) continue;
+    if (is_too_far_to_draw(beam, radius_m)) continue;
     // A lamp without an opening is drawn as a dot.
     lamps.push_back({beam.lab_from_emitter.translation_m,
                      beam.lab_from_emitter.direction(Vec3::UnitZ()),
@@ -100,7 +94,7 @@ SceneView make_view(const OpticalRun& run, const TraceResult& result, const Pinh
       maps.emplace_back(i, run.flux_map(i).flux_map(result.sums[i]));
   }
   for (const Instance& instance : experiment.scene.instances) {
-    view.part_colour.push_back(part_colour(experiment.scene.surfaces[instance.front_surface]));
+    view.part_colour.push_back(reflectance_grey(experiment.scene.surfaces[instance.front_surface]));
   }
   view.depth_m.resize(samples);
   view.part.resize(samples);

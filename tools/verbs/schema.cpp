@@ -3,10 +3,8 @@
 
 #include "core/errors.h"
 #include "core/files.h"
-#include "tools/keys/descriptions.h"
-#include "tools/keys/document.h"
+#include "core/text/format.h"
 #include "tools/keys/registry.h"
-#include "tools/keys/schema.h"
 #include "tools/verbs/verb.h"
 
 namespace photorque::verbs::schema {
@@ -47,8 +45,7 @@ void print_keys(const Key& table) {
   }
   for (const Key& key : table.keys) {
     for (const Key::Choice& choice : key.choices) {
-      std::string names;
-      for (const Key& own : choice.keys) names += (names.empty() ? "" : ", ") + own.name;
+      const std::string names = joined_text(choice.keys, ", ", &Key::name);
       if (names.empty()) continue;
       std::printf("  with %s = \"%s\": %s\n", key.name.c_str(), choice.name.c_str(), names.c_str());
     }

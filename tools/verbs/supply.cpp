@@ -10,12 +10,6 @@
 namespace photorque {
 namespace {
 
-// A table that may be absent, with its own defaults.
-Settings table_or_empty(const Settings& s, const std::string& key) {
-  if (s.has(key)) return s.table(key);
-  return Settings(std::make_shared<const SettingsNode>(), s.name() + "." + key);
-}
-
 // The ways but for those by light, whose tables are handed on.
 struct TradeWithoutLight {
   SupplyTrade trade;
@@ -27,7 +21,7 @@ TradeWithoutLight read_trade(const Settings& root, const Settings& s) {
   read.beams = s.tables("beam");
   read.trade.task = read_supply_task(root, s);
   SupplyTrade& trade = read.trade;
-  const Settings battery = table_or_empty(s, "battery");
+  const Settings battery = s.table_or_empty("battery");
   trade.options.push_back(battery_option(battery, trade.task));
   constexpr int steps = 20;
   for (int i = 0; i <= steps; ++i) {
@@ -35,11 +29,11 @@ TradeWithoutLight read_trade(const Settings& root, const Settings& s) {
     trade.battery_torque_N_m.push_back(
         battery_torque_N_m(battery, trade.task, trade.charge_fraction.back()));
   }
-  trade.options.push_back(cable_option(table_or_empty(s, "cable"), trade.task));
+  trade.options.push_back(cable_option(s.table_or_empty("cable"), trade.task));
   for (const Settings& one : s.tables("microwave")) {
     trade.options.push_back(microwave_option(one, trade.task));
   }
-  trade.options.push_back(induction_option(table_or_empty(s, "induction"), trade.task));
+  trade.options.push_back(induction_option(s.table_or_empty("induction"), trade.task));
   return read;
 }
 

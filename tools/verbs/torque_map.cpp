@@ -8,6 +8,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/text/format.h"
 #include "receivers/wrench/table_product.h"
 #include "tools/coupling/direction_map.h"
 #include "tools/pages/pages.h"
@@ -76,10 +77,8 @@ void print_torques(const WrenchTable& wrenches, const AttitudeGrid& grid, const 
   for (size_t h = 0; h < grid.heading_rad.size(); ++h) {
     for (size_t t = 0; t < grid.tilt_rad.size(); ++t) {
       const size_t node = wrenches.node(h, t);
-      char angles[64];
-      std::snprintf(angles, sizeof angles, "  %10g  %13g", grid.tilt_rad[t] / degree_rad,
-                    grid.heading_rad[h] / degree_rad);
-      std::string line = angles;
+      std::string line =
+          printed("  %10g  %13g", grid.tilt_rad[t] / degree_rad, grid.heading_rad[h] / degree_rad);
       for (int i = 0; i < 3; ++i) {
         line += in_column(show(Estimate{rounded_N_m(wrenches.torque_body_N_m[node][i]),
                                         rounded_N_m(wrenches.torque_error_N_m[node][i])},
@@ -183,34 +182,24 @@ TorqueMapRun run_torque_map(const RunOptions& options, const Console& console,
 namespace photorque::verbs::torque_map {
 namespace {
 
-struct Options : CommandOptions {
-  std::optional<double> checkpoint_min;
-};
-
-void add_options(Command& command, Options& options) {
+void add_options(Command& command, CommandOptions& options) {
   command.add_traced_experiment(options);
-  command.add_checkpoint(options.checkpoint_min);
+  command.add_checkpoint(options);
   command.add_page(options);
 }
 
-void run(const Options& options, const Program&) {
+void run(const CommandOptions& options, const Program&) {
   const Console console = terminal(options);
-  std::optional<CheckpointFile> checkpoint;
-  if (options.checkpoint_min) {
-    checkpoint.emplace(options.out_folder() / "torque-map.checkpoint",
-                       60.0 * *options.checkpoint_min);
-  }
+  const std::unique_ptr<CheckpointFile> checkpoint = checkpoint_of(options);
   TorqueMapStage stage;
   const NodeWatch watch = options.page ? stage.watch() : NodeWatch{};
-  TorqueMapRun run = run_torque_map(options, console, watch, checkpoint ? &*checkpoint : nullptr);
+  TorqueMapRun run = run_torque_map(options, console, watch, checkpoint.get());
   if (options.page) {
     run.result.files.push_back(
         torque_map_page(*run.run, run.wrenches, run.result, std::move(stage), page_head(options)));
   }
   write_results(options, console, run.result);
-  // The results are complete, so that the checkpoint is not needed.
-  std::error_code stays;
-  if (checkpoint) std::filesystem::remove(checkpoint->path(), stays);
+  if (checkpoint) checkpoint->remove();
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "core/errors.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
+#include "tools/coupling/couple.h"
 #include "tools/pages/pages.h"
 
 namespace photorque {
@@ -126,16 +127,6 @@ class ShortText {
   std::deque<std::string> last_;
 };
 
-// A text quoted as one word of a shell.
-std::string shell_word(const std::string& word) {
-  static constexpr const char* plain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=:,+-";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 }  // namespace
 
 std::filesystem::path CommandOptions::out_folder() const {
@@ -199,8 +190,8 @@ void Command::add_page(CommandOptions& common) {
   add("--page", common.page, "Also write page.html: scene, maps and curves for a browser");
 }
 
-void Command::add_checkpoint(std::optional<double>& minutes) {
-  add("--checkpoint", minutes,
+void Command::add_checkpoint(CommandOptions& common) {
+  add("--checkpoint", common.checkpoint_min,
       "Save the state of the run (VERB.checkpoint in the output folder) every so many minutes; "
       "after a kill the same command resumes")
       .mistake = minutes_above_zero;
@@ -309,6 +300,12 @@ void write_results(const CommandOptions& options, const Console& console, const 
   for (const RunFile& file : result.files) {
     if (!file.remark.empty()) console.line("  " + file.name + ": " + file.remark);
   }
+}
+
+std::unique_ptr<CheckpointFile> checkpoint_of(const CommandOptions& options) {
+  if (!options.checkpoint_min) return nullptr;
+  return std::make_unique<CheckpointFile>(options.out_folder() / (options.verb + ".checkpoint"),
+                                          60.0 * *options.checkpoint_min);
 }
 
 PageHead page_head(const CommandOptions& options,

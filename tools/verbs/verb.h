@@ -18,8 +18,9 @@
 
 namespace photorque {
 
-class Interruption;  // tools/runs/output_folder.h
-struct PageHead;     // tools/pages/pages.h
+class CheckpointFile;  // tools/coupling/couple.h
+class Interruption;    // tools/runs/output_folder.h
+struct PageHead;       // tools/pages/pages.h
 struct Verb;
 
 // Options of every command line: photorque VERB EXPERIMENT [--set KEY=VALUE …] [--out DIR] …
@@ -33,6 +34,7 @@ struct CommandOptions : RunOptions {
   std::string format;                        // further formats of the results: "exr,svg"
   std::string style = "page";                // of pictures
   bool page = false;                         // --page, of commands that have it
+  std::optional<double> checkpoint_min;      // --checkpoint, likewise
 
   // --out, or out/NAME/VERB below the current folder.
   std::filesystem::path out_folder() const;
@@ -84,7 +86,7 @@ struct Command {
   void add_traced_experiment(CommandOptions& common, Folder writes = Folder::own);
   void add_recordings(std::vector<std::filesystem::path>& recordings);
   void add_page(CommandOptions& common);
-  void add_checkpoint(std::optional<double>& minutes);
+  void add_checkpoint(CommandOptions& common);
   template <class Value>
   Option& add(std::string names, Value& value, std::string help) {
     return list.emplace_back(Option{std::move(names), &value, std::move(help)});
@@ -140,6 +142,9 @@ RunFormats formats_of(const CommandOptions& options);
 // Writes the results and summary.json into the command's folder (write_run) and says where; with
 // --json prints the summary.
 void write_results(const CommandOptions& options, const Console& console, const RunResult& result);
+
+// The file of --checkpoint; null without the option.
+std::unique_ptr<CheckpointFile> checkpoint_of(const CommandOptions& options);
 
 // The description of the command on a page: without what changes no result, such as the folder and
 // the number of threads.

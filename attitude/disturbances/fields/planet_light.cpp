@@ -36,7 +36,7 @@ constexpr NumberKey table_irradiance("table_irradiance_W_m2", solar_irradiance_W
 constexpr NumberKey irradiance("irradiance_W_m2", solar_irradiance_W_m2, Range::positive(),
                                "irradiance of sunlight at the planet");
 constexpr Vec3Key sun_direction("sun_direction", "towards the Sun, any length",
-                                {.usually = "`propagate`: that of `orbit`"});
+                                {.usually = "that of `orbit`"});
 constexpr NumberKey albedo("albedo", earth.albedo.mean, Range::fraction(),
                            "mean albedo of the planet");
 constexpr NumberKey emissivity(
@@ -151,7 +151,6 @@ DisturbanceKind kind() {
       .summary = "sunlight that the planet reflects, and its infrared, push on a spacecraft",
       .read = read,
       .screening = {.reason_against = "needs a table that torque-map traces for this spacecraft"},
-      .budget = {.reason_against = "of a spacecraft in orbit, not of a platform on the ground"},
       .keys = {key::table, key::infrared_table, key::table_irradiance, key::irradiance,
                key::sun_direction, key::albedo, key::emissivity, key::zonal, key::date_year,
                planet_factor}};

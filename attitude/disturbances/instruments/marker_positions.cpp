@@ -3,6 +3,7 @@
 
 #include "attitude/camera/spot.h"
 #include "attitude/disturbances/kind.h"
+#include "core/text/format.h"
 
 namespace photorque::kinds::marker_positions {
 namespace {
@@ -268,11 +269,9 @@ std::vector<Parametrisation> of_markers(const DisturbanceContext& context) {
   const std::vector<Marker>& markers = context.camera->markers;
   for (size_t i = 0; i < markers.size(); ++i) {
     const Vec3 at_mm = 1e3 * markers[i].position_body_m;
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "marker %zu, stated at (%.4g, %.4g, %.4g) mm, is displaced: the pose is rotated",
-                  i + 1, at_mm.x(), at_mm.y(), at_mm.z());
-    all.push_back({text,
+    all.push_back({printed("marker %zu, stated at (%.4g, %.4g, %.4g) mm, is displaced: the pose is "
+                           "rotated",
+                           i + 1, at_mm.x(), at_mm.y(), at_mm.z()),
                    {EffectKey::fixed_at(marker_key, static_cast<double>(i + 1)),
                     EffectKey::vector(error_key, expected_m)}});
   }

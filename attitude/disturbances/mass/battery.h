@@ -31,18 +31,28 @@ struct BatteryCell {
 
 // Shift of the platform's centre of mass per charge drawn [m/C] (eq. 30). Equal cells mounted in
 // opposition cancel.
-Vec3 com_shift_m_C(std::span<const BatteryCell> cells, double platform_mass_kg,
-                   double lithium_per_charge_kg_C = lithium_kg_C);
+inline Vec3 com_shift_m_C(std::span<const BatteryCell> cells, double platform_mass_kg,
+                          double lithium_per_charge_kg_C = lithium_kg_C) {
+  Vec3 moment_m = Vec3::Zero();
+  for (const BatteryCell& cell : cells) moment_m += cell.charge_fraction * cell.electrodes_body_m;
+  return lithium_per_charge_kg_C / platform_mass_kg * moment_m;
+}
 
 // Consumption of the platform in a part of an experiment.
 struct LoadPhase {
   double duration_s = 0.0;
   double power_W = 0.0;
 };
-double energy_J(std::span<const LoadPhase> profile);
+inline double energy_J(std::span<const LoadPhase> profile) {
+  double sum_J = 0.0;
+  for (const LoadPhase& phase : profile) sum_J += phase.duration_s * phase.power_W;
+  return sum_J;
+}
 
 // Mass of the battery that holds this energy [kg]; lithium-ion packs reach 60 to 250 Wh/kg, here in
 // J/kg.
-double battery_mass_kg(double energy_J, double specific_energy_J_kg);
+inline double battery_mass_kg(double energy_J, double specific_energy_J_kg) {
+  return energy_J / specific_energy_J_kg;
+}
 
 }  // namespace photorque

@@ -32,8 +32,8 @@ std::vector<MovingMass> eight_masses(const MovingMass& pattern) {
   return masses;
 }
 
-BalanceCommand steps_that_remove(const Vec3& offset_body_m, const std::vector<MovingMass>& masses,
-                                 double platform_mass_kg) {
+BalanceCommand balancing_steps(const Vec3& offset_body_m, const std::vector<MovingMass>& masses,
+                               double platform_mass_kg) {
   Eigen::Matrix3Xd shift_m(3, masses.size());
   for (size_t i = 0; i < masses.size(); ++i) {
     shift_m.col(static_cast<Eigen::Index>(i)) = masses[i].com_step_m(platform_mass_kg);

@@ -43,8 +43,8 @@ struct BalanceCommand {
 // The steps that best undo an offset of the centre of mass: the least travel, rounded, then
 // repaired step by step while that brings the rest closer to zero. Directions that no mass can
 // reach are left over.
-BalanceCommand steps_that_remove(const Vec3& offset_body_m, const std::vector<MovingMass>& masses,
-                                 double platform_mass_kg);
+BalanceCommand balancing_steps(const Vec3& offset_body_m, const std::vector<MovingMass>& masses,
+                               double platform_mass_kg);
 
 // Reads moving_mass_kg, lead_m, step_angle_deg (default 1.8), microsteps (default 1) and
 // directions (default: those of eight_masses()).

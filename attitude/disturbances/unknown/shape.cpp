@@ -1,9 +1,9 @@
 #include "attitude/disturbances/unknown/shape.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "core/errors.h"
+#include "core/text/format.h"
 
 namespace photorque {
 
@@ -158,22 +158,13 @@ std::string yaw_key(const Settings& settings) {
   return settings.has("heading_orders") ? "heading_orders" : "yaw_orders";
 }
 
-std::string print(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.15g", x);
-  return text;
-}
-
 std::string array_of(const std::vector<double>& values_SI, double unit) {
-  std::string text;
-  for (const double x : values_SI) text += (text.empty() ? "" : ", ") + print(x / unit);
-  return "[" + text + "]";
+  const auto number = [unit](double x) { return printed("%.15g", x / unit); };
+  return "[" + joined_text(values_SI, ", ", number) + "]";
 }
 
 std::string array_of(const std::vector<int>& values) {
-  std::string text;
-  for (const int x : values) text += (text.empty() ? "" : ", ") + std::to_string(x);
-  return "[" + text + "]";
+  return "[" + joined_text(values, ", ", [](int x) { return std::to_string(x); }) + "]";
 }
 
 }  // namespace
@@ -266,11 +257,11 @@ std::vector<std::pair<std::string, std::string>> shape_as_written(const Empirica
       keys.emplace_back(key, value);
     };
     const bool is_power = f.form == FunctionForm::power || f.form == FunctionForm::powers;
-    if (is_power) add(with_unit(f.of, "reference"), print(f.reference / unit));
+    if (is_power) add(with_unit(f.of, "reference"), printed("%.15g", f.reference / unit));
     if (f.form == FunctionForm::powers) add(name_of(f.of) + "_powers", array_of(f.orders));
     if (f.form == FunctionForm::harmonics) add(name_of(f.of) + "_orders", array_of(f.orders));
     if (f.form == FunctionForm::cosines) {
-      add("time_span_s", print(f.reference));
+      add("time_span_s", printed("%.15g", f.reference));
       add("time_cosines", array_of(f.orders));
     }
     if (f.form == FunctionForm::table) {

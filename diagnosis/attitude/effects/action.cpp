@@ -37,7 +37,7 @@ std::optional<double> braking_power(const Candidate& candidate, AttitudeModel mo
   return std::log2(faster / forward);
 }
 
-bool pulls_back(const Candidate& candidate, AttitudeModel model) {
+bool is_restoring(const Candidate& candidate, AttitudeModel model) {
   if (candidate.empirical() || candidate.start.stage == Stage::measurement ||
       !model.platform.turns_about_one_axis() || is_force(candidate.effect.how.needs)) {
     return false;

@@ -49,7 +49,7 @@ Vec3 rate_at(const Observation& seen, size_t i, size_t reach) {
     const size_t from = i - std::min(i, reach), to = std::min(seen.blocks() - 1, i + reach);
     if (seen.attitude_rows[from] > 0.0 && seen.attitude_rows[to] > 0.0 && to > from) {
       const Quat turn = seen.attitude[from].conjugate() * seen.attitude[to];
-      rate = rotation_vector(turn) / (seen.time_s[to] - seen.time_s[from]);
+      rate = turn_vector(turn) / (seen.time_s[to] - seen.time_s[from]);
     }
   }
   if (seen.rows_of(i, vector_channels + static_cast<int>(Scalar::rate_magnitude)) > 0.0) {
@@ -299,7 +299,7 @@ bool turns(const std::vector<Observation>& runs) {
     for (size_t i = first; i < seen.blocks(); ++i) {
       if (!(seen.attitude_rows[i] > 0.0)) continue;
       const Quat turn = seen.attitude[first].conjugate() * seen.attitude[i];
-      if (rotation_vector(turn).norm() > far_rad) return true;
+      if (turn_vector(turn).norm() > far_rad) return true;
     }
     return false;
   });
@@ -321,7 +321,7 @@ std::vector<double> rates_about(const Observation& seen, const Vec3& axis) {
     const double turned_rad =
         before == seen.blocks()
             ? 0.0
-            : axis.dot(rotation_vector(seen.attitude[i] * seen.attitude[before].conjugate()));
+            : axis.dot(turn_vector(seen.attitude[i] * seen.attitude[before].conjugate()));
     angle_rad.push_back((angle_rad.empty() ? 0.0 : angle_rad.back()) + turned_rad);
     time_s.push_back(seen.time_s[i]);
     before = i;
@@ -406,7 +406,7 @@ bool swings_little(const std::vector<Observation>& runs) {
       if (!(seen.attitude_rows[i] > 0.0)) continue;
       if (!sees) first = seen.attitude[i];
       sees = true;
-      const Vec3 turn_rad = rotation_vector(seen.attitude[i] * first.conjugate());
+      const Vec3 turn_rad = turn_vector(seen.attitude[i] * first.conjugate());
       least_rad = std::min(least_rad, turn_rad.minCoeff());
       most_rad = std::max(most_rad, turn_rad.maxCoeff());
     }
@@ -417,7 +417,7 @@ bool swings_little(const std::vector<Observation>& runs) {
 // Rates alone do not show where the angle is zero: the zero is where a restoring torque vanishes.
 // The components of such a torque with an effect there are excluded.
 void set_zero_at_rest(const AttitudeModel& nominal, Candidate& c) {
-  if (!pulls_back(c, nominal)) return;
+  if (!is_restoring(c, nominal)) return;
   AttitudeModel model = nominal;
   for (size_t p = 0; p < c.start.parameters.size(); ++p) {
     if (!c.is_strength(p)) continue;
@@ -529,11 +529,11 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     // A sliding body has no known line.
     const bool has_weight =
         context.platform.slides() || std::ranges::any_of(all.list, [&](const Candidate& c) {
-          return c.effect.how.needs == Requirement::gravity && pulls_back(c, nominal.model);
+          return c.effect.how.needs == Requirement::gravity && is_restoring(c, nominal.model);
         });
     std::erase_if(all.list, [&](const Candidate& c) {
       return has_weight && c.effect.how.needs == Requirement::bearing &&
-             pulls_back(c, nominal.model);
+             is_restoring(c, nominal.model);
     });
     const bool sees_angle = std::ranges::any_of(
         runs, [](const Observation& seen) { return seen.sees_some_attitude(); });
@@ -558,7 +558,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
         });
     std::erase_if(all.list, [&](const Candidate& c) {
       return !states_weight && c.effect.how.needs == Requirement::gravity && !c.lowest.empty() &&
-             c.lowest.front() == 0.0 && pulls_back(c, nominal.model);
+             c.lowest.front() == 0.0 && is_restoring(c, nominal.model);
     });
   }
   // While the rate keeps its sign, friction equals a steady torque, and its sign is known.

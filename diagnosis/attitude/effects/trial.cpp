@@ -55,7 +55,7 @@ void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observati
     if (f.per_run) continue;
     if (std::find(found.begin(), found.end(), f.disturbance) == found.end()) h.value(f) = f.mean;
   }
-  h.runs = seen_starts(h, runs);
+  h.runs = starts_from_data(h, runs);
 }
 
 // Whether an uncertain inertia differs from its nominal value by more than its sigma.
@@ -79,7 +79,7 @@ Fit fit_unbent(const Hypothesis& h, size_t nominal_disturbances,
   for (const Free& f : h.free) {
     if (!f.per_run && f.disturbance < nominal_disturbances) stated.value(f) = f.mean;
   }
-  stated.runs = seen_starts(stated, runs);
+  stated.runs = starts_from_data(stated, runs);
   FitSettings growing = settings;
   growing.windows = limits.fitting.first_windows;
   growing.max_start_chi2 = inference::infinity;
@@ -294,7 +294,7 @@ Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observa
   Trial result = trial;
   Hypothesis h = trial.fit.best;
   h.runs = starts;
-  suit_to_runs(h, runs);
+  adapt_to_runs(h, runs);
   result.fit = fit(h, runs, settings);
   judge(result, all);
   return result;

@@ -69,7 +69,7 @@ std::optional<double> braking_power(const Candidate& candidate, AttitudeModel mo
 // Whether a candidate on a one-axis platform exerts a restoring torque towards an angle, as a
 // weight or twisted line does, independently of the rate: with one sign up to a third of a turn
 // away.
-bool pulls_back(const Candidate& candidate, AttitudeModel model);
+bool is_restoring(const Candidate& candidate, AttitudeModel model);
 
 // Start of a candidate's fit.
 struct Start {

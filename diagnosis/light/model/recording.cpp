@@ -168,7 +168,7 @@ void require_whole_attitude(const LightHeader& header, const ColumnsOfLight& col
 // Reads one row; each function returns the reason for a rejection, or an empty string.
 class RowReader {
  public:
-  RowReader(const ColumnsOfLight& columns, const UsualCircumstances& usual, LightRecording& into)
+  RowReader(const ColumnsOfLight& columns, const DefaultConditions& usual, LightRecording& into)
       : columns_(columns), usual_(usual), into_(into) {}
 
   std::string add(const std::vector<std::string_view>& cells) {
@@ -246,7 +246,7 @@ class RowReader {
   }
 
   const ColumnsOfLight& columns_;
-  const UsualCircumstances& usual_;
+  const DefaultConditions& usual_;
   LightRecording& into_;
   const std::vector<std::string_view>* cells_ = nullptr;
   std::unordered_set<uint64_t> seen_;
@@ -291,7 +291,7 @@ std::set<std::string> absent_of(const LightColumns& named, const std::vector<std
 
 // Reads curves in instrument formats.
 LightRecording curves_of_instrument(const std::filesystem::path& path,
-                                    const UsualCircumstances& usual, const LightColumns& named) {
+                                    const DefaultConditions& usual, const LightColumns& named) {
   const std::string text = whole_text(path);
   const std::vector<MeasuredCurve> curves = curves_in(text, path.string(), named);
   LightRecording all;
@@ -389,7 +389,7 @@ bool is_light_recording(const std::filesystem::path& path, const LightColumns& c
 }
 
 LightRecording read_light_recording(const std::filesystem::path& path,
-                                    const UsualCircumstances& usual, const LightColumns& named) {
+                                    const DefaultConditions& usual, const LightColumns& named) {
   TextLines lines(path);
   const Beginning beginning = find_header(lines, named);
   if (beginning.is_curve) {

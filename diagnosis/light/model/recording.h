@@ -58,7 +58,7 @@ std::vector<LightRecording> sweeps_of(const LightRecording& recording);
 double median_of(std::vector<double> values);
 
 // Defaults for rows without these values.
-struct UsualCircumstances {
+struct DefaultConditions {
   Quat lab_from_body = Quat::Identity();
   double temperature_K = 298.15;
 };
@@ -75,7 +75,7 @@ bool is_light_recording(const std::filesystem::path& path, const LightColumns& c
 
 // Throws InputError with file and line without such a header or a usable row.
 LightRecording read_light_recording(const std::filesystem::path& path,
-                                    const UsualCircumstances& usual,
+                                    const DefaultConditions& usual,
                                     const LightColumns& columns = {});
 
 }  // namespace photorque

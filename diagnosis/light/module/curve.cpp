@@ -39,15 +39,23 @@ CellParameters at_state(const ModuleCell& cell, const ModuleState& state) {
   return p;
 }
 
-std::shared_ptr<const DiodeVoltageLaw> part_of(CellParameters p, double fraction,
-                                               double resistance_ohm) {
+// A fraction of the area of a cell.
+CellParameters part_parameters(CellParameters p, double fraction) {
   p.saturation_1_A *= fraction;
-  p.series_ohm = p.series_ohm / fraction + resistance_ohm;
+  p.series_ohm /= fraction;
   p.shunt_ohm /= fraction;
+  return p;
+}
+
+std::shared_ptr<const DiodeVoltageLaw> part_of(const CellParameters& whole, double fraction,
+                                               double resistance_ohm) {
+  CellParameters p = part_parameters(whole, fraction);
+  p.series_ohm += resistance_ohm;
   return diode_voltage_law(p);
 }
 
-CellParameters with_breakdown(CellParameters p, const ModuleState::Breakdown& b) {
+CellParameters in_reverse(CellParameters p, const ModuleState::Breakdown& b, double leak) {
+  p.shunt_ohm /= leak;
   p.breakdown_fraction = b.fraction;
   p.breakdown_V = b.voltage_V;
   p.breakdown_exponent = b.exponent;
@@ -74,63 +82,85 @@ ArrayCurve module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
                         const ModuleState& state) {
   const CellParameters usual = at_state(cell, state);
   const auto usual_law = diode_voltage_law(usual);
-  const double light_A = cell.photocurrent_A * state.light;
+  const double light_A = cell.photocurrent_A * state.light, share = 1.0 / wiring.chains;
   ModuleString module;
   module.left = wiring.cells - state.bypassed;
   // Changed cells, then average cells up to the number that their diode bypasses.
   struct Group {
-    ArrayWiring::Substring substring;
-    int cells;
-    bool is_bypassed = true;
+    std::vector<CellGroup> rows;
+    bool is_split, is_bypassed = true;
   };
   std::vector<Group> groups;
-  const auto add = [&](int count, const auto& add_row) {
+  const auto add = [&](int count, bool is_split, const auto& add_row) {
     count = std::min(count, module.left);
     if (count <= 0) return;
     module.left -= count;
-    Group& group = groups.emplace_back(Group{{}, count});
-    for (int i = 0; i < count; ++i) group.substring.rows.push_back(add_row());
+    Group& group = groups.emplace_back(Group{{}, is_split});
+    for (int i = 0; i < count; ++i) group.rows.emplace_back(add_row());
   };
+  const bool has_chains = wiring.chains > 1;
   for (const auto& s : state.shaded) {
-    const auto law = diode_voltage_law(with_breakdown(usual, s.breakdown));
-    add(s.count, [&] { return std::vector{module.add_cell(law, light_A * s.factor)}; });
+    const bool is_split = has_chains && !s.in_all_chains;
+    const double part = is_split ? share : 1.0;
+    const auto law = part_of(in_reverse(usual, s.breakdown, s.leak), part, 0.0);
+    add(s.count, is_split,
+        [&] { return std::vector{module.add_cell(law, part * light_A * s.factor)}; });
     if (!groups.empty()) groups.back().is_bypassed = s.is_bypassed;
   }
   for (const auto& s : state.shunted) {
-    const auto law = diode_voltage_law(with_leak(usual, s.shunt_S));
-    add(s.count, [&] { return std::vector{module.add_cell(law, light_A)}; });
+    const auto law = diode_voltage_law(with_leak(part_parameters(usual, share), s.shunt_S));
+    add(s.count, has_chains, [&] { return std::vector{module.add_cell(law, share * light_A)}; });
   }
   for (const auto& c : state.cracked) {
     // Two parts of one cell in parallel, one of them in series with a resistance.
-    const CellParameters whole = with_breakdown(usual, c.breakdown);
-    const auto law = part_of(whole, 1.0 - c.fraction, 0.0),
-               cut = part_of(whole, c.fraction, c.resistance_ohm);
-    add(c.count, [&] {
-      return std::vector{module.add_cell(law, light_A * (1.0 - c.fraction)),
-                         module.add_cell(cut, light_A * c.fraction)};
+    const CellParameters whole = in_reverse(usual, c.breakdown, c.leak);
+    const double rest = share * (1.0 - c.fraction), off = share * c.fraction;
+    const auto law = part_of(whole, rest, 0.0), cut = part_of(whole, off, c.resistance_ohm);
+    add(c.count, has_chains, [&] {
+      return std::vector{module.add_cell(law, light_A * rest), module.add_cell(cut, light_A * off)};
     });
   }
-  const auto add_usual = [&](int count, ArrayWiring::Substring& substring) {
-    for (int i = 0; i < count; ++i) substring.rows.push_back({module.add_cell(usual_law, light_A)});
-    module.left -= count;
+  const auto add_usual = [&](int count, std::vector<CellGroup>& rows) {
+    for (int i = 0; i < count; ++i) rows.emplace_back(module.add_cell(usual_law, light_A));
   };
   Diode bypass;
   bypass.kind = Diode::Kind::clamp;
   bypass.drop_V = wiring.bypass_drop_V * state.bypass_drop;
   std::vector<ArrayWiring::Substring>& substrings = module.wiring.strings[0].substrings;
+  const int under_diode = wiring.bypass_every > 0 ? wiring.bypass_every : wiring.cells;
   for (Group& group : groups) {
-    if (wiring.bypass_every > 0) {
-      if (group.is_bypassed) group.substring.bypass = bypass;
-      add_usual(std::clamp(wiring.bypass_every - group.cells, 0, std::max(0, module.left)),
-                group.substring);
+    ArrayWiring::Substring& substring = substrings.emplace_back();
+    if (wiring.bypass_every > 0 && group.is_bypassed) substring.bypass = bypass;
+    const int more = wiring.bypass_every > 0 || group.is_split
+                         ? std::clamp(under_diode - static_cast<int>(group.rows.size()), 0,
+                                      std::max(0, module.left))
+                         : 0;
+    module.left -= more;
+    if (!group.is_split) {
+      add_usual(more, group.rows);
+      substring.rows = std::move(group.rows);
+      continue;
     }
-    substrings.push_back(std::move(group.substring));
+    // The other chains are alike and count as one of their total area.
+    const size_t count = group.rows.size() + static_cast<size_t>(more);
+    const auto of_chain = part_of(usual, share, 0.0), of_others = part_of(usual, 1.0 - share, 0.0);
+    std::vector<CellGroup> others;
+    for (int i = 0; i < more; ++i) {
+      group.rows.emplace_back(module.add_cell(of_chain, share * light_A));
+    }
+    for (size_t i = 0; i < count; ++i) {
+      others.emplace_back(module.add_cell(of_others, (1.0 - share) * light_A));
+    }
+    using Join = CellGroup::Join;
+    substring.rows.emplace_back(Join::parallel,
+                                std::vector{CellGroup(Join::series, std::move(group.rows)),
+                                            CellGroup(Join::series, std::move(others))});
   }
-  if (module.left > 0) add_usual(module.left, substrings.emplace_back());
+  if (module.left > 0) add_usual(module.left, substrings.emplace_back().rows);
   ArrayChanges changes;
   changes.series_ohm = state.series_ohm;
   if (substrings.empty()) {
-    add_usual(1, substrings.emplace_back());
+    add_usual(1, substrings.emplace_back().rows);
     changes.bypass_shorted = {true};
   }
   return {module.wiring, std::move(module.laws), module.light_A, changes};

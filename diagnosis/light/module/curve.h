@@ -48,6 +48,8 @@ struct ModuleState {
     double factor = 1.0;  // of their light
     Breakdown breakdown = {};
     bool is_bypassed = true;  // false: their bypass diode is open
+    bool in_all_chains = false;
+    double leak = 1.0;  // conductance of their shunt relative to that of the others
   };
   std::vector<Shaded> shaded;
   // A part of a cell's area that is connected to the rest only through a resistance.
@@ -55,6 +57,7 @@ struct ModuleState {
     int count = 0;
     double fraction = 0.0, resistance_ohm = 0.0;
     Breakdown breakdown = {};
+    double leak = 1.0;  // as of shaded cells
   };
   std::vector<Cracked> cracked;
   struct Shunted {
@@ -72,6 +75,9 @@ struct ModuleWiring {
   int cells = 1;
   int bypass_every = 0;  // 0: no diodes
   double bypass_drop_V = 0.5;
+  // Parallel chains of cells beside each bypass diode; half-cut: 2. Changed cells are in one of
+  // them, with their part of the area.
+  int chains = 1;
 };
 
 // The curve in constant light. All changed cells of one kind are under one diode.

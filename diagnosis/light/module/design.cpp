@@ -16,6 +16,9 @@ constexpr IntegerKey cells("cells_in_series", 1, most_cells,
 constexpr IntegerKey bypass_every("bypass_every", 0, 0, most_cells,
                                   "cells per bypass diode, at most all; 0: no diodes",
                                   {.varies = true});
+constexpr IntegerKey chains("chains", 1, 1, 100,
+                            "number of chains of cells in parallel beside each bypass diode; "
+                            "half-cut modules: 2. An effect on single cells acts in one of them");
 constexpr NumberKey bypass_drop("bypass_drop_V", 0.5, Range::positive(),
                                 "forward voltage of a bypass diode");
 constexpr OtherKey reference_curve(
@@ -98,6 +101,8 @@ constexpr NumberKey breakdown("breakdown_V", -15.0, {-1e308, 0.0, false, true},
                               "parameter V_br of the reverse breakdown");
 constexpr NumberKey breakdown_exponent("breakdown_exponent", 3.0, {1.0, 1e3},
                                        "parameter m of the reverse breakdown");
+constexpr NumberKey leak("leak", 1.0, Range::positive(),
+                         "shunt conductance of these cells relative to that of the others");
 }  // namespace effect_key
 
 // One number for all references, or one for each file; `files` is the file index of each. Values in
@@ -163,10 +168,11 @@ void read_effect(const Settings& s, ModuleDesign& design) {
   };
   switch (of_kind) {
     case cell_shaded:
-      state.shaded.push_back({cells(), s.get(factor), reverse()});
+      state.shaded.push_back({cells(), s.get(factor), reverse(), true, false, s.get(leak)});
       break;
     case cell_cracked:
-      state.cracked.push_back({cells(), s.get(fraction), s.get(resistance), reverse()});
+      state.cracked.push_back(
+          {cells(), s.get(fraction), s.get(resistance), reverse(), s.get(leak)});
       break;
     case cell_shunted:
       state.shunted.push_back({cells(), 1.0 / s.get(resistance)});
@@ -185,13 +191,14 @@ void read_effect(const Settings& s, ModuleDesign& design) {
       break;
     case bypass_open:
       require_diodes("\"bypass_open\"");
-      state.shaded.push_back({cells(), s.get(factor), reverse(), false});
+      state.shaded.push_back({cells(), s.get(factor), reverse(), false, false, s.get(leak)});
       break;
     case substring_shaded:
       require_diodes("\"substring_shaded\"");
       for (const double one : s.get(factors).is_array() ? s.numbers(factors, factor.range)
                                                         : std::vector{s.get(factor)}) {
-        state.shaded.push_back({design.bypass_every, one});
+        state.shaded.push_back(
+            {.count = design.bypass_every, .factor = one, .in_all_chains = true});
       }
       break;
     default:
@@ -215,6 +222,7 @@ ModuleDesign read_module(const Settings& root, const std::filesystem::path& fold
   design.cells = static_cast<int>(s.get(module_key::cells));
   design.bypass_every = static_cast<int>(s.get(module_key::bypass_every.within(0, design.cells)));
   design.bypass_drop_V = s.get(module_key::bypass_drop);
+  design.chains = static_cast<int>(s.get(module_key::chains));
   if (s.has(module_key::reference_curve) == s.has(module_key::datasheet)) {
     throw s.error(module_key::reference_curve,
                   s.has(module_key::datasheet) ? "a curve and a datasheet" : "neither",
@@ -260,16 +268,16 @@ ModuleDesign read_module(const Settings& root, const std::filesystem::path& fold
 
 Key module_table() {
   using namespace module_key;
-  return table.of(
-      joined({{cells, bypass_every, bypass_drop, reference_curve, datasheet.of(rated_point_keys())},
-              rated_slope_keys(),
-              {reference_temperature, reference_irradiance, temperature, temperature_sigma,
-               current_noise, voltage_noise}}));
+  return table.of(joined({{cells, bypass_every, bypass_drop, chains, reference_curve,
+                           datasheet.of(rated_point_keys())},
+                          rated_slope_keys(),
+                          {reference_temperature, reference_irradiance, temperature,
+                           temperature_sigma, current_noise, voltage_noise}}));
 }
 
 std::vector<Key::Choice> module_effects() {
   using namespace effect_key;
-  const std::vector<Key> reverse = {breakdown_fraction, breakdown, breakdown_exponent};
+  const std::vector<Key> reverse = {breakdown_fraction, breakdown, breakdown_exponent, leak};
   std::vector<Key::Choice> kinds =
       kind.bringing({joined({{count, factor}, reverse}),
                      joined({{count, fraction,

@@ -52,12 +52,9 @@ std::vector<Diagnosis> each_curve(const ModuleDesign& design, const ModuleNomina
   std::vector<Diagnosis> each;
   for (const ModuleRun& curve : all.whole) {
     const ModuleData data = of_one_curve(curve);
-    ModuleAnswer answer = explain_module(design, nominal, {hypotheses.front()}, data,
-                                         options.threads, options.limits);
+    const ModuleAnswer answer =
+        explain_module(design, nominal, hypotheses, data, options.threads, options.limits);
     light.push_back(std::exp(answer.trials.front().fit.at[0]));
-    const bool is_odd = answer.decision.finding != inference::Finding::nothing_missing;
-    if (is_odd)
-      answer = explain_module(design, nominal, hypotheses, data, options.threads, options.limits);
     each.push_back(described(design, nominal, answer, data, options.limits));
     Diagnosis& d = each.back();
     const std::string name = std::filesystem::path(curve.sweep.name).filename().string();
@@ -117,6 +114,12 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
                                                data, options.threads, options.limits);
     d = described(design, nominal, answer, data, options.limits);
     d.sentence = module_sentence(d);
+    const inference::Fit& fit = answer.joint[answer.decision.chosen].fit;
+    std::vector<double> light;
+    for (size_t run = 0; run < data.train.size(); ++run) {
+      light.push_back(std::exp(fit.at[2 * static_cast<Eigen::Index>(run)]));
+    }
+    compare_with_sensor(design, data.train, light, d);
   }
   d.data = quality;
   const Verdict before = d.verdict;

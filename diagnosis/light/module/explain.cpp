@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 
 #include "core/parallel.h"
 #include "inference/whiteness.h"
@@ -59,7 +60,8 @@ std::vector<double> chi2_of_segments(const ModuleFitter& fitter, const ModuleHyp
   return chi2;
 }
 
-// Residual structure of a fit [sigma].
+// Residual structure of a fit, and contradiction of the references and thermometers, which are
+// also data [sigma].
 double excess_of(const ModuleFitter& fitter, const ModuleHypothesis& h, const ModuleTrial& trial,
                  const std::vector<ModuleRun>& runs, const Thresholds& limits) {
   std::vector<inference::ChannelResiduals> channels;
@@ -68,8 +70,9 @@ double excess_of(const ModuleFitter& fitter, const ModuleHypothesis& h, const Mo
     channels.push_back({{r.data(), r.data() + r.size()}});
   }
   const double samples = static_cast<double>(trial.fit.samples);
-  return std::max(inference::whiteness(channels, limits.noise).excess_sigma,
-                  (trial.fit.data_chi2 / samples - 1.0) / std::sqrt(2.0 / samples));
+  return std::max({inference::whiteness(channels, limits.noise).excess_sigma,
+                   (trial.fit.data_chi2 / samples - 1.0) / std::sqrt(2.0 / samples),
+                   trial.prior_excess_sigma()});
 }
 
 // Expected χ² of healthy curves from the errors of one diode and its translation. The standard
@@ -116,12 +119,16 @@ std::vector<Family> families_of(const std::vector<ModuleHypothesis>& hypotheses)
   return families;
 }
 
-// Fits rising numbers of cells, until two in succession are hopeless compared with the best.
+// Fits rising numbers of cells, until two in succession are hopeless compared with the best. The
+// solution for one number is a start for the next.
 void fit_family(const ModuleFitter& fitter, const std::vector<ModuleRun>& runs, Family& family) {
   double best = -INFINITY;
   int behind = 0;
+  constexpr size_t from_all_starts = 3;
   for (const ModuleHypothesis& h : family.hypotheses) {
-    family.trials.push_back(fitter.fit(h, runs));
+    const bool continues = family.trials.size() >= from_all_starts;
+    ModuleTrial trial = fitter.fit(h, runs, continues ? &family.trials.back().shared : nullptr);
+    family.trials.push_back(std::move(trial));
     const double evidence = family.trials.back().log_evidence;
     best = std::max(best, evidence);
     behind = evidence < best - hopeless_log_evidence ? behind + 1 : 0;
@@ -149,7 +156,8 @@ void add_crack_like_shade(const ModuleFitter& fitter, const ModuleDesign& design
       shaded->hypotheses[static_cast<size_t>(&trial - shaded->trials.data())];
   const size_t own = h.parameters.size();
   const double* first = trial.shared.data() + trial.shared.size() - own;
-  Family like{{cracked_like(design, nominal, h, {first, own}, cracked->hypotheses.front())}, {}};
+  Family like{{cracked_hypothesis(design, nominal, h, {first, own}, cracked->hypotheses.front())},
+              {}};
   like.trials.push_back(fitter.fit(like.hypotheses.front(), runs));
   families.push_back(std::move(like));
 }
@@ -182,6 +190,135 @@ void fit_effects(const ModuleFitter& fitter, const ModuleDesign& design,
   });
 }
 
+// The most likely hypothesis of a kind by its fit to all data; 0 if it was not fitted.
+size_t best_of_kind(const ModuleAnswer& answer, const std::string& kind) {
+  size_t best = 0;
+  for (size_t i = 1; i < answer.hypotheses.size(); ++i) {
+    if (answer.hypotheses[i].kind != kind || !answer.trials[i].objection.empty()) continue;
+    const bool is_better =
+        best == 0 || answer.joint[i].log_evidence > answer.joint[best].log_evidence;
+    if (is_better) best = i;
+  }
+  return best;
+}
+
+// Parameters of the hypothesis alone.
+std::vector<double> own_of(const ModuleHypothesis& h, const ModuleTrial& trial) {
+  const auto own = static_cast<Index>(h.parameters.size());
+  const VectorXd x = trial.shared.tail(own);
+  return {x.begin(), x.end()};
+}
+
+// A fault of some cells together with another one or with one of all cells.
+void fit_pairs(const ModuleFitter& fitter, const std::vector<ModuleRun>& train,
+               const std::vector<ModuleRun>& everything, int threads, ModuleAnswer& answer) {
+  constexpr std::pair<const char*, const char*> kinds[] = {
+      {"cell_shaded", "series_resistance"},      {"cell_shaded", "shunt"},
+      {"cell_cracked", "series_resistance"},     {"cell_cracked", "shunt"},
+      {"substring_shaded", "series_resistance"}, {"substring_shaded", "shunt"},
+      {"bypass_shorted", "series_resistance"},   {"bypass_shorted", "shunt"},
+      {"cell_shaded", "bypass_shorted"},         {"cell_shaded", "cell_shaded"},
+      {"cell_shaded", "substring_shaded"}};
+  std::vector<ModuleHypothesis> pairs;
+  for (const auto& [first, second] : kinds) {
+    const size_t a = best_of_kind(answer, first), b = best_of_kind(answer, second);
+    if (a == 0 || b == 0) continue;
+    const ModuleHypothesis &of_a = answer.hypotheses[a], &of_b = answer.hypotheses[b];
+    ModuleHypothesis h = both(of_a, of_b);
+    h.members = {{a, 0}, {b, of_a.parameters.size()}};
+    std::vector<std::vector<double>> starts = of_b.starts;
+    if (starts.empty()) {
+      starts = {own_of(of_b, answer.joint[b])};
+      constexpr double inside = 0.3;
+      std::vector<double>& plain = starts.emplace_back();
+      for (const inference::Parameter& p : of_b.parameters) {
+        plain.push_back(p.value + (p.lowest == p.value ? inside * p.sigma : 0.0));
+      }
+    }
+    for (const std::vector<double>& start : starts) {
+      h.starts.push_back(own_of(of_a, answer.joint[a]));
+      h.starts.back().insert(h.starts.back().end(), start.begin(), start.end());
+    }
+    pairs.push_back(std::move(h));
+  }
+  std::vector<ModuleTrial> trials(pairs.size()), joint(pairs.size());
+  parallel_for(pairs.size(), threads, [&](size_t i) {
+    trials[i] = fitter.fit(pairs[i], train);
+    joint[i] = fitter.fit(pairs[i], everything, &trials[i].shared);
+  });
+  const auto append = [](auto& to, auto& more) { std::ranges::move(more, std::back_inserter(to)); };
+  append(answer.hypotheses, pairs);
+  append(answer.trials, trials);
+  append(answer.joint, joint);
+}
+
+// Prediction of the held-out data by each trial, significance of its effects, and the decision.
+void decide_on(const ModuleFitter& fitter, const ModuleData& data, const Thresholds& limits,
+               ModuleAnswer& answer) {
+  const size_t count = answer.hypotheses.size();
+  std::vector<inference::CandidateTraits> traits(count);
+  const auto candidates_of = [&](size_t i) -> std::vector<size_t> {
+    if (i == 0) return {};
+    std::vector<size_t> candidates;
+    for (const auto& member : answer.hypotheses[i].members) candidates.push_back(member.hypothesis);
+    return candidates.empty() ? std::vector{i} : candidates;
+  };
+  // The trial without one of the effects of another.
+  const auto without = [&](size_t i, size_t which) -> size_t {
+    const auto& members = answer.hypotheses[i].members;
+    return members.empty() ? 0 : members[1 - which].hypothesis;
+  };
+  for (size_t i = 0; i < count; ++i) {
+    const ModuleHypothesis& h = answer.hypotheses[i];
+    traits[i].name = h.kind.empty() ? h.label : h.kind;
+    traits[i].is_empirical =
+        h.is_empirical || is_at_largest_count(answer, h.kind, limits.search.min_log_evidence_gain);
+    traits[i].parameters = h.parameters.size();
+    answer.trials[i].candidates = candidates_of(i);
+  }
+  for (size_t i = 0; i < count; ++i) {
+    ModuleTrial &train = answer.trials[i], &joint = answer.joint[i];
+    const double held = static_cast<double>(joint.fit.samples - train.fit.samples);
+    inference::Predictive p;
+    p.chi2_per_sample = (joint.fit.chi2 - train.fit.chi2) / held;
+    p.log_score = joint.log_evidence - train.log_evidence;
+    p.expected_chi2_per_sample = inference::expected_chi2_per_sample(train.fit, joint.fit);
+    p.sigma = (p.chi2_per_sample - 1.0) /
+              std::sqrt(2.0 / held + 2.0 / static_cast<double>(train.fit.samples));
+    train.significance.clear();
+    train.joint_significance.clear();
+    for (size_t which = 0; which < train.candidates.size(); ++which) {
+      const size_t rest = without(i, which);
+      train.significance.push_back(
+          std::sqrt(std::max(0.0, answer.trials[rest].fit.chi2 - train.fit.chi2)));
+      train.joint_significance.push_back(
+          std::sqrt(std::max(0.0, answer.joint[rest].fit.chi2 - joint.fit.chi2)));
+    }
+    train.holdout_chi2_per_sample = p.chi2_per_sample;
+    train.predictive = p;
+  }
+  std::vector<inference::Explanation> trials(answer.trials.begin(), answer.trials.end());
+  for (size_t i = 0; i < count; ++i) trials[i].log_evidence = answer.joint[i].log_evidence;
+  // References and thermometers are data that a fit to the curves predicts. If a fit contradicts
+  // them, their χ² is a gain besides that of the segments.
+  const auto gain = [&](size_t trial, size_t which) -> std::optional<double> {
+    const size_t rest = without(trial, which);
+    const auto chi2 = [&](size_t of) {
+      return chi2_of_segments(fitter, answer.hypotheses[of], answer.joint[of], data.whole, limits);
+    };
+    const double of_segments = inference::gain_sigma(chi2(rest), chi2(trial));
+    const ModuleTrial &worse = answer.joint[rest], &better = answer.joint[trial];
+    const bool contradicts = worse.prior_excess_sigma() > limits.decision.max_excess_sigma;
+    if (!contradicts || of_segments < -inference::GateLimits{}.min_gain_sigma) return of_segments;
+    return std::max(of_segments,
+                    std::sqrt(std::max(0.0, worse.prior_chi2() - better.prior_chi2())));
+  };
+  const auto excess = [&](size_t trial) {
+    return excess_of(fitter, answer.hypotheses[trial], answer.trials[trial], data.train, limits);
+  };
+  answer.decision = inference::decide(trials, traits, {excess, gain}, limits.decision);
+}
+
 }  // namespace
 
 std::pair<ModuleRun, ModuleRun> split_curve(const ModuleRun& run) {
@@ -199,55 +336,25 @@ ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nom
   answer.hypotheses = {hypotheses.front()};
   answer.trials = {fitter.fit(hypotheses.front(), data.train)};
   answer.joint = {fitter.fit(hypotheses.front(), everything, &answer.trials.front().shared)};
+  decide_on(fitter, data, limits, answer);
   // Within the error of one diode and its translation no effect is detectable: χ² up to one per
   // point and up to four times that of healthy curves.
   constexpr double of_healthy = 4.0;
-  const inference::Fit& as_it_was = answer.joint.front().fit;
-  const bool leaves_more =
-      !(as_it_was.data_chi2 <= std::min(static_cast<double>(as_it_was.samples),
-                                        of_healthy * chi2_of_healthy(nominal, everything)));
-  if (leaves_more) {
-    fit_effects(fitter, design, nominal, hypotheses, data.train, everything, threads, answer);
-  }
-  const size_t count = answer.hypotheses.size();
-  std::vector<inference::CandidateTraits> traits(count);
-  for (size_t i = 0; i < count; ++i) {
-    const ModuleHypothesis& h = answer.hypotheses[i];
-    traits[i].name = h.kind.empty() ? h.label : h.kind;
-    traits[i].is_empirical =
-        h.is_empirical || is_at_largest_count(answer, h.kind, limits.search.min_log_evidence_gain);
-    traits[i].parameters = h.parameters.size();
-    if (i > 0) answer.trials[i].candidates = {i};
-  }
-  const inference::Fit &own = answer.trials.front().fit, &all = answer.joint.front().fit;
-  for (size_t i = 0; i < count; ++i) {
-    ModuleTrial &train = answer.trials[i], &joint = answer.joint[i];
-    const double held = static_cast<double>(joint.fit.samples - train.fit.samples);
-    inference::Predictive p;
-    p.chi2_per_sample = (joint.fit.chi2 - train.fit.chi2) / held;
-    p.log_score = joint.log_evidence - train.log_evidence;
-    p.expected_chi2_per_sample = inference::expected_chi2_per_sample(train.fit, joint.fit);
-    p.sigma = (p.chi2_per_sample - 1.0) /
-              std::sqrt(2.0 / held + 2.0 / static_cast<double>(train.fit.samples));
-    if (i > 0) {
-      train.significance = {std::sqrt(std::max(0.0, own.chi2 - train.fit.chi2))};
-      train.joint_significance = {std::sqrt(std::max(0.0, all.chi2 - joint.fit.chi2))};
-    }
-    train.holdout_chi2_per_sample = p.chi2_per_sample;
-    train.predictive = p;
-    train.log_evidence = joint.log_evidence;
-  }
-  const auto gain = [&](size_t trial, size_t) -> std::optional<double> {
-    const auto chi2 = [&](size_t of) {
-      return chi2_of_segments(fitter, answer.hypotheses[of], answer.joint[of], data.whole, limits);
-    };
-    return inference::gain_sigma(chi2(0), chi2(trial));
+  const double most_chi2 = of_healthy * chi2_of_healthy(nominal, everything);
+  const auto leaves_more = [&](const ModuleTrial& trial) {
+    const inference::Fit& fit = trial.fit;
+    return !(fit.data_chi2 <= std::min(static_cast<double>(fit.samples), most_chi2)) ||
+           trial.prior_excess_sigma() > limits.decision.max_excess_sigma;
   };
-  const auto excess = [&](size_t trial) {
-    return excess_of(fitter, answer.hypotheses[trial], answer.trials[trial], data.train, limits);
-  };
-  answer.decision = inference::decide({answer.trials.begin(), answer.trials.end()}, traits,
-                                      {excess, gain}, limits.decision);
+  const bool is_odd = answer.decision.finding != inference::Finding::nothing_missing;
+  if (!is_odd && !leaves_more(answer.joint.front())) return answer;
+  fit_effects(fitter, design, nominal, hypotheses, data.train, everything, threads, answer);
+  size_t best = 0;
+  for (size_t i = 1; i < answer.joint.size(); ++i) {
+    if (answer.joint[i].log_evidence > answer.joint[best].log_evidence) best = i;
+  }
+  if (leaves_more(answer.joint[best])) fit_pairs(fitter, data.train, everything, threads, answer);
+  decide_on(fitter, data, limits, answer);
   return answer;
 }
 

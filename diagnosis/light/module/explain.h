@@ -16,7 +16,8 @@ struct ModuleData {
 
 struct ModuleAnswer {
   std::vector<ModuleHypothesis> hypotheses;
-  // Fits to the training data and to all data; ModuleTrial::log_evidence refers to all.
+  // Fits to the training data and to all data. The decision compares the log evidence of the
+  // latter.
   std::vector<ModuleTrial> trials, joint;
   inference::Decision decision;
 };

@@ -34,6 +34,23 @@ Acting acting(const ModuleDesign& design, const ModuleNominal& nominal, const Mo
 
 }  // namespace
 
+double ModuleTrial::runs() const {
+  return static_cast<double>((fit.at.size() - shared.size()) / of_curve);
+}
+
+double ModuleTrial::prior_chi2() const {
+  double chi2 = shared.head<of_module>().squaredNorm();
+  for (Index run = 0; run < static_cast<Index>(runs()); ++run) {
+    chi2 += std::pow(fit.at[of_curve * run + 1], 2);
+  }
+  return chi2;
+}
+
+double ModuleTrial::prior_excess_sigma() const {
+  const double numbers = static_cast<double>(of_module) + runs();
+  return (prior_chi2() - numbers) / std::sqrt(2.0 * numbers);
+}
+
 VectorXd ModuleFitter::residuals(const ModuleHypothesis& h, const VectorXd& x,
                                  const ModuleRun& run) const {
   const Acting a = acting(design_, nominal_, h, run.sweep, x);
@@ -129,8 +146,9 @@ ModuleTrial ModuleFitter::fit(const ModuleHypothesis& h, const std::vector<Modul
   double evidence = inference::log_evidence(best.fit);
   if (!std::isfinite(evidence)) evidence = -1e300;
   if (h.is_empirical || !h.kind.empty()) {
-    evidence += h.is_empirical ? limits_.evidence.log_prior_empirical
-                               : limits_.evidence.log_prior_effect - std::log(h.alternatives);
+    evidence += h.is_empirical
+                    ? limits_.evidence.log_prior_empirical
+                    : h.effects * limits_.evidence.log_prior_effect - std::log(h.alternatives);
     // A parameter that cannot be negative has a half-Gaussian prior.
     for (const inference::Parameter& p : h.parameters) {
       if (p.mean == 0.0 && p.lowest == 0.0) evidence += std::log(2.0);

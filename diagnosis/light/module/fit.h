@@ -13,6 +13,7 @@ namespace photorque {
 
 struct ModuleHypothesis {
   std::string kind;         // empty: no effect, or an empirical law
+  int effects = 0;          // number of effects: two of a pair
   std::string label;        // as printed: "cell_cracked (3 cells)"
   std::string explanation;  // a sentence of physics without a full stop
   bool is_empirical = false;
@@ -31,6 +32,11 @@ struct ModuleHypothesis {
     std::function<double(std::span<const double> x)> value;
   };
   std::vector<Number> numbers;
+  // Of two effects together: the index of each among the hypotheses, and its first parameter.
+  struct Member {
+    size_t hypothesis, first;
+  };
+  std::vector<Member> members;
 };
 
 // The first hypothesis is "nothing missing".
@@ -41,9 +47,12 @@ std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
 // Without light on a part of the cell or without its connection, the curves differ by n kT/q
 // ln(factor) and by the series resistance of one cell. `any_cracked`: one of the other hypotheses
 // of cracks.
-ModuleHypothesis cracked_like(const ModuleDesign& design, const ModuleNominal& nominal,
-                              const ModuleHypothesis& shaded, std::span<const double> own,
-                              const ModuleHypothesis& any_cracked);
+ModuleHypothesis cracked_hypothesis(const ModuleDesign& design, const ModuleNominal& nominal,
+                                    const ModuleHypothesis& shaded, std::span<const double> own,
+                                    const ModuleHypothesis& any_cracked);
+
+// Two effects together; the parameters of `a` come first.
+ModuleHypothesis both(const ModuleHypothesis& a, const ModuleHypothesis& b);
 
 // A curve with the selection of its fitted points.
 struct ModuleRun {
@@ -55,6 +64,13 @@ struct ModuleRun {
 struct ModuleTrial : inference::Explanation {
   inference::Fit fit;
   Eigen::VectorXd shared;  // of the nominal module, then of the hypothesis
+  // χ² of the deviations of the module from its references and of the temperatures from the
+  // thermometer, and its excess over chance [sigma].
+  double prior_chi2() const;
+  double prior_excess_sigma() const;
+
+ private:
+  double runs() const;
 };
 
 class ModuleFitter {

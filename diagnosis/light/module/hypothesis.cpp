@@ -43,19 +43,22 @@ void add_bypass_drop(const ModuleDesign& design, ModuleHypothesis& h) {
 }
 
 // Appends reverse conduction of cells. Breakdown is soft, and its exponent may be far from the
-// tabulated three in cells of other makes (J. W. Bishop, Solar Cells 25, 73 (1988)). If diodes
+// tabulated three in cells of other makes (J. W. Bishop, Solar Cells 25, 73 (1988)). The shunts of
+// single cells differ by factors, and that of a shaded cell is seen in reverse only. If diodes
 // bypass the cells, their drop is a nuisance parameter: 0.35 V (Schottky) to 0.7 V (junction).
 void add_reverse(const ModuleDesign& design, ModuleHypothesis& h) {
   const size_t first = h.parameters.size();
   h.parameters.push_back(wide("breakdown_fraction", 0.0, 2.0, -8.0, std::log(7.0)));
   h.parameters.push_back(wide("breakdown_V", std::log(10.0), 0.8, std::log(0.5), std::log(200.0)));
   h.parameters.push_back(wide("breakdown_exponent", std::log(3.4), 0.5, 0.0, std::log(30.0)));
+  h.parameters.push_back(wide("leak", 0.0, 1.0, -5.0, 5.0));
   for (std::vector<double>& start : h.starts) {
-    start.insert(start.end(), {-0.3, std::log(5.0), std::log(3.4)});
+    start.insert(start.end(), {-0.3, std::log(5.0), std::log(3.4), 0.0});
   }
   h.numbers.push_back({"breakdown_fraction", [=](X x) { return std::exp(x[first]); }});
   h.numbers.push_back({"breakdown_V", [=](X x) { return -std::exp(x[first + 1]); }});
   h.numbers.push_back({"breakdown_exponent", [=](X x) { return std::exp(x[first + 2]); }});
+  h.numbers.push_back({"leak", [=](X x) { return std::exp(x[first + 3]); }});
   add_bypass_drop(design, h);
 }
 
@@ -75,17 +78,26 @@ ModuleHypothesis shaded(const ModuleDesign& design, int count, double alternativ
   h.count = count;
   h.alternatives = alternatives;
   h.limits_current = !is_bypassed || design.bypass_every == 0;
-  h.parameters = {wide("factor", 0.5, 0.5, 0.0, 1.0)};
+  // Photocurrents of cells differ by some per cent: many cells with a little less light are the
+  // usual mismatch.
+  constexpr int few_cells = 3;
+  h.parameters = {wide("factor", 0.5, 0.5, 0.0, count > few_cells ? 0.9 : 1.0)};
   for (const double factor : {0.1, 0.4, 0.75}) h.starts.push_back({factor});
   h.act = [=](X x, ModuleState& state, ModuleCell&) {
-    state.shaded.push_back({count, x[0], breakdown_of(x, 1), is_bypassed});
+    state.shaded.push_back({count, x[0], breakdown_of(x, 1), is_bypassed, false, std::exp(x[4])});
   };
   h.numbers = {{"factor", [](X x) { return x[0]; }}};
   add_reverse(design, h);
+  // Hard breakdown near the voltage of the other cells under the diode.
+  const double other_cells_V = 0.6 * std::max(1, design.bypass_every);
+  const size_t dark = h.starts.size();
+  h.starts.push_back(h.starts[1]);
+  h.starts[dark][1] = std::log(0.005);
+  h.starts[dark][2] = std::log(std::clamp(1.2 * other_cells_V, 1.0, 100.0));
   if (!is_bypassed) {
     // Without a bypass diode the whole module drives them, even into hard breakdown.
     for (const double factor : {0.3, 0.7}) {
-      h.starts.push_back({factor, std::log(0.02), std::log(25.0), std::log(3.4), 0.0});
+      h.starts.push_back({factor, std::log(0.02), std::log(25.0), std::log(3.4), 0.0, 0.0});
     }
   }
   return h;
@@ -109,7 +121,10 @@ ModuleHypothesis substrings_shaded(const ModuleDesign& design, int count, int mo
     for (size_t k = 1; k < h.starts.back().size(); ++k) h.starts.back()[k] = 0.5 + 0.5 * factor;
   }
   h.act = [count, every = design.bypass_every](X x, ModuleState& state, ModuleCell&) {
-    for (int k = 0; k < count; ++k) state.shaded.push_back({every, x[static_cast<size_t>(k)]});
+    for (int k = 0; k < count; ++k) {
+      state.shaded.push_back(
+          {.count = every, .factor = x[static_cast<size_t>(k)], .in_all_chains = true});
+    }
   };
   add_bypass_drop(design, h);
   return h;
@@ -145,8 +160,9 @@ ModuleHypothesis cracked(const ModuleDesign& design, int count, double alternati
                        std::log(1e4 * usual_ohm))};
   h.starts = {{0.1, std::log(3.0 * usual_ohm)}, {0.4, std::log(2.0 * usual_ohm)}};
   h.act = [=](X x, ModuleState& state, ModuleCell&) {
-    state.cracked.push_back(
-        {count, x[0], std::exp(x[1]), reverse ? breakdown_of(x, 2) : ModuleState::Breakdown{}});
+    state.cracked.push_back({count, x[0], std::exp(x[1]),
+                             reverse ? breakdown_of(x, 2) : ModuleState::Breakdown{},
+                             reverse ? std::exp(x[5]) : 1.0});
   };
   h.numbers = {{"fraction", [](X x) { return x[0]; }},
                {"resistance_ohm", [](X x) { return std::exp(x[1]); }}};
@@ -180,6 +196,8 @@ ModuleHypothesis shunted(int count, double alternatives, double usual_ohm) {
       },
       [](double x) { return x > 0.0 ? 1.0 / x : 1e300; });
   h.count = count;
+  // A small leak shifts the curve; a large one drives the cell into reverse bias.
+  for (const double relative : {0.01, 0.1, 0.5}) h.starts.push_back({relative / usual_ohm});
   h.label = "cell_shunted (" + cells(count) + ")";
   h.alternatives = alternatives;
   return h;
@@ -208,18 +226,36 @@ ModuleHypothesis other_diode() {
 
 }  // namespace
 
-ModuleHypothesis cracked_like(const ModuleDesign& design, const ModuleNominal& nominal,
-                              const ModuleHypothesis& shaded, std::span<const double> own,
-                              const ModuleHypothesis& any_cracked) {
+ModuleHypothesis cracked_hypothesis(const ModuleDesign& design, const ModuleNominal& nominal,
+                                    const ModuleHypothesis& shaded, std::span<const double> own,
+                                    const ModuleHypothesis& any_cracked) {
   const double usual_ohm = usual_ohm_of(nominal);
   ModuleHypothesis h =
       cracked(design, shaded.count, any_cracked.alternatives, usual_ohm, /*reverse=*/true);
   h.label += ", that conduct in reverse";
   h.largest_count = any_cracked.largest_count;
+  h.effects = 1;
   constexpr double cut_off = 100.0;
   std::vector<double> start = {std::clamp(1.0 - own[0], 2e-3, 0.97), std::log(cut_off * usual_ohm)};
   start.insert(start.end(), own.begin() + 1, own.end());
   h.starts = {std::move(start)};
+  return h;
+}
+
+ModuleHypothesis both(const ModuleHypothesis& a, const ModuleHypothesis& b) {
+  ModuleHypothesis h;
+  h.kind = a.kind + " and " + b.kind;
+  h.label = a.label + " and " + b.label;
+  h.effects = a.effects + b.effects;
+  h.alternatives = a.alternatives * b.alternatives;
+  h.limits_current = a.limits_current;
+  h.parameters = a.parameters;
+  h.parameters.insert(h.parameters.end(), b.parameters.begin(), b.parameters.end());
+  h.act = [first = a.act, second = b.act, count = a.parameters.size()](X x, ModuleState& state,
+                                                                       ModuleCell& cell) {
+    first(x.first(count), state, cell);
+    second(x.subspan(count), state, cell);
+  };
   return h;
 }
 
@@ -229,8 +265,11 @@ std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
   all.front().act = [](X, ModuleState&, ModuleCell&) {};
   const double usual_ohm = usual_ohm_of(nominal);
   const int under_diode = design.bypass_every > 0 ? design.bypass_every : design.cells;
-  const std::vector<int> few = counts_up_to(std::min(3, std::max(1, under_diode - 1)));
-  for (const int k : few) all.push_back(shaded(design, k, static_cast<double>(few.size())));
+  // Without diodes, many cells with a little less light resemble a mismatch or another translation.
+  const std::vector<int> few = counts_up_to(std::min(3, std::max(1, under_diode - 1))),
+                         dark = design.bypass_every > 0 ? counts_up_to(std::max(1, under_diode - 1))
+                                                        : few;
+  for (const int k : dark) all.push_back(shaded(design, k, static_cast<double>(dark.size())));
   const std::vector<int> some = counts_up_to(under_diode);
   for (const int k : some) {
     all.push_back(cracked(design, k, static_cast<double>(some.size()), usual_ohm));
@@ -248,8 +287,11 @@ std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
   for (const int k : leaking) {
     all.push_back(shunted(k, static_cast<double>(leaking.size()), usual_ohm));
   }
+  constexpr double coldest_K = 223.0, hottest_K = 393.0;  // outdoors, and of a hot spot
   all.push_back(of_one_number(
-      "temperature", "cells warmer or colder than stated", "change_K", 30.0, -150.0, 150.0,
+      "temperature", "cells warmer or colder than stated", "change_K", 30.0,
+      std::min(0.0, coldest_K - design.temperature_K),
+      std::max(0.0, hottest_K - design.temperature_K),
       [](double x, ModuleState& state) { state.temperature_K += x; }, [](double x) { return x; }));
   all.push_back(unsteady_light());
   if (design.bypass_every > 0) {
@@ -270,6 +312,7 @@ std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
   }
   all.push_back(other_diode());
   for (ModuleHypothesis& h : all) {
+    h.effects = h.kind.empty() ? 0 : 1;
     for (const ModuleHypothesis& other : all) {
       if (other.kind == h.kind) h.largest_count = std::max(h.largest_count, other.count);
     }

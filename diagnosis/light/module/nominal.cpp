@@ -3,11 +3,11 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/median.h"
+#include "core/numerics/order.h"
 #include "inference/estimator/fit.h"
 #include "inference/estimator/forward_model.h"
 
@@ -253,10 +253,9 @@ ModuleNominal nominal_of_references(const ModuleDesign& design) {
 
 ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& design,
                          size_t max_rows, int64_t* dropped) {
-  std::vector<size_t> order(recording.rows());
-  std::iota(order.begin(), order.end(), size_t{0});
-  std::ranges::stable_sort(
-      order, [&](size_t a, size_t b) { return recording.voltage_V[a] < recording.voltage_V[b]; });
+  const std::vector<size_t> order = sorted_indices(recording.rows(), [&](size_t a, size_t b) {
+    return recording.voltage_V[a] < recording.voltage_V[b];
+  });
   ModuleSweep all;
   all.name = recording.name;
   for (const size_t i : order) {
@@ -301,7 +300,7 @@ ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& de
 }
 
 ModuleWiring wiring_of(const ModuleDesign& design) {
-  return {design.cells, design.bypass_every, design.bypass_drop_V};
+  return {design.cells, design.bypass_every, design.bypass_drop_V, design.chains};
 }
 
 ModuleCell moved(const ModuleNominal& nominal, const ModuleNominal::Numbers& z) {

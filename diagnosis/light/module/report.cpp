@@ -6,8 +6,6 @@
 #include <filesystem>
 #include <iterator>
 
-#include "diagnosis/verdict.h"
-
 namespace photorque {
 namespace {
 
@@ -29,28 +27,94 @@ double squares_of(const ModuleFitter& fitter, const ModuleAnswer& answer, size_t
   return std::sqrt(squares / std::max(1.0, points));
 }
 
-// Standard errors of the parameters of the hypothesis alone.
-std::vector<double> own_errors(const ModuleTrial& trial, size_t own) {
+// Standard errors of `own` parameters of the hypothesis from number `first` of `all`.
+std::vector<double> own_errors(const ModuleTrial& trial, size_t first, size_t own, size_t all) {
   const Eigen::MatrixXd C = trial.fit.shared_posterior();
   std::vector<double> errors;
-  for (size_t k = 0; k < own; ++k) {
-    const auto at = C.rows() - static_cast<Eigen::Index>(own) + static_cast<Eigen::Index>(k);
+  for (size_t k = first; k < first + own; ++k) {
+    const auto at = C.rows() - static_cast<Eigen::Index>(all) + static_cast<Eigen::Index>(k);
     errors.push_back(std::sqrt(std::max(0.0, C(at, at))));
   }
   return errors;
 }
 
-FoundEffect found_in_module(const ModuleAnswer& answer, size_t chosen, const Thresholds& limits) {
-  const ModuleHypothesis& h = answer.hypotheses[chosen];
+// Other kinds that explain the curves as well in the place of candidate `which` of the chosen
+// trial, and other numbers of its cells.
+void add_equals(const ModuleAnswer& answer, size_t which, const Thresholds& limits,
+                FoundEffect& effect) {
+  const size_t chosen = answer.decision.chosen;
+  const std::vector<size_t>& named = answer.trials[chosen].candidates;
+  const ModuleHypothesis& h = answer.hypotheses[named[which]];
+  int fewest = h.count, most = h.count;
+  // Models of damage are accurate to about 1 %, which is a ten-thousandth of χ².
+  constexpr double model_error = 1e-4;
   const ModuleTrial& joint = answer.joint[chosen];
+  const double gain = joint.log_evidence - answer.joint.front().log_evidence;
+  // A residual above the noise that all models leave widens the limit.
+  const double beyond_noise =
+      std::max(1.0, joint.fit.data_chi2 / static_cast<double>(joint.fit.samples));
+  const double within =
+      std::max(limits.search.min_log_evidence_gain * beyond_noise, model_error * gain);
+  // Shaded and partly cut-off cells differ by some hundredths of a volt, which is below the
+  // accuracy of the model of the other cells.
+  constexpr double cut_off_or_dark = 5e-3;
+  const double between_them =
+      std::max(within, std::min(hopeless_log_evidence, cut_off_or_dark * gain));
+  const auto is_dim = [](const std::string& kind) {
+    return kind == "cell_shaded" || kind == "cell_cracked";
+  };
+  // Leaks and light that falls while the voltage rises both tilt the curve up to its knee. Beyond
+  // it they differ by little more than unequal leaks do.
+  constexpr double leak_or_light = 0.25;
+  const double tilted = std::max(within, std::min(hopeless_log_evidence, leak_or_light * gain));
+  const auto tilts = [](const std::string& kind) {
+    return kind == "shunt" || kind == "cell_shunted" || kind == "unsteady_light";
+  };
+  for (size_t i = 1; i < answer.trials.size(); ++i) {
+    const std::vector<size_t>& others = answer.trials[i].candidates;
+    if (i == chosen || others.size() != named.size()) continue;
+    // All other candidates are those of the chosen trial.
+    std::vector<size_t> rest = others;
+    for (size_t k = 0; k < named.size(); ++k) {
+      const auto same = k == which ? rest.end() : std::ranges::find(rest, named[k]);
+      if (same != rest.end()) rest.erase(same);
+    }
+    if (rest.size() != 1) continue;
+    const ModuleHypothesis& other = answer.hypotheses[rest.front()];
+    const double behind = joint.log_evidence - answer.joint[i].log_evidence;
+    const double limit = is_dim(h.kind) && is_dim(other.kind) ? between_them
+                         : tilts(h.kind) && tilts(other.kind) ? tilted
+                                                              : within;
+    if (behind > (other.kind == h.kind ? within : limit) || other.kind.empty()) continue;
+    if (other.kind == h.kind) {
+      fewest = std::min(fewest, other.count);
+      most = std::max(most, other.count);
+      continue;
+    }
+    std::vector<std::string>& rivals = effect.indistinguishable_from;
+    if (std::ranges::find(rivals, other.kind) == rivals.end()) rivals.push_back(other.kind);
+  }
+  if (most > fewest) {
+    effect.texts.emplace_back("count_between",
+                              std::to_string(fewest) + " and " + std::to_string(most));
+  }
+}
+
+FoundEffect found_in_module(const ModuleAnswer& answer, size_t which, const Thresholds& limits) {
+  const size_t chosen = answer.decision.chosen;
+  const ModuleHypothesis& all = answer.hypotheses[chosen];
+  const ModuleTrial& joint = answer.joint[chosen];
+  const ModuleHypothesis& h = answer.hypotheses[answer.trials[chosen].candidates[which]];
   FoundEffect effect;
   effect.kind = h.kind;
   effect.explanation = h.explanation;
   if (h.count > 0) effect.parameters.push_back({"count", {static_cast<double>(h.count)}, {}});
-  const size_t own = h.parameters.size();
-  std::vector<double> x(joint.shared.data() + joint.shared.size() - own,
-                        joint.shared.data() + joint.shared.size());
-  const std::vector<double> errors = own_errors(joint, own);
+  const size_t own = h.parameters.size(),
+               first = all.members.empty() ? 0 : all.members[which].first;
+  const double* const numbers =
+      joint.shared.data() + joint.shared.size() - all.parameters.size() + first;
+  const std::vector<double> x(numbers, numbers + own);
+  const std::vector<double> errors = own_errors(joint, first, own, all.parameters.size());
   for (const ModuleHypothesis::Number& number : h.numbers) {
     double variance = 0.0;
     for (size_t k = 0; k < own; ++k) {
@@ -65,44 +129,8 @@ FoundEffect found_in_module(const ModuleAnswer& answer, size_t chosen, const Thr
     effect.parameters.back().value.push_back(number.value(x));
     effect.parameters.back().sigma.push_back(std::sqrt(variance));
   }
-  int fewest = h.count, most = h.count;
-  // Models of damage are accurate to about 1 %, which is a ten-thousandth of χ².
-  constexpr double model_error = 1e-4;
-  const double likely = answer.trials[chosen].log_evidence;
-  // A residual above the noise that all models leave widens the limit.
-  const double beyond_noise =
-      std::max(1.0, joint.fit.data_chi2 / static_cast<double>(joint.fit.samples));
-  const double within = std::max(limits.search.min_log_evidence_gain * beyond_noise,
-                                 model_error * (likely - answer.trials.front().log_evidence));
-  // Shaded and partly cut-off cells differ by some hundredths of a volt, which is below the
-  // accuracy of the model of the other cells.
-  constexpr double cut_off_or_dark = 5e-3;
-  const double between_them =
-      std::max(within, std::min(hopeless_log_evidence,
-                                cut_off_or_dark * (likely - answer.trials.front().log_evidence)));
-  const auto is_dim = [](const std::string& kind) {
-    return kind == "cell_shaded" || kind == "cell_cracked";
-  };
-  for (size_t i = 0; i < answer.trials.size(); ++i) {
-    const double behind = likely - answer.trials[i].log_evidence;
-    const bool are_dim = is_dim(h.kind) && is_dim(answer.hypotheses[i].kind);
-    if (behind > (are_dim ? between_them : within)) continue;
-    if (i == chosen || answer.hypotheses[i].kind.empty()) continue;
-    if (answer.hypotheses[i].kind == h.kind) {
-      if (behind > limits.search.min_log_evidence_gain) continue;
-      fewest = std::min(fewest, answer.hypotheses[i].count);
-      most = std::max(most, answer.hypotheses[i].count);
-      continue;
-    }
-    std::vector<std::string>& rivals = effect.indistinguishable_from;
-    const std::string& kind = answer.hypotheses[i].kind;
-    if (std::ranges::find(rivals, kind) == rivals.end()) rivals.push_back(kind);
-  }
-  if (most > fewest) {
-    effect.texts.emplace_back("count_between",
-                              std::to_string(fewest) + " and " + std::to_string(most));
-  }
-  effect.probability = answer.decision.names.front().probability;
+  add_equals(answer, which, limits, effect);
+  effect.probability = answer.decision.names[which].probability;
   return effect;
 }
 
@@ -175,9 +203,13 @@ std::string module_sentence(const Diagnosis& d) {
   if (d.verdict == Verdict::unexplained) {
     return "Not explained: no effect of the catalogue explains the recording (" + d.because + ").";
   }
-  std::string name = d.effects.front().kind;
-  std::ranges::replace(name, '_', ' ');
-  return "Missing: " + name + " (" + d.effects.front().explanation + ").";
+  std::string names;
+  for (const FoundEffect& effect : d.effects) {
+    std::string name = effect.kind;
+    std::ranges::replace(name, '_', ' ');
+    names += (names.empty() ? "" : "; ") + name + " (" + effect.explanation + ")";
+  }
+  return "Missing: " + names + ".";
 }
 
 Diagnosis described(const ModuleDesign& design, const ModuleNominal& nominal,
@@ -190,15 +222,19 @@ Diagnosis described(const ModuleDesign& design, const ModuleNominal& nominal,
   d.because = answer.decision.because;
   const size_t chosen = answer.decision.chosen;
   if (d.verdict == Verdict::missing_physics) {
-    d.effects.push_back(found_in_module(answer, chosen, limits));
+    for (size_t which = 0; which < answer.decision.names.size(); ++which) {
+      d.effects.push_back(found_in_module(answer, which, limits));
+    }
   }
-  const double least = answer.trials.front().log_evidence;
+  const double least = answer.joint.front().log_evidence;
   for (size_t i = 0; i < answer.trials.size(); ++i) {
     const ModuleHypothesis& h = answer.hypotheses[i];
     Alternative a;
-    if (!h.kind.empty()) a.kinds = {h.kind};
+    for (const size_t c : answer.trials[i].candidates) {
+      if (!answer.hypotheses[c].kind.empty()) a.kinds.push_back(answer.hypotheses[c].kind);
+    }
     a.label = h.label;
-    a.log_evidence_relative = answer.trials[i].log_evidence - least;
+    a.log_evidence_relative = answer.joint[i].log_evidence - least;
     a.holdout_chi2_per_sample = answer.trials[i].holdout_chi2_per_sample;
     a.remark = answer.trials[i].objection;
     a.chosen = i == chosen;
@@ -293,10 +329,23 @@ void compare_with_sensor(const ModuleDesign& design, const std::vector<ModuleRun
     ratio.push_back(std::log(light[i] / curves[i].irradiance_W_m2));
   }
   constexpr size_t fewest = 5;
-  if (ratio.size() < fewest) return;
   const std::vector<double>& stated = design.reference_irradiances_W_m2;
   const bool is_absolute = !stated.empty() && stated.front() > 0.0;
+  if (ratio.empty() || (ratio.size() < fewest && !is_absolute)) return;
   const double unit = is_absolute ? -std::log(stated.front()) : median_of(ratio);
+  char text[400];
+  if (ratio.size() < fewest) {
+    constexpr double usual_error = 0.04;  // two standard errors of a sensor
+    const double off = median_of(ratio) - unit;
+    if (std::abs(off) < usual_error) return;
+    std::snprintf(
+        text, sizeof text,
+        "light over irradiance_W_m2 is %.3f of that of the reference: angle of incidence, "
+        "dirt, spectrum or the sensor, not single cells",
+        std::exp(off));
+    d.warnings.emplace_back(text);
+    return;
+  }
   std::vector<double> slopes, off;
   for (size_t i = 0; i < ratio.size(); ++i) {
     for (size_t j = 0; j < i; ++j) {
@@ -313,7 +362,6 @@ void compare_with_sensor(const ModuleDesign& design, const std::vector<ModuleRun
   // Standard error of the slope of a line through n points with unit spacing: scatter √(12/n³).
   const auto n = static_cast<double>(ratio.size());
   const double sigma = std::abs(slope) / std::max(1e-9, scatter * std::sqrt(12.0 / (n * n * n)));
-  char text[400];
   std::snprintf(
       text, sizeof text,
       "light over irradiance_W_m2%s goes from %.3f at the first curve to %.3f at the last "

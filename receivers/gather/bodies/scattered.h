@@ -16,6 +16,7 @@
 
 #include "receivers/gather/bodies/facets.h"
 #include "receivers/gather/bodies/onward.h"
+#include "receivers/gather/bodies/outlines.h"
 #include "receivers/gather/bodies/partition.h"
 
 namespace photorque {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -312,7 +311,6 @@ WrenchGather::WrenchGather(const TraceableScene& scene, std::span<const Beam> be
 
 Gathered WrenchGather::wrench(const RigidTransform& lab_from_body, const WrenchReceiver& receiver,
                               const GatherOptions& options) const {
-  const auto start = std::chrono::steady_clock::now();
   const Scene& scene = scene_.scene();
   const Vec3& about_m = receiver.about_body_m();
   std::vector<BodyLamp> lamps;
@@ -355,9 +353,7 @@ Gathered WrenchGather::wrench(const RigidTransform& lab_from_body, const WrenchR
     item.rays = add_sampled(light, item.sampled, options.seed, hash_words(item.lamp, item.instance),
                             entries);
   });
-  Gathered result = sum_of(items, receiver, options.replicates);
-  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  return sum_of(items, receiver, options.replicates);
 }
 
 }  // namespace photorque

@@ -21,7 +21,7 @@ BalanceOutcome run_balance(const RunOptions& options,
   BalanceResult found = balance(run);
   Product product = balance_product(run, found);
   Provenance provenance = experiment.provenance(0);
-  if (found.leaves_more_than_noise()) provenance.warnings.push_back(found.warning());
+  if (found.exceeds_noise()) provenance.warnings.push_back(found.warning());
   RunResult result{std::move(product), std::move(provenance), {wall.elapsed_s(), {}}};
   return {std::move(run), std::move(found), std::move(result)};
 }
@@ -53,7 +53,7 @@ void print_balance(const Console& console, const BalanceRun& run, const BalanceR
     console.line("  the recording is in " + std::to_string(result.segments) +
                  " segments between gaps, each with its own initial state");
   }
-  if (result.leaves_more_than_noise()) console.line("  WARNING: " + result.warning());
+  if (result.exceeds_noise()) console.line("  WARNING: " + result.warning());
   console.heading("Moves of the masses");
   print_table(console, table_named(product, "moving_masses"),
               {{"mass", "mass"},

@@ -24,13 +24,6 @@ BudgetRun run_budget(const RunOptions& options) {
 namespace photorque::verbs::budget {
 namespace {
 
-void print_reasons(const Console& console, const Table& figures) {
-  const auto& quantity = figures.column("quantity").texts;
-  const auto& why = figures.column("why").texts;
-  console.heading("Why");
-  for (size_t i = 0; i < quantity.size(); ++i) console.line("  " + quantity[i] + ": " + why[i]);
-}
-
 void print_air(const Console& console, const Table& parts) {
   console.heading(parts.title);
   print_table(console, parts,

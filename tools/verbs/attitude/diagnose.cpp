@@ -72,7 +72,7 @@ bool are_of_light(const std::vector<fs::path>& recordings, const std::vector<fs:
 }
 
 std::vector<LightRecording> read_light(const std::vector<fs::path>& paths,
-                                       const UsualCircumstances& usual, const LightColumns& columns,
+                                       const DefaultConditions& usual, const LightColumns& columns,
                                        Provenance& provenance) {
   std::vector<LightRecording> all;
   for (const fs::path& path : paths) {
@@ -136,7 +136,7 @@ std::unique_ptr<LightInput> read_light_input(const RunOptions& options,
   input->provenance.inputs = input->experiment.inputs;
   input->nominal = nominal_light(
       input->lab, uncertain_keys(options.experiment, text, options.all_overrides()), reread);
-  const UsualCircumstances usual{
+  const DefaultConditions usual{
       input->experiment.lab_from_body.rotation,
       input->lab.has_array() ? input->lab.design().temperature_K : 298.15};
   input->recordings = read_light(paths, usual, columns, input->provenance);
@@ -292,7 +292,7 @@ DiagnosisRun run_diagnose(const RunOptions& options, const std::vector<fs::path>
   require_each_once(recordings, holdouts);
   SettingsNode node = parse_toml(options.experiment_text(), options.experiment.string());
   for (const std::string& assignment : options.all_overrides()) apply_override(node, assignment);
-  const Settings root(std::make_shared<const SettingsNode>(std::move(node)));
+  const Settings root(std::move(node));
   if (root.has("module")) return diagnose_module_curves(options, root, recordings, holdouts);
   const LightColumns columns = columns_in(root);
   const Sorted sorted = sorted_by_content(recordings, columns);
@@ -308,7 +308,7 @@ DiagnosisRun run_diagnose(const RunOptions& options, const std::vector<fs::path>
 
 std::string first_experiment(const std::vector<fs::path>& recordings, const fs::path& file) {
   const std::string text = guess_experiment(recordings, file.parent_path());
-  const Settings root(std::make_shared<const SettingsNode>(parse_toml(text, file.string())));
+  const Settings root(parse_toml(text, file.string()));
   if (root.has("module")) {
     read_module(root, file.parent_path());
   } else {

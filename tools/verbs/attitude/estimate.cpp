@@ -2,14 +2,15 @@
 #include "tools/verbs/attitude/estimate.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <sstream>
 
 #include "attitude/estimation/segments.h"
 #include "attitude/filtering/report.h"
 #include "attitude/propagation/run.h"
 #include "core/errors.h"
+#include "core/text/format.h"
 #include "tools/runs/attitude_run.h"
+#include "tools/runs/optical_run.h"
 #include "tools/verbs/verb.h"
 
 namespace photorque {
@@ -26,9 +27,7 @@ void append_numbered(Product& into, Product one, size_t number, size_t count) {
       quantity.name.insert(unit, end);
     }
   }
-  for (auto& item : one.quantities) into.quantities.push_back(std::move(item));
-  for (auto& item : one.tables) into.tables.push_back(std::move(item));
-  for (auto& item : one.plots) into.plots.push_back(std::move(item));
+  append(into, std::move(one));
 }
 
 RunFile file_of(const std::string& name, const std::vector<AttitudeEstimate>& estimates,
@@ -87,12 +86,11 @@ std::vector<Source> read_sources(AttitudeExperiment& experiment,
     const size_t settled = settled_row(known.size());
     const auto is_known = [](const auto& at_row) { return at_row.has_value(); };
     if (std::none_of(known.begin() + static_cast<std::ptrdiff_t>(settled), known.end(), is_known)) {
-      char line[80];
-      std::snprintf(line, sizeof line, "no time of the recording from %.6g s on",
-                    sources[0].recording.time_s[settled]);
-      throw InputError({truth->string(), 0}, "t_s", line,
-                       "the truth at the recording's times: what comes before, while the filter "
-                       "settles, is not counted");
+      throw InputError(
+          {truth->string(), 0}, "t_s",
+          printed("no time of the recording from %.6g s on", sources[0].recording.time_s[settled]),
+          "the truth at the recording's times: what comes before, while the filter "
+          "settles, is not counted");
     }
   }
   return sources;

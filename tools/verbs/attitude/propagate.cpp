@@ -7,29 +7,19 @@
 namespace photorque::verbs::propagate {
 namespace {
 
-struct Options : CommandOptions {
-  std::optional<double> checkpoint_min;
-};
-
-void add_options(Command& command, Options& options) {
+void add_options(Command& command, CommandOptions& options) {
   command.add_experiment(options);
-  command.add_checkpoint(options.checkpoint_min);
+  command.add_checkpoint(options);
   command.add_page(options);
 }
 
-void run(const Options& options, const Program&) {
+void run(const CommandOptions& options, const Program&) {
   const Console console = terminal(options);
-  std::optional<CheckpointFile> checkpoint;
-  if (options.checkpoint_min) {
-    checkpoint.emplace(options.out_folder() / "propagate.checkpoint",
-                       60.0 * *options.checkpoint_min);
-  }
-  MotionRun run = run_propagate(options, console, {}, {}, checkpoint ? &*checkpoint : nullptr);
+  const std::unique_ptr<CheckpointFile> checkpoint = checkpoint_of(options);
+  MotionRun run = run_propagate(options, console, {}, {}, checkpoint.get());
   if (options.page) run.result.files.push_back(motion_page(run, options, page_head(options)));
   write_results(options, console, run.result);
-  // The results are complete, so that the checkpoint is not needed.
-  std::error_code stays;
-  if (checkpoint) std::filesystem::remove(checkpoint->path(), stays);
+  if (checkpoint) checkpoint->remove();
 }
 
 }  // namespace

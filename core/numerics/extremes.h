@@ -1,0 +1,29 @@
+// Long series of numbers, made shorter for pictures.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+namespace photorque {
+
+// The places of about `most` values of a series: of every interval of it the lowest and the
+// highest, so that no peak is lost. All places where there are no more than `most`.
+inline std::vector<size_t> lows_and_highs(std::span<const double> values, size_t most) {
+  const size_t intervals = values.size() <= most ? values.size() : std::max<size_t>(1, most / 2);
+  std::vector<size_t> kept;
+  for (size_t s = 0; s < intervals; ++s) {
+    const size_t from = s * values.size() / intervals, to = (s + 1) * values.size() / intervals;
+    size_t low = from, high = from;
+    for (size_t i = from; i < to; ++i) {
+      if (values[i] < values[low] || !std::isfinite(values[low])) low = i;
+      if (values[i] >= values[high] || !std::isfinite(values[high])) high = i;
+    }
+    kept.push_back(std::min(low, high));
+    if (low != high) kept.push_back(std::max(low, high));
+  }
+  return kept;
+}
+
+}  // namespace photorque
