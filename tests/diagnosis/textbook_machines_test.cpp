@@ -119,8 +119,8 @@ TEST(TextbookMachines, DryAndViscousFrictionBesideAResidual) {
     runs.push_back({"run" + std::to_string(run) + ".csv",
                     recording_of(interval_s, {noisy("angle_rad", angle_rad, 5e-4, 30 + run)})});
   }
-  const Diagnosis d = diagnose(machine(about("x", "angle]\nnoise_arcsec = 103")),
-                               {runs[0], runs[1]}, {runs[2]});
+  const Diagnosis d =
+      diagnose(machine(about("x", "angle]\nnoise_arcsec = 103")), {runs[0], runs[1]}, {runs[2]});
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("static_unbalance", "dry_friction", "bearing_drag"))
       << d.sentence;
   expect_number(d, "dry_friction", "torque_N_m", 0, dry);
