@@ -62,8 +62,10 @@ double Settings::to_number(const SettingsNode& node, std::string_view key, doubl
   }
   const double x = written * factor;
   if (!is_inside(x, range)) throw wrong(in_range());
-  // Squares and products stay finite, angles keep digits within a turn, and places stay within what
-  // single precision can trace. The Sun and planets may be beyond that.
+  // Squares and products stay finite and different from zero, angles keep digits within a turn, and
+  // places stay within what single precision can trace. The Sun and planets may be beyond that.
+  constexpr double smallest = 1e-100;
+  if (x != 0.0 && std::abs(x) < smallest) throw wrong("0 or a size of at least 1e-100 in SI units");
   const KeyUnit unit = unit_of_key(key);
   if (unit.unit.empty()) return x;
   const auto [largest, text] = unit.unit == "au"            ? std::pair{1e16, "at most 66000 au"}

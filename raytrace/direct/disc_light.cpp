@@ -53,10 +53,14 @@ bool DiscLight::lights_front(const Vec3& normal) const {
   return tilt + reach_rad() < 0.5 * pi;
 }
 
-double DiscLight::typical_W_m2(double height_m) const {
+double DiscLight::typical_per_exitance(double height_m) const {
   const double foot_m = height_m * std::tan(std::min(half_flux_rad(), 1.4));
   const double area_m2 = pi * (radius_m() * radius_m() + foot_m * foot_m);
-  return 0.5 * exitance_W_m2() * pi * radius_m() * radius_m() / area_m2;
+  return 0.5 * pi * radius_m() * radius_m() / area_m2;
+}
+
+double DiscLight::typical_W_m2(double height_m) const {
+  return exitance_W_m2() * typical_per_exitance(height_m);
 }
 
 double DiscLight::irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const {
@@ -107,7 +111,7 @@ auto DiscLight::over_aperture(double distance_m, double height_m, const Density&
   };
 
   constexpr double relative = 2e-8;
-  const double tolerance = relative * typical_W_m2(h) / aperture_.exitance_W_m2;
+  const double tolerance = relative * typical_per_exitance(h);
   Value sum = Value::Zero();
   double low = 0.0;
   for (const double slope : angles_->edge_slopes()) {

@@ -117,6 +117,7 @@ class DiscLight {
   std::vector<double> all_slopes() const;   // and of other angles, see kinks_along()
   std::vector<double> kinks_at(std::span<const double> slopes, const Vec3& from_m,
                                const Vec3& to_m) const;
+  double typical_per_exitance(double height_m) const;
   struct Arc;
   template <typename Density>
   auto over_aperture(double distance_m, double height_m, const Density& density) const;
