@@ -455,7 +455,8 @@ std::vector<std::string> lines_about(const Scene& scene, const std::vector<Pair>
              ? " coincide back to back and act as one sheet: each side has the optical "
                "properties of the face that is turned to it; transmitted light passes both"
              : " coincide and face the same way: light from the front meets only the first" +
-                   (a == b ? std::string() : ", of " + a) + "; transmitted light passes both"));
+                   (a == b ? std::string() : ", of " + a) + ", light from behind only the last" +
+                   (a == b ? std::string() : ", of " + b) + "; transmitted light passes both"));
   }
   return lines;
 }

@@ -7,7 +7,8 @@
 // - Facing opposite ways: each moves towards its own front, so that light meets either from its own
 //   side. Solids that touch stay as they are: no light gets between them.
 // - Facing alike: one of them comes first, and shades the others: the outer one where their
-//   distances differ, else an open sheet before a solid, else the first of the file.
+//   distances differ, else an open sheet before a solid, else the first of the file. Light from
+//   behind meets the back of the last, as with a foil on a panel.
 //
 // Light that passes through a face starts behind all faces that lie in it, by the depth of its
 // part (Instance::sheet_depth_m): a sheet transmits by the face that light meets first.
