@@ -35,6 +35,16 @@ TEST_F(ArrayCommand, FitsADatasheetAndPrintsTheCell) {
   EXPECT_TRUE(fs::exists(at("out/fit.png")));
 }
 
+// The error of the photocurrent was "inf".
+TEST_F(ArrayCommand, AParameterWithoutAnyErrorIsNotDetermined) {
+  const std::string sheet = std::string(PHOTORQUE_SOURCE_DIR) + "/tests/data/keys/datasheet.toml";
+  const Outcome got = run("fit-cell " + sheet + " --set fit.rounding_A=1e9 --out " + at("out"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  const std::string table = file_text(at("out/parameters.csv"));
+  EXPECT_THAT(table, testing::ContainsRegex("photocurrent_A,not determined,[0-9.]+,\n"));
+  EXPECT_THAT(table, testing::Not(HasSubstr("inf")));
+}
+
 // A number of the JSON that --json prints: "name": {"value": …
 double json_value(const std::string& text, const std::string& name) {
   const size_t at = text.find("\"" + name + "\"");

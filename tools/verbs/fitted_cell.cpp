@@ -31,8 +31,10 @@ std::string words_of(const CellRow& row) {
   return show(row.estimate, "");
 }
 
-const char* kind_of(Is is) {
-  return is == Is::value ? "value" : is == Is::lower_limit ? "lower limit" : "upper limit";
+const char* kind_of(const CellRow& row) {
+  if (row.is == Is::lower_limit) return "lower limit";
+  if (row.is == Is::upper_limit) return "upper limit";
+  return std::isfinite(row.estimate.standard_error) ? "value" : "not determined";
 }
 
 }  // namespace
@@ -59,13 +61,13 @@ Product parameter_product(const std::vector<CellRow>& rows) {
   Table table = Table::of("parameters", "Fitted parameters");
   for (const CellRow& row : rows) {
     product.quantities.push_back({row.name, row.estimate});
-    const bool is_value = row.is == Is::value;
+    const bool has_error = row.is == Is::value && std::isfinite(row.estimate.standard_error);
     table.row()
         .set("parameter", row.name)
-        .set("is", kind_of(row.is))
+        .set("is", kind_of(row))
         .set("value", row.estimate.value)
         .set("standard_error",
-             is_value ? row.estimate.standard_error : std::numeric_limits<double>::quiet_NaN());
+             has_error ? row.estimate.standard_error : std::numeric_limits<double>::quiet_NaN());
   }
   product.tables.push_back(table);
   return product;
