@@ -1,8 +1,13 @@
 #include "images/writers/loading.h"
 
 #include <dlfcn.h>
+#include <sys/mman.h>
 
 #include <filesystem>
+#include <future>
+#include <system_error>
+#include <thread>
+#include <vector>
 
 #include "core/errors.h"
 #include "core/files.h"
@@ -31,8 +36,38 @@ fs::path module_path() {
   fail(program, "no " + std::string(file_name));
 }
 
+// Its libraries start threads as they are loaded. If one cannot start, they abort or wait without
+// end.
+void require_room_and_threads() {
+  constexpr size_t room = size_t{512} << 20, threads = 16;  // they take 410 MB, and 4 threads
+  void* const place =
+      ::mmap(nullptr, room, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (place == MAP_FAILED) {
+    throw NumericalError("not enough memory for " + std::string(file_name) +
+                         ": found less than 512 MB of address space (ulimit -v)");
+  }
+  ::munmap(place, room);
+  std::promise<void> all_started;
+  const std::shared_future<void> go_on = all_started.get_future();
+  std::vector<std::thread> started;
+  bool enough = true;
+  try {
+    while (started.size() < threads) started.emplace_back([&] { go_on.wait(); });
+  } catch (const std::system_error&) {
+    enough = false;
+  }
+  all_started.set_value();
+  for (std::thread& thread : started) thread.join();
+  if (!enough) {
+    throw NumericalError("not enough threads for " + std::string(file_name) + ": found " +
+                         std::to_string(started.size()) + ", expected " + std::to_string(threads) +
+                         " (ulimit -u)");
+  }
+}
+
 // Never unloaded: its exceptions may outlive any call.
 const PictureFunctions& load() {
+  require_room_and_threads();
   const fs::path path = module_path();
   void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (module == nullptr) {
@@ -58,6 +93,7 @@ const PictureFunctions& functions() {
 }  // namespace
 
 void require_pictures() {
+  require_room_and_threads();
   module_path();
 }
 

@@ -132,7 +132,8 @@ TraceableScene::TraceableScene(Scene scene, bool leak_safe) : data_(std::make_un
   check(scene);
   data_->scene = std::move(scene);
   data_->device = rtcNewDevice(nullptr);
-  if (data_->device == nullptr) throw NumericalError("Embree did not start");
+  if (data_->device == nullptr)
+    throw NumericalError("Embree did not start, probably because of too little memory");
   data_->packet_width =
       rtcGetDeviceProperty(data_->device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0 ? 16 : 8;
   data_->embree = rtcNewScene(data_->device);

@@ -96,10 +96,11 @@ TEST_F(Boundaries, EfficienciesKeepResultsFinite) {
   EXPECT_THAT(outcome.err, testing::HasSubstr("wall_plug_efficiency"));
 }
 
-// The address space ends before the libraries of pictures are loaded.
+// The address space ends before the libraries of pictures are loaded, or (at 620 MB) would end
+// while they start threads, for which one of them waited without end.
 TEST_F(Boundaries, LittleMemoryIsOneLineAndStatusThree) {
   const std::string experiment = plate("lamp", "");
-  for (const int kibibytes : {450000, 400000}) {
+  for (const int kibibytes : {620000, 450000, 400000}) {
     const std::string command = "(ulimit -v " + std::to_string(kibibytes) + "; exec " +
                                 PHOTORQUE_BINARY_DIR + "/photorque trace " + experiment +
                                 " --quiet --threads 1 --out " + at("o") + ") 2>" + at("err");
@@ -112,6 +113,26 @@ TEST_F(Boundaries, LittleMemoryIsOneLineAndStatusThree) {
                                testing::HasSubstr("Embree")))
         << kibibytes;
   }
+}
+
+TEST_F(Boundaries, ASmallStackIsRefused) {
+  const std::string command = "(ulimit -s 64; exec " + std::string(PHOTORQUE_BINARY_DIR) +
+                              "/photorque trace " + plate("lamp", "") + " --quiet --out " +
+                              at("o") + ") 2>" + at("err");
+  const int status = std::system(command.c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 2);
+  EXPECT_THAT(file_text(at("err")), testing::HasSubstr("ulimit -s"));
+}
+
+// Integrals over the aperture of a lamp had a tolerance of zero, and no end.
+TEST_F(Boundaries, NumbersBelowAllSizesAreRefused) {
+  const std::string walls = std::string(PHOTORQUE_SOURCE_DIR) + "/tests/data/keys/walls.toml";
+  const Outcome outcome = run("check " + walls + " --set source[0].power_W=5e-324");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, testing::HasSubstr("power_W"));
+  EXPECT_THAT(outcome.err, testing::HasSubstr("1e-100"));
+  EXPECT_EQ(run("check " + walls + " --set source[0].power_W=1e-100").status, 0);
 }
 
 // The last resort: faults that would end the program by a signal.

@@ -99,8 +99,9 @@ TEST_F(OutputFolders, AFullStandardOutputIsNamed) {
                                   "trace.rays >/dev/full 2>" + at("err"))
                                      .c_str());
   EXPECT_EQ(WEXITSTATUS(status), 2);
-  EXPECT_EQ(file_text(at("err")),
-            "standard output: found a write that failed, expected space and permission\n");
+  EXPECT_EQ(
+      file_text(at("err")),
+      "standard output: found a write that failed, expected space, permission and a reader\n");
 }
 
 TEST_F(OutputFolders, ThatCannotBeWrittenAreFoundBeforeTheWork) {
@@ -163,7 +164,7 @@ TEST_F(OutputFolders, BelongToOneRunAtATime) {
 }
 
 TEST_F(OutputFolders, AreLeftCleanBySignalsWithinASecond) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2, SIGXCPU}) {
     for (const int after_ms : {30, 200, 450}) {
       const pid_t child = start(quick + " --out " + at("o/p"));
       std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
@@ -180,6 +181,18 @@ TEST_F(OutputFolders, AreLeftCleanBySignalsWithinASecond) {
       fs::remove_all(at("o"));
     }
   }
+}
+
+// A reader as `head` does not end the run, so that its results are complete.
+TEST_F(OutputFolders, HoldAllResultsWhenTheReaderOfTheTextLeaves) {
+  const std::string command = "{ " + std::string(PHOTORQUE_BINARY_DIR) + "/photorque trace " +
+                              lit_platform + " --set trace.rays=4096 --out " + at("o") + " 2>" +
+                              at("err") + "; echo $? >" + at("status") + "; } | true";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(file_text(at("status")), "2\n");
+  EXPECT_THAT(file_text(at("err")), HasSubstr("a reader"));
+  EXPECT_TRUE(fs::exists(at("o/summary.json")));
+  EXPECT_THAT(hidden("o"), testing::IsEmpty());
 }
 
 // The process that cleans up after a stopped run held its lock a moment longer than the run lived

@@ -1,6 +1,7 @@
 // The program: reads the command line, runs one verb, turns exceptions into exit statuses.
 #include <signal.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <array>
@@ -28,6 +29,9 @@
 namespace photorque {
 namespace {
 
+constexpr const char* no_thread =
+    "numerical failure: not enough memory for another thread (ulimit -v, -u)\n";
+
 // One line on standard error. Names in it may come from hostile files and command lines.
 void print_error(const std::string& line) {
   std::fprintf(stderr, "%s\n", clean_text(line).c_str());
@@ -39,6 +43,8 @@ void run_in_folder(const Command& command, const Program& program) {
   const std::filesystem::path out = options.out_folder();
   const auto others = command.folder == Command::Folder::shared ? OutputFolder::Others::share
                                                                 : OutputFolder::Others::refuse;
+  // Results do not depend on a reader of the text (as `head`) that leaves early.
+  std::signal(SIGPIPE, SIG_IGN);
   const Interruption::Watch watch(*program.interruption, out);
   const OutputFolder folder(out, others);
   const std::string input = options.experiment.filename().string();
@@ -70,7 +76,17 @@ int run_command(const Command& command, const Program& program) {
   }
 }
 
+void require_stack() {
+  constexpr rlim_t least = rlim_t{256} << 10;
+  rlimit stack{};
+  if (::getrlimit(RLIMIT_STACK, &stack) == 0 && stack.rlim_cur < least) {
+    throw InputError({"photorque"}, "", "a stack of less than 256 kB",
+                     "a larger one (ulimit -s 8192)");
+  }
+}
+
 int run(int argc, char** argv, Interruption& interruption) {
+  require_stack();
   const std::vector<Verb> verbs = all_verbs();
   const CommandLine line = read_command_line(argc, argv, verbs);
   if (line.status) return *line.status;
@@ -109,7 +125,7 @@ int run(int argc, char** argv, Interruption& interruption) {
     std::fputs("numerical failure: not enough memory\n", stderr);
     std::_Exit(3);
   } catch (const std::system_error&) {
-    std::fputs("numerical failure: not enough memory for another thread\n", stderr);
+    std::fputs(no_thread, stderr);
     std::_Exit(3);
   } catch (...) {
     end_after_fault(SIGABRT);
@@ -146,8 +162,9 @@ int main(int argc, char** argv) {
     photorque::Interruption interruption;
     const int status = photorque::run(argc, argv, interruption);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      std::fputs("standard output: found a write that failed, expected space and permission\n",
-                 stderr);
+      std::fputs(
+          "standard output: found a write that failed, expected space, permission and a reader\n",
+          stderr);
       return status == 0 ? 2 : status;
     }
     return status;
@@ -164,6 +181,13 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     // Threads of libraries that are short of memory may never be ready to be joined.
     std::fputs("numerical failure: not enough memory\n", stderr);
+    std::_Exit(3);
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::resource_unavailable_try_again) {
+      photorque::print_error(std::string("numerical failure: ") + error.what());
+      return 3;
+    }
+    std::fputs(photorque::no_thread, stderr);
     std::_Exit(3);
   } catch (const std::exception& error) {
     photorque::print_error(std::string("numerical failure: ") + error.what());

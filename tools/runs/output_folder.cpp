@@ -162,18 +162,21 @@ void OutputFolder::remove_empty() const {
 
 Interruption::Interruption() {
   sigemptyset(&signals_);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  // Batch systems announce their limits by SIGUSR1, SIGUSR2 and SIGXCPU.
+  for (const int signal :
+       {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGALRM, SIGUSR1, SIGXCPU, stop_waiting}) {
     struct sigaction now {};
-    if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler != SIG_IGN) {
+    if (sigaction(signal, nullptr, &now) == 0 &&
+        (now.sa_handler != SIG_IGN || signal == stop_waiting)) {
       sigaddset(&signals_, signal);
     }
   }
-  sigaddset(&signals_, stop_waiting);
   pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
   waiting_ = std::thread([this] { wait(); });
 }
 
 Interruption::~Interruption() {
+  is_over_ = true;
   pthread_kill(waiting_.native_handle(), stop_waiting);
   waiting_.join();
 }
@@ -199,7 +202,7 @@ void Interruption::wait() {
   int signal = 0;
   while (sigwait(&signals_, &signal) != 0) {
   }
-  if (signal != stop_waiting) end(signal);
+  if (signal != stop_waiting || !is_over_) end(signal);
 }
 
 void Interruption::clean(pid_t process) const {

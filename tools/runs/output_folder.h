@@ -2,6 +2,7 @@
 // clean when a signal ends the program.
 #pragma once
 
+#include <atomic>
 #include <csignal>
 #include <filesystem>
 #include <mutex>
@@ -36,7 +37,8 @@ class OutputFolder {
   int descriptor_ = -1;
 };
 
-// Ctrl-C, SIGTERM, SIGHUP: the program ends at once and leaves no half-written file behind.
+// Ctrl-C, SIGTERM, SIGHUP and others: the program ends at once and leaves no half-written file
+// behind.
 //
 // Made first thing in main(), before other threads are, which inherit that they are not to be
 // interrupted: one thread waits for the signals, removes the temporary files of the folders in use,
@@ -71,6 +73,7 @@ class Interruption {
   [[noreturn]] void end(int signal);
 
   sigset_t signals_{};
+  std::atomic<bool> is_over_ = false;
   std::thread waiting_;
   std::mutex mutex_;
   std::vector<InUse> in_use_;
