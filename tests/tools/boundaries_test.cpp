@@ -115,6 +115,22 @@ TEST_F(Boundaries, LittleMemoryIsOneLineAndStatusThree) {
   }
 }
 
+// The limit does not hold for the superuser. Libraries of pictures aborted, or waited without end.
+TEST_F(Boundaries, TooFewThreadsAreOneLineAndStatusThree) {
+  const std::string other = ::geteuid() == 0 ? "setpriv --reuid=65534 --clear-groups " : "";
+  const std::string program = std::string(PHOTORQUE_BINARY_DIR) + "/photorque";
+  if (std::system((other + program + " --version >/dev/null 2>&1").c_str()) != 0) {
+    GTEST_SKIP() << "no other user can run the program";
+  }
+  const std::string command = other + "prlimit --nproc=8 " + program + " trace " +
+                              plate("lamp", "") + " --quiet --out " + at("o") + " 2>" + at("err");
+  const int status = std::system(command.c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 3);
+  EXPECT_THAT(file_text(at("err")),
+              testing::ContainsRegex("^numerical failure: not enough .*\\(.*-u\\)\n$"));
+}
+
 TEST_F(Boundaries, ASmallStackIsRefused) {
   const std::string command = "(ulimit -s 64; exec " + std::string(PHOTORQUE_BINARY_DIR) +
                               "/photorque trace " + plate("lamp", "") + " --quiet --out " +
