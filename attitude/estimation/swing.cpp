@@ -238,6 +238,28 @@ AxisReadings angles_of_swing(const Observation& rows, const Vec3& axis) {
   return read;
 }
 
+bool swings(const std::vector<Observation>& runs, const Vec3& axis) {
+  constexpr double beyond = 0.2;
+  constexpr int fewest = 4;
+  std::vector<double> angle_rad;
+  for (const Observation& seen : runs) {
+    if (!seen.sees_some_attitude() && !angles_of_swing(seen, axis).row.empty()) return true;
+    const std::vector<double> of_run = angles_about(seen, axis, 0, seen.blocks()).value;
+    angle_rad.insert(angle_rad.end(), of_run.begin(), of_run.end());
+  }
+  if (angle_rad.empty()) return false;
+  double mean_rad = 0.0, most_rad = 0.0;
+  for (const double a : angle_rad) mean_rad += a / static_cast<double>(angle_rad.size());
+  for (double& a : angle_rad) most_rad = std::max(most_rad, std::abs(a -= mean_rad));
+  int times = 0, side = 0;
+  for (const double a : angle_rad) {
+    const int now = a > beyond * most_rad ? 1 : a < -beyond * most_rad ? -1 : 0;
+    times += now == -side ? std::abs(now) : 0;
+    if (now != 0) side = now;
+  }
+  return times >= fewest;
+}
+
 namespace {
 
 // The angles of a swing within the rows; empty if there are few.

@@ -21,6 +21,10 @@ size_t released_at(const Observation& rows, const Vec3& axis, size_t first, size
 // two.
 AxisReadings angles_of_swing(const Observation& rows, const Vec3& axis);
 
+// Whether the angle about `axis` passes its mean again and again, by a fifth of its range on either
+// side; of runs without an angle, whether angles_of_swing() finds a swing.
+bool swings(const std::vector<Observation>& runs, const Vec3& axis);
+
 // The restoring torque about `axis`: proportional to the sine of the angle from a rest position (a
 // weight about a level axis), or to the angle (a spring, a twisted line). The law under which the
 // periods depend on the amplitudes with half the scatter. If neither does and there are 28 readings

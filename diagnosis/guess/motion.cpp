@@ -180,33 +180,6 @@ void add_noise(TomlDocument& document, const std::vector<Observation>& runs,
                "by which neighbouring readings scatter");
 }
 
-bool passes_its_mean(const std::vector<Observation>& runs, int axis) {
-  std::vector<double> angle_rad;
-  for (const Observation& seen : runs) {
-    double at_rad = 0.0;
-    for (size_t i = 0; i < seen.blocks(); ++i) {
-      if (!(seen.attitude_rows[i] > 0.0)) continue;
-      if (i > 0 && seen.attitude_rows[i - 1] > 0.0) {
-        at_rad += turn_vector(seen.attitude[i] * seen.attitude[i - 1].conjugate())[axis];
-      }
-      angle_rad.push_back(at_rad);
-    }
-  }
-  if (angle_rad.empty()) return false;
-  double mean_rad = 0.0, most_rad = 0.0;
-  for (const double a : angle_rad) mean_rad += a / static_cast<double>(angle_rad.size());
-  for (double& a : angle_rad) most_rad = std::max(most_rad, std::abs(a -= mean_rad));
-  // A margin excludes noise near the mean.
-  int times = 0, side = 0;
-  for (const double a : angle_rad) {
-    const int now = a > 0.2 * most_rad ? 1 : a < -0.2 * most_rad ? -1 : 0;
-    if (now != 0 && now == -side) ++times;
-    if (now != 0) side = now;
-  }
-  constexpr int swings = 4;
-  return times >= swings;
-}
-
 // How what drives a swing back follows from the readings.
 std::string why_it_swings(RestoringLaw law, const std::string& seen) {
   return law == RestoringLaw::spring
@@ -265,7 +238,7 @@ void see_one_axis(Machine& m) {
     }
     return;
   }
-  if (!passes_its_mean(m.runs, 2)) return;
+  if (!swings(m.runs, Vec3::UnitZ())) return;
   const RestoringLaw law = law_of_swing(m.runs, Vec3::UnitZ());
   m.why = why_it_swings(law, "one angle that swings about its mean");
   if (law != RestoringLaw::spring) m.observe_as(Topology::one_axis, Vec3::UnitX());

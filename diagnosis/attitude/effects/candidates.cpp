@@ -414,8 +414,8 @@ bool swings_little(const std::vector<Observation>& runs) {
   return sees && most_rad - least_rad < little_rad;
 }
 
-// Rates alone do not show where the angle is zero: the zero is where a restoring torque vanishes.
-// The components of such a torque with an effect there are excluded.
+// Where the angle is zero is shown neither by rates alone nor by a body that does not swing: the
+// zero is where a restoring torque vanishes. Its components with an effect there are excluded.
 void set_zero_at_rest(const AttitudeModel& nominal, Candidate& c) {
   if (!is_restoring(c, nominal)) return;
   AttitudeModel model = nominal;
@@ -537,16 +537,14 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     });
     const bool sees_angle = std::ranges::any_of(
         runs, [](const Observation& seen) { return seen.sees_some_attitude(); });
-    if (!sees_angle && !context.platform.slides()) {
+    const bool swings_freely = !covered.has_commands && swings(runs, context.platform.axis);
+    if ((!sees_angle || (!is_level && !swings_freely)) && !context.platform.slides()) {
       for (Candidate& c : all.list) set_zero_at_rest(nominal.model, c);
     }
     // In small swings the weight has a constant torque, and a steady torque is an error of the
-    // angle's zero; so it is in every swing that only its rates show.
+    // angle's zero; so it is beside a spring, and in every swing that only its rates show.
     const bool hides_steady =
-        sees_angle ? is_level && has_weight && swings_little(runs)
-                   : std::ranges::any_of(runs, [&](const Observation& seen) {
-                       return !angles_of_swing(seen, context.platform.axis).row.empty();
-                     });
+        sees_angle && is_level ? has_weight && swings_little(runs) : swings_freely;
     if (hides_steady && !context.platform.slides()) {
       std::erase_if(all.list, [](const Candidate& c) { return c.effect.how.steady; });
     }
