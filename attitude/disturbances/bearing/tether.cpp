@@ -102,10 +102,12 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
 std::vector<Parametrisation> of_experiment(const DisturbanceContext& context) {
   Parametrisation p{"a cable pulls the platform back to zero attitude",
                     {EffectKey::not_negative(stiffness.name, 1e-5)}};
-  if (context.platform.turns_about_one_axis()) {
+  const bool about_one_axis = context.platform.turns_about_one_axis();
+  if (about_one_axis) {
     p.explanation = "a spring or a twisted line pulls back in proportion to the angle";
-    p.keys.push_back(EffectKey::number(pull.name, 1e-6));
   }
+  p.keys.push_back(about_one_axis ? EffectKey::number(pull.name, 1e-6)
+                                  : EffectKey::fixed_at(pull.name, 0.0));
   return {p};
 }
 
