@@ -15,8 +15,11 @@ bool is_rate_of_angle(const Observation& rows, const Vec3& axis) {
   constexpr double exactly = 0.05;
   if (!rows.sees_some_attitude() || !rows.has_gyro) return false;
   const AxisReadings angle = angles_about(rows, axis, 0, rows.blocks()),
-                     rate = rates_about(rows, axis, 0, rows.blocks());
-  if (angle.row.size() != rate.row.size() || angle.row.size() < fewest) return false;
+                     read = rates_about(rows, axis, 0, rows.blocks());
+  // The first or the last row often lacks its quotient.
+  if (read.row.size() < fewest || read.row.size() + 4 < angle.row.size()) return false;
+  std::vector<double> rate(rows.blocks(), NAN);
+  for (size_t i = 0; i < read.row.size(); ++i) rate[read.row[i]] = read.value[i];
   std::vector<double> quotient;
   for (size_t i = 0; i + 1 < angle.row.size(); ++i) {
     quotient.push_back((angle.value[i + 1] - angle.value[i]) /
@@ -26,11 +29,12 @@ bool is_rate_of_angle(const Observation& rows, const Vec3& axis) {
   double scatter = 0.0;
   std::array<double, 3> off = {};
   for (size_t i = 1; i + 1 < quotient.size(); ++i) {
-    const double w = rate.value[i], before = quotient[i - 1], after = quotient[i],
+    const double w = rate[angle.row[i]], before = quotient[i - 1], after = quotient[i],
                  before_s = angle.time_s[i] - angle.time_s[i - 1],
                  after_s = angle.time_s[i + 1] - angle.time_s[i], both_s = before_s + after_s;
     const double between = (before * before_s + after * after_s) / both_s,
                  parabola = (before * after_s + after * before_s) / both_s;
+    if (!std::isfinite(w)) continue;
     scatter += std::abs(quotient[i + 1] - 2.0 * after + before);
     off[0] += std::abs(w - before);
     off[1] += std::abs(w - after);

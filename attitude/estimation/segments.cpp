@@ -211,6 +211,19 @@ Recording read_as(const AngleConvention& angles, Recording recording) {
   return recording;
 }
 
+// The recording of a sliding body with zero for the one coordinate that it lacks: the body slides
+// along a line. Nothing if it has both or none.
+std::optional<Recording> on_a_line(const Recording& recording, const Platform& platform) {
+  if (!platform.slides()) return std::nullopt;
+  const bool has_x = recording.find("x_m") != nullptr, has_y = recording.find("y_m") != nullptr;
+  if (has_x == has_y || recording.find(has_x ? "velocity_y_m_s" : "velocity_x_m_s") != nullptr) {
+    return std::nullopt;
+  }
+  Recording with_both = recording;
+  with_both.channels.push_back({has_x ? "y_m" : "x_m", std::vector<double>(recording.rows(), 0.0)});
+  return with_both;
+}
+
 }  // namespace
 
 void refuse_jump_of_clock(const Recording& recording, const std::string& name) {
@@ -237,7 +250,9 @@ Segments observe_segments(const Recording& recording, const std::string& name,
   const std::optional<AngleConvention> angles = convention_of_angles(recording, platform, name);
   const bool as_usual = !angles || angles->text.empty();
   const std::optional<Recording> rates = with_rates_of_far_turns(recording, platform);
+  const std::optional<Recording> along = on_a_line(recording, platform);
   Segments result = cut(rates      ? *rates
+                        : along    ? *along
                         : as_usual ? recording
                                    : read_as(*angles, recording),
                         name, platform, max_blocks);

@@ -44,6 +44,7 @@ struct LocalMotion {
   std::vector<size_t> row;
   std::vector<double> time_s;
   Eigen::MatrixXd motion;  // a row each
+  bool is_fine = false;    // each cubic spans a quarter of a period at most
 };
 
 constexpr int steps_per_period = 32;
@@ -59,6 +60,8 @@ LocalMotion local_motion(const AxisReadings& read) {
   }
   const double step_s = whole_s / steps_per_period,
                reach_s = std::max(2.0 * step_s, 4.001 * upper_median(intervals_s));
+  constexpr double fine = 1.0 / 7.0;  // of a period, on either side
+  result.is_fine = reach_s < fine * whole_s;
   std::vector<Vec3> all;
   size_t begin = 0, end = 0, at = 0;
   for (double t = read.time_s.front() + reach_s; t <= read.time_s.back() - reach_s; t += step_s) {
@@ -235,16 +238,41 @@ AxisReadings angles_of_swing(const Observation& rows, const Vec3& axis) {
   return read;
 }
 
+bool swings(const std::vector<Observation>& runs, const Vec3& axis) {
+  constexpr double beyond = 0.2;
+  constexpr int fewest = 4;
+  std::vector<double> angle_rad;
+  for (const Observation& seen : runs) {
+    if (!seen.sees_some_attitude() && !angles_of_swing(seen, axis).row.empty()) return true;
+    const std::vector<double> of_run = angles_about(seen, axis, 0, seen.blocks()).value;
+    angle_rad.insert(angle_rad.end(), of_run.begin(), of_run.end());
+  }
+  if (angle_rad.empty()) return false;
+  double mean_rad = 0.0, most_rad = 0.0;
+  for (const double a : angle_rad) mean_rad += a / static_cast<double>(angle_rad.size());
+  for (double& a : angle_rad) most_rad = std::max(most_rad, std::abs(a -= mean_rad));
+  int times = 0, side = 0;
+  for (const double a : angle_rad) {
+    const int now = a > beyond * most_rad ? 1 : a < -beyond * most_rad ? -1 : 0;
+    times += now == -side ? std::abs(now) : 0;
+    if (now != 0) side = now;
+  }
+  return times >= fewest;
+}
+
 namespace {
 
-// The swing within the rows, if there is one.
-LocalMotion swing_of(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
+// The angles of a swing within the rows; empty if there are few.
+AxisReadings swing_of(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
   constexpr size_t fewest_readings = 60;
   AxisReadings read = rows.sees_some_attitude() ? angles_about(rows, axis, first, last)
                                                 : angles_of_swing(rows, axis);
-  if (read.row.size() < fewest_readings) return {};
-  leave_out_rest(read);
-  return read.row.size() < fewest_readings ? LocalMotion() : local_motion(read);
+  if (read.row.size() >= fewest_readings) leave_out_rest(read);
+  return read.row.size() < fewest_readings ? AxisReadings() : read;
+}
+
+LocalMotion motion_of(const AxisReadings& read) {
+  return read.row.empty() ? LocalMotion() : local_motion(read);
 }
 
 // A series at steps of local motion less its mean over a period about each: small errors of an
@@ -260,11 +288,73 @@ Eigen::VectorXd without_slow_part(const Eigen::VectorXd& values) {
   return result;
 }
 
+// The arithmetic-geometric mean.
+double agm(double a, double b) {
+  while (std::abs(a - b) > 1e-12 * a) {
+    const double mean = 0.5 * (a + b);
+    b = std::sqrt(a * b);
+    a = mean;
+  }
+  return a;
+}
+
+// A period of a swing, between every second passage through its middle, and its amplitude.
+struct Period {
+  double period_s = 0.0, amplitude_rad = 0.0;
+};
+
+std::vector<Period> periods_of(const AxisReadings& read) {
+  const double middle_rad = upper_median(read.value);
+  std::vector<double> passed_s, extreme_rad;  // and the farthest angle before
+  double farthest_rad = 0.0;
+  for (size_t i = 1; i < read.row.size(); ++i) {
+    const double before = read.value[i - 1] - middle_rad, now = read.value[i] - middle_rad;
+    farthest_rad = std::max(farthest_rad, std::abs(before));
+    if ((before < 0.0) == (now < 0.0)) continue;
+    passed_s.push_back(read.time_s[i - 1] +
+                       (read.time_s[i] - read.time_s[i - 1]) * before / (before - now));
+    extreme_rad.push_back(farthest_rad);
+    farthest_rad = 0.0;
+  }
+  std::vector<Period> all;
+  for (size_t i = 2; i < passed_s.size(); ++i) {
+    all.push_back({passed_s[i] - passed_s[i - 2], 0.5 * (extreme_rad[i - 1] + extreme_rad[i])});
+  }
+  return all;
+}
+
+// A weight swings more slowly the farther it swings, a spring does not: the period is
+// T/agm(1, cos(A/2)). What drives or brakes the swing hardly matters, nor do coarse readings.
+RestoringLaw law_of_periods(const AxisReadings& read) {
+  constexpr size_t fewest = 8;
+  constexpr double largest_rad = 3.0;
+  const std::vector<Period> periods = periods_of(read);
+  if (periods.size() < fewest) return RestoringLaw::unclear;
+  std::vector<double> of_spring, of_weight;
+  for (const Period& p : periods) {
+    if (p.amplitude_rad > largest_rad) return RestoringLaw::unclear;
+    of_spring.push_back(std::log(p.period_s));
+    of_weight.push_back(of_spring.back() + std::log(agm(1.0, std::cos(0.5 * p.amplitude_rad))));
+  }
+  const auto scatter = [](const std::vector<double>& values) {
+    const double middle = upper_median(values);
+    std::vector<double> sizes;
+    for (const double value : values) sizes.push_back(std::abs(value - middle));
+    return upper_median(sizes);
+  };
+  // Of what rests or is pushed, some periods have nothing to do with the law.
+  constexpr double clearly = 2.0;
+  const double spring = scatter(of_spring), weight = scatter(of_weight);
+  return clearly * spring < weight   ? RestoringLaw::spring
+         : clearly * weight < spring ? RestoringLaw::weight
+                                     : RestoringLaw::unclear;
+}
+
 }  // namespace
 
 size_t released_at(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
   constexpr double usual = 3.0;
-  const LocalMotion local = swing_of(rows, axis, first, last);
+  const LocalMotion local = motion_of(swing_of(rows, axis, first, last));
   if (local.row.empty()) return first;
   const Eigen::VectorXd off = off_the_law(local.motion);
   int lawful = 0;
@@ -279,8 +369,11 @@ size_t released_at(const Observation& rows, const Vec3& axis, size_t first, size
 
 RestoringLaw restoring_law(const Observation& rows, const Vec3& axis) {
   constexpr double beyond_chance = 16.0, clearly = 0.1;
-  const LocalMotion local = swing_of(rows, axis, 0, rows.blocks());
+  const AxisReadings read = swing_of(rows, axis, 0, rows.blocks());
+  const LocalMotion local = motion_of(read);
   if (local.row.empty()) return RestoringLaw::unclear;
+  if (const RestoringLaw law = law_of_periods(read); law != RestoringLaw::unclear) return law;
+  if (!local.is_fine) return RestoringLaw::unclear;
   const Eigen::MatrixXd& motion = local.motion;
   const auto angle = motion.col(0).array();
   const Eigen::VectorXd rate = without_slow_part(motion.col(1));

@@ -21,12 +21,18 @@ size_t released_at(const Observation& rows, const Vec3& axis, size_t first, size
 // two.
 AxisReadings angles_of_swing(const Observation& rows, const Vec3& axis);
 
+// Whether the angle about `axis` passes its mean again and again, by a fifth of its range on either
+// side; of runs without an angle, whether angles_of_swing() finds a swing.
+bool swings(const std::vector<Observation>& runs, const Vec3& axis);
+
 // The restoring torque about `axis`: proportional to the sine of the angle from a rest position (a
-// weight about a level axis), or to the angle (a spring, a twisted line). Beside dry, viscous and
-// quadratic friction, each law is fitted to the rates of local cubics (integrated over time); the
-// one with the smaller residual, if that gains a tenth of χ² and 16 in χ² for as many independent
-// residuals as their correlation leaves. `unclear` for small swings, where both are alike, or where
-// there are too few readings. Where there is no angle, those of angles_of_swing().
+// weight about a level axis), or to the angle (a spring, a twisted line). The law under which the
+// periods depend on the amplitudes with half the scatter. If neither does and there are 28 readings
+// a period, beside dry, viscous and quadratic friction each law is fitted to the rates of local
+// cubics (integrated over time); the one with the smaller residual, if that gains a tenth of χ² and
+// 16 in χ² for as many independent residuals as their correlation leaves. `unclear` for small
+// swings, where both are alike, or where there are too few readings. Where there is no angle, those
+// of angles_of_swing().
 enum class RestoringLaw { unclear, weight, spring };
 RestoringLaw restoring_law(const Observation& rows, const Vec3& axis);
 

@@ -28,6 +28,11 @@ constexpr ChoiceKey angle_sequence(
 constexpr FlagKey remove_outliers(
     "remove_outliers", true,
     "removes readings of attitude and gyro that are far from all neighbours");
+constexpr NumbersKey pivot("pivot_m", {},
+                           "[x, y] of a point about which the place `x_m`, `y_m` turns, as the "
+                           "bob of a pendulum in a video: they are read as one angle, "
+                           "counterclockwise from the vertical through it",
+                           {.optional = true, .size = 2});
 constexpr TableKey recording("recording", "how files of recordings are read");
 }  // namespace recording_key
 
@@ -35,7 +40,8 @@ constexpr TableKey recording("recording", "how files of recordings are read");
 
 Key recording_table() {
   using namespace recording_key;
-  return recording_key::recording.of({columns, angle_sequence, recording_key::remove_outliers});
+  return recording_key::recording.of(
+      {columns, angle_sequence, recording_key::remove_outliers, pivot});
 }
 
 RecordingOptions read_recording_options(const Settings& settings) {
@@ -47,6 +53,10 @@ RecordingOptions read_recording_options(const Settings& settings) {
     }
   }
   options.remove_outliers = settings.get(recording_key::remove_outliers);
+  if (settings.has(recording_key::pivot)) {
+    const std::vector<double> pivot_m = settings.get(recording_key::pivot);
+    options.pivot_m = {pivot_m[0], pivot_m[1]};
+  }
   const size_t sequence = settings.get(recording_key::angle_sequence);
   if (sequence > 0) options.angle_sequence = recording_key::angle_sequence.words[sequence].name;
   return options;

@@ -9,6 +9,7 @@
 #include "attitude/recordings/cleaning.h"
 #include "attitude/recordings/named_columns.h"
 #include "attitude/recordings/text_lines.h"
+#include "core/constants.h"
 #include "core/files.h"
 #include "core/numerics/steady_intervals.h"
 #include "core/text/parse.h"
@@ -301,7 +302,36 @@ class RecordingReader {
     }
   }
 
+  // A place that turns about a pivot: an angle in place of its coordinates. Zero is the vertical on
+  // the side of the readings: in pictures y often points down.
+  void read_as_angle(const std::array<double, 2>& pivot_m) {
+    const auto x_at = std::ranges::find(recording_.channels, "x_m", &Channel::name),
+               y_at = std::ranges::find(recording_.channels, "y_m", &Channel::name);
+    if (x_at == recording_.channels.end() || y_at == recording_.channels.end() ||
+        recording_.find("angle_rad") != nullptr) {
+      throw error("pivot_m", "no columns x_m and y_m, or an angle_rad beside them",
+                  "the coordinates of a body that turns about the pivot");
+    }
+    Channel& x = *x_at;
+    const std::vector<double>& y = y_at->values;
+    double above = 0.0, before = 0.0;
+    for (const double value : y) above += std::isfinite(value) ? value - pivot_m[1] : 0.0;
+    const double side = above > 0.0 ? 1.0 : -1.0;
+    for (size_t i = 0; i < y.size(); ++i) {
+      const double angle = std::atan2(x.values[i] - pivot_m[0], side * (y[i] - pivot_m[1]));
+      if (!std::isfinite(angle)) {
+        x.values[i] = empty_cell;
+        continue;
+      }
+      before += std::remainder(angle - before, 2.0 * pi);
+      x.values[i] = before;
+    }
+    x.name = "angle_rad";
+    recording_.channels.erase(y_at);
+  }
+
   void finish() {
+    if (options_.pivot_m) read_as_angle(*options_.pivot_m);
     recording_.angle_sequence = options_.angle_sequence;
     RecordingReport& report = recording_.report;
     report.rows_kept = static_cast<int64_t>(recording_.rows());

@@ -5,10 +5,12 @@
 // repaired, leaves out what cannot, and counts all of it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -80,6 +82,8 @@ struct RecordingOptions {
   std::map<std::string, std::string> columns = {};
   bool remove_outliers = true;
   std::string angle_sequence = {};  // of the recording
+  // A point about which x_m, y_m turns: they are read as one angle from the vertical through it.
+  std::optional<std::array<double, 2>> pivot_m = {};
   // Largest number of cells that are kept, times included (8 bytes each).
   int64_t max_cells = 150'000'000;
 };

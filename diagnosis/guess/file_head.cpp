@@ -172,6 +172,16 @@ FileHead head_of(const std::filesystem::path& path) {
     }
   }
   if (unnamed) throw without_header(path, *unnamed, unnamed_separator);
+  const auto is_number = [](const NumberedLine& line) {
+    return number_of_cell(trimmed(line.text), ';').has_value();
+  };
+  if (2 * std::ranges::count_if(lines, is_number) > static_cast<std::ptrdiff_t>(lines.size())) {
+    const std::string file = shell_word(path.filename().string());
+    throw InputError({path.string()}, "header", "one column of numbers",
+                     "a time beside them: awk 'BEGIN {print \"t_s,rate_rad_s\"} {print (NR-1)/10 "
+                     "\",\" $1}' " +
+                         file + " > with_time.csv for ten a second (write what they are)");
+  }
   throw InputError({path.string()}, "header",
                    "no rows of numbers between commas, semicolons, tabs or blanks",
                    "a table with a header that names its columns");

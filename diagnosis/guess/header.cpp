@@ -168,7 +168,12 @@ std::optional<HeaderUnit> ratio(const std::string& above, const std::string& bel
     return HeaderUnit{time == "s" ? "rev_s" : "", "angular rate"};
   }
   const std::string length = length_unit(above);
-  if (!length.empty()) return HeaderUnit{length == "m" && time == "s" ? "m_s" : "", "speed"};
+  if (!length.empty()) {
+    std::string suffix = length + "_" + time;
+    const KeyUnit known = unit_of_key("speed_" + suffix);
+    if (known.dimension != "speed" || known.unit != suffix) suffix.clear();
+    return HeaderUnit{suffix, "speed"};
+  }
   return std::nullopt;
 }
 
@@ -238,9 +243,10 @@ std::optional<HeaderUnit> unit_written(std::string_view text) {
       {"deg/s/s", {"", "angular acceleration"}},
       {"rad s-2", {"", "angular acceleration"}},
       {"deg s-2", {"", "angular acceleration"}},
-      {"mph", {"", "speed"}},
-      {"kmh", {"", "speed"}},
-      {"km h", {"", "speed"}},
+      {"mph", {"mph", "speed"}},
+      {"kmh", {"km_h", "speed"}},
+      {"kph", {"km_h", "speed"}},
+      {"km h", {"km_h", "speed"}},
       {"knots", {"", "speed"}},
       {"volt", {"V", "voltage"}},
       {"volts", {"V", "voltage"}},

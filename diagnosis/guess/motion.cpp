@@ -26,9 +26,12 @@ std::string digits(double value, int significant = 3) {
   return printed("%.*g", significant, value);
 }
 
-// Rounds to three digits.
+double rounded(double value, int significant = 6) {
+  return std::strtod(digits(value, significant).c_str(), nullptr);
+}
+
 SettingsNode number_node(double value) {
-  return {std::strtod(digits(value).c_str(), nullptr)};
+  return {rounded(value, 3)};
 }
 
 // Properties of a machine that the columns and readings of its recordings determine.
@@ -180,33 +183,6 @@ void add_noise(TomlDocument& document, const std::vector<Observation>& runs,
                "by which neighbouring readings scatter");
 }
 
-bool passes_its_mean(const std::vector<Observation>& runs, int axis) {
-  std::vector<double> angle_rad;
-  for (const Observation& seen : runs) {
-    double at_rad = 0.0;
-    for (size_t i = 0; i < seen.blocks(); ++i) {
-      if (!(seen.attitude_rows[i] > 0.0)) continue;
-      if (i > 0 && seen.attitude_rows[i - 1] > 0.0) {
-        at_rad += turn_vector(seen.attitude[i] * seen.attitude[i - 1].conjugate())[axis];
-      }
-      angle_rad.push_back(at_rad);
-    }
-  }
-  if (angle_rad.empty()) return false;
-  double mean_rad = 0.0, most_rad = 0.0;
-  for (const double a : angle_rad) mean_rad += a / static_cast<double>(angle_rad.size());
-  for (double& a : angle_rad) most_rad = std::max(most_rad, std::abs(a -= mean_rad));
-  // A margin excludes noise near the mean.
-  int times = 0, side = 0;
-  for (const double a : angle_rad) {
-    const int now = a > 0.2 * most_rad ? 1 : a < -0.2 * most_rad ? -1 : 0;
-    if (now != 0 && now == -side) ++times;
-    if (now != 0) side = now;
-  }
-  constexpr int swings = 4;
-  return times >= swings;
-}
-
 // How what drives a swing back follows from the readings.
 std::string why_it_swings(RestoringLaw law, const std::string& seen) {
   return law == RestoringLaw::spring
@@ -265,7 +241,7 @@ void see_one_axis(Machine& m) {
     }
     return;
   }
-  if (!passes_its_mean(m.runs, 2)) return;
+  if (!swings(m.runs, Vec3::UnitZ())) return;
   const RestoringLaw law = law_of_swing(m.runs, Vec3::UnitZ());
   m.why = why_it_swings(law, "one angle that swings about its mean");
   if (law != RestoringLaw::spring) m.observe_as(Topology::one_axis, Vec3::UnitX());
@@ -325,10 +301,22 @@ bool see_by_scalars(Machine& m) {
 }
 
 void see_machine(Machine& m) {
-  if (m.has("x_m") && m.has("y_m")) {
+  const bool has_x = m.has("x_m"), has_y = m.has("y_m");
+  if (has_x && has_y) {
     m.why =
         "two coordinates and no third: something slides on a level plane, and gravity is "
         "9.80665 m/s² across it.";
+    return m.observe_as(Topology::planar);
+  }
+  const auto has_one_of = [&](std::initializer_list<const char*> channels) {
+    return std::ranges::any_of(channels, [&](const char* c) { return m.has(c); });
+  };
+  if (!has_one_of({"angle_rad", "roll_rad", "pitch_rad", "yaw_rad", "rate_rad_s", "q_w", "tilt_rad",
+                   "gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s", "rate_magnitude_rad_s"}) &&
+      has_one_of({"x_m", "y_m", "velocity_x_m_s", "velocity_y_m_s"})) {
+    m.why = std::string(has_x || has_y ? "one coordinate" : "a speed") +
+            " along a line: a cart on a track, a mass on a spring, a vehicle. Gravity is "
+            "9.80665 m/s² across it; the weight of what hangs is part of the spring's pull.";
     return m.observe_as(Topology::planar);
   }
   if (see_by_scalars(m)) return;
@@ -363,6 +351,18 @@ void see_machine(Machine& m) {
   m.why =
       "an attitude about three axes that does not follow from inertia alone: a platform on a "
       "bearing (\"free\" for what is in orbit or thrown).";
+}
+
+// Without the velocity of a coordinate that is recorded as well: it is usually computed from it.
+std::vector<GuessedColumn> without_computed_velocity(std::vector<GuessedColumn> columns) {
+  for (const std::string axis : {"x", "y"}) {
+    const bool has_place = std::ranges::any_of(
+        columns, [&](const GuessedColumn& c) { return c.channel.starts_with(axis + "_"); });
+    for (GuessedColumn& c : columns) {
+      if (has_place && c.channel.starts_with("velocity_" + axis)) c.channel.clear();
+    }
+  }
+  return columns;
 }
 
 RecordingOptions options_of(const std::vector<GuessedColumn>& columns) {
@@ -425,8 +425,15 @@ void require_rows(const fs::path& path, const std::vector<GuessedColumn>& column
                    "at least " + std::to_string(fewest_readings) + " readings");
 }
 
-// A remark on coordinates that stay at one distance from a point and turn back, or go round it.
-std::string circle_of(const Recording& recording) {
+// A circle on which coordinates stay, and to which part of its radius.
+struct Circle {
+  Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();
+  double radius_m = 0.0, off = 0.0;
+};
+
+// The circle of coordinates that turn back on it again and again, or go round it.
+std::optional<Circle> circle_of(const Recording& recording) {
+  if (recording.find("x_m") == nullptr || recording.find("y_m") == nullptr) return std::nullopt;
   const Channel &x = *recording.find("x_m"), &y = *recording.find("y_m");
   std::vector<Eigen::Vector2d> points;
   for (size_t i = 0; i < recording.rows(); ++i) {
@@ -445,7 +452,7 @@ std::string circle_of(const Recording& recording) {
     right += row * d.squaredNorm();
   }
   const Vec3 solution = squares.ldlt().solve(right);
-  if (!solution.allFinite()) return "";
+  if (!solution.allFinite()) return std::nullopt;
   const Eigen::Vector2d offset = solution.head<2>();
   const double radius_m = std::sqrt(std::max(0.0, solution[2] + offset.squaredNorm()));
   const Eigen::Vector2d centre = mean + offset;
@@ -477,16 +484,13 @@ std::string circle_of(const Recording& recording) {
       ++turns;
     }
   }
-  constexpr double off = 0.02, round_rad = 2.0;
-  const double relative = std::sqrt(square) / radius_m;
-  const bool is_arc = turns >= 2 || high - low > round_rad;
-  if (!(radius_m > 0.0) || !(relative < off) || !is_arc) return "";
-  const std::string x0 = digits(centre.x(), 4), y0 = digits(centre.y(), 4);
-  return "CONFIRM: the places are on a circle of radius " + digits(radius_m) + " m about (" + x0 +
-         ", " + y0 + ") m, to " + digits(100.0 * relative, 2) +
-         " %, as of a pendulum or a turntable and not of a sliding body. For one, write "
-         "columns t_s and angle_rad = atan2(x_m - (" +
-         x0 + "), (" + y0 + ") - y_m), which is zero where y_m is least, and guess from that file.";
+  // The arc's height must show above the scatter: a straight line is part of any large circle.
+  constexpr double off = 0.02, round_rad = 2.0, scatters = 10.0;
+  const double relative = std::sqrt(square) / radius_m, range_rad = high - low,
+               height = 1.0 - std::cos(0.5 * std::min(range_rad, pi));
+  const bool is_arc = (turns >= 2 && height > scatters * relative) || range_rad > round_rad;
+  if (!(radius_m > 0.0) || !(relative < off) || !is_arc) return std::nullopt;
+  return Circle{centre, radius_m, relative};
 }
 
 // Adds a drag that slows the rate as recorded, as a start from which other torques are
@@ -535,18 +539,23 @@ void add_sequence(TomlDocument& document, const Machine& m) {
 }  // namespace
 
 void guess_motion(TomlDocument& document, const std::vector<fs::path>& recordings) {
-  std::vector<GuessedColumn> columns = guess_columns(recordings.front());
+  std::vector<GuessedColumn> columns = without_computed_velocity(guess_columns(recordings.front()));
   require_motion(recordings.front(), columns);
   Machine m;
+  std::optional<Circle> circle;
   const auto read_all = [&] {
     m.recordings.clear();
+    RecordingOptions options = options_of(columns);
+    if (circle) options.pivot_m = {rounded(circle->centre_m.x()), rounded(circle->centre_m.y())};
     for (const fs::path& path : recordings) {
-      m.recordings.push_back(read_recording(path, options_of(columns)));
+      m.recordings.push_back(read_recording(path, options));
       require_rows(path, columns, m.recordings.back());
     }
   };
   for (const fs::path& path : recordings) m.names.push_back(path.string());
   read_all();
+  circle = circle_of(m.recordings.front());
+  if (circle) read_all();
   see_machine(m);
   if (m.rate_from) {
     columns = with_rate_from(std::move(columns), *m.rate_from);
@@ -554,10 +563,14 @@ void guess_motion(TomlDocument& document, const std::vector<fs::path>& recording
     m.observe_as(Topology::one_axis, m.platform.axis);
   }
   add_columns(document, columns);
-  if (m.platform.slides()) {
-    if (const std::string note = circle_of(m.recordings.front()); !note.empty()) {
-      document.comment(note);
-    }
+  if (circle) {
+    document.comment("CONFIRM: the places are on a circle of radius " + digits(circle->radius_m) +
+                     " m, to " + digits(100.0 * circle->off, 2) +
+                     " %, as of a pendulum or a turntable and not of a sliding body: they are read "
+                     "as the angle about its centre.");
+    document.set(
+        document.table("recording"), "pivot_m",
+        {SettingsNode::Array{{rounded(circle->centre_m.x())}, {rounded(circle->centre_m.y())}}});
   }
   add_sequence(document, m);
   SettingsNode::Table& platform = add_machine(document, m);

@@ -153,6 +153,18 @@ std::vector<Meaning> meanings(const Words& words, const std::string& axis, const
        words.any_begins({"pos", "coord", "koord", "place", "puck", "cent", "ort"}))) {
     all.push_back({axis, "m"});
   }
+  // The one coordinate of a body on a line, and a speed along it.
+  const bool is_long = !cell.unit || cell.unit->dimension == "length";
+  if (!rate && !angle && axis.empty() && is_long &&
+      (words.any_begins({"posi", "displac", "distan", "abstand", "strecke", "auslenk", "elong",
+                         "deplac", "despl", "posic", "spost"}) ||
+       words.any_is({"weg", "ort", "pos"}))) {
+    all.push_back({"x", "m", "a coordinate without a name counts as x:"});
+  }
+  if (cell.unit && cell.unit->dimension == "speed" && axis != "z") {
+    const bool along_y = axis == "y" || words.any_is({"vy"});
+    all.push_back({along_y ? "velocity_y" : "velocity_x", "m_s"});
+  }
   const struct {
     bool is_there;
     const char *stem, *axis;
@@ -221,6 +233,7 @@ std::string units_for(const std::string& dimension) {
          : dimension == "angle"        ? "rad, mrad, deg (°), arcmin or arcsec"
          : dimension == "angular rate" ? "rad/s, deg/s (°/s), rpm (1/min, U/min, tr/min) or rev/s"
          : dimension == "length"       ? "m, cm or mm"
+         : dimension == "speed"        ? "m/s, cm/s, mm/s, km/h or mph"
          : dimension == "acceleration" ? "m/s²"
                                        : "T, µT or nT";
 }
@@ -266,6 +279,8 @@ ReadColumn by_unit(const std::string& in_file, const HeaderCell& cell, const Wor
     column.stem = "angle";
   } else if (dimension == "angular rate") {
     column.stem = "rate";
+  } else if (dimension == "length" && !cell.may_be_subscript) {
+    column.stem = "x";
   } else {
     return column;
   }
@@ -273,6 +288,20 @@ ReadColumn by_unit(const std::string& in_file, const HeaderCell& cell, const Wor
   column.guess.is_sure = cell.is_bare_unit;
   if (!cell.is_bare_unit) column.guess.because = "the unit alone says what is in";
   return column;
+}
+
+// The unit of coordinates that state none: metres, or millimetres where one is beyond any table.
+std::string unit_of_coordinates(const FileHead& head, const std::vector<Words>& siblings,
+                                size_t place) {
+  constexpr double longest_m = 20.0;
+  double most = 0.0;
+  for (size_t k = 0; k < siblings.size(); ++k) {
+    if (k != place && !siblings[k].any_is({"x", "y"})) continue;
+    for (const auto& row : head.rows) {
+      if (std::isfinite(row[k])) most = std::max(most, std::abs(row[k]));
+    }
+  }
+  return most > longest_m ? "mm" : "m";
 }
 
 ReadColumn read_column(const FileHead& head, size_t place, HeaderCell cell,
@@ -328,11 +357,12 @@ ReadColumn read_column(const FileHead& head, size_t place, HeaderCell cell,
   }
   if (all.empty()) return by_unit(in_file, cell, words);
   const Meaning& meaning = all.front();
-  const std::string usual = meaning.stem == "t"
-                                ? (words.any_is({"millis"})   ? "ms"
-                                   : words.any_is({"micros"}) ? "us"
-                                                              : clock_unit(head, place))
-                                : meaning.usual_unit;
+  const std::string usual =
+      meaning.stem == "t"                   ? (words.any_is({"millis"})   ? "ms"
+                                               : words.any_is({"micros"}) ? "us"
+                                                                          : clock_unit(head, place))
+      : is_one_of(meaning.stem, {"x", "y"}) ? unit_of_coordinates(head, siblings, place)
+                                            : meaning.usual_unit;
   return as(meaning, usual, false);
 }
 

@@ -240,6 +240,13 @@ SettingsNode parse_toml(const std::string& text, const std::string& name) {
     throw InputError({name}, "", "a model of a scene",
                      "an experiment (photorque new EXPERIMENT.toml --scene MODEL makes one)");
   }
+  for (const char* ending : {".csv", ".csv.gz", ".tsv"}) {
+    if (!name.ends_with(ending)) continue;
+    throw InputError({name}, "", "a table of readings",
+                     "an experiment (TOML): photorque diagnose --guess FILE writes one for a "
+                     "recording or a curve; for fit-cell it has a table [fit] with curves = "
+                     "[\"FILE\"]");
+  }
   require_text(text, {name, 1});
   require_shallow(text, name);
   try {

@@ -126,6 +126,12 @@ TEST_F(Headers, OfAnglesAndRates) {
       {"Rollwinkel [°]", "roll", degree},
       {"heading (deg)", "yaw", degree},
       {"Winkel [\xb0]", "angle", degree},  // Latin-1
+      {"Geschwindigkeit (m/s)", "velocity_x", 1.0},
+      {"speed km/h", "velocity_x", 1.0 / 3.6},
+      {"Vy (cm/s)", "velocity_y", 0.01},
+      {"Distance (cm)", "x", 0.01},
+      {"Abstand / mm", "x", 1e-3},
+      {"Position(m)", "x", 1.0},
   };
   for (const Expected& expected : table) {
     const std::string channel = channels(std::string("t_s;") + expected.header).at(1);
@@ -151,9 +157,9 @@ TEST_F(Headers, OfTimes) {
 
 // Units of another quantity, errors, targets, frequencies and other columns are no motion.
 TEST_F(Headers, OfOtherQuantitiesAreNoMotion) {
-  for (const char* header : {"Geschwindigkeit (m/s)", "speed km/h", "Frequenz f / Hz",
-                             "FFT f_3 / rad", "angle error (deg)", "temperature (°C)",
-                             "Angular acceleration (rad/s²)", "Unsicherheit / rad"}) {
+  for (const char* header :
+       {"Frequenz f / Hz", "FFT f_3 / rad", "angle error (deg)", "temperature (°C)",
+        "Angular acceleration (rad/s²)", "Unsicherheit / rad"}) {
     EXPECT_EQ(channels(std::string("t_s;") + header).at(1), "") << header;
   }
 }
@@ -181,6 +187,19 @@ TEST_F(Headers, StateTheirUnitOrAreMarked) {
   EXPECT_TRUE(columns[1].is_sure);
   EXPECT_FALSE(columns[3].is_sure);
   EXPECT_FALSE(guess_columns(table("t_s;position (rad)"))[1].is_sure);
+}
+
+// Coordinates in pixels or millimetres would be of a table of hundreds of metres.
+TEST_F(Headers, LargeCoordinatesWithoutAUnitAreMillimetres) {
+  const auto names = [&](const std::string& rows) {
+    std::vector<std::string> all;
+    for (const GuessedColumn& c : guess_columns(write("place.csv", "t,x,y\n" + rows))) {
+      all.push_back(c.channel);
+    }
+    return all;
+  };
+  EXPECT_THAT(names("0,310,4\n0.1,312,5\n"), testing::ElementsAre("t_s", "x_mm", "y_mm"));
+  EXPECT_THAT(names("0,0.31,0.4\n0.1,0.32,0.5\n"), testing::ElementsAre("t_s", "x_m", "y_m"));
 }
 
 TEST_F(Headers, NumbersAreAxesIfThereAreThree) {
@@ -260,8 +279,7 @@ TEST_F(Headers, PlacesOnACircleAreRemarked) {
                 std::to_string(0.2 * t * (2.0 - t)) + "\n";
   }
   const std::string remarked = guess_experiment({write("swing.txt", swing)}, ".");
-  EXPECT_THAT(remarked,
-              AllOf(HasSubstr("radius 1.5 m about (0.2, 0.1) m"), HasSubstr("angle_rad")));
+  EXPECT_THAT(remarked, AllOf(HasSubstr("radius 1.5 m"), HasSubstr("pivot_m = [0.2, ")));
   EXPECT_THAT(guess_experiment({write("parabola.txt", parabola)}, "."), Not(HasSubstr("radius")));
 }
 

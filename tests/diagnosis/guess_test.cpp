@@ -273,6 +273,8 @@ TEST_F(Guess, FilesThatCannotBeReadNameTheCure) {
   EXPECT_THAT(refusal("0,1\n0.1,2\n"), HasSubstr("a line above them that names the columns"));
   EXPECT_THAT(refusal(std::string("\xff\xfet\0_\0s\0", 8)), HasSubstr("UTF-16"));
   EXPECT_THAT(refusal("nothing here\n"), HasSubstr("no rows of numbers"));
+  EXPECT_THAT(refusal("speed\n29.1\n28.8\n28.6\n"),
+              AllOf(HasSubstr("one column of numbers"), HasSubstr("t_s,rate_rad_s")));
 }
 
 // Tables as programs of other countries and calculators write them.
@@ -331,6 +333,80 @@ TEST_F(Guess, APendulumHangsFromAHorizontalAxis) {
                 AllOf(HasSubstr("axis = \"x\""), HasSubstr("CONFIRM")))
         << angle_rad << " rad, every " << interval_s << " s";
   }
+}
+
+// A coil drives a pendulum at twelve readings a period: its swing keeps its size, then it decays.
+TEST_F(Guess, ADrivenPendulumIsNoSpring) {
+  const Swing pendulum{108.0, 0.0, 0.0, 0.0}, braked{108.0, 0.0, 0.26, 0.0};
+  std::vector<double> angle_rad = pendulum.from(1.16, 0.05, 110);
+  const std::vector<double> free = braked.from(1.16, 0.05, 240);
+  angle_rad.insert(angle_rad.end(), free.begin(), free.end());
+  for (double& a : angle_rad) a = 2.0 * pi / 2400.0 * std::round(a * 2400.0 / (2.0 * pi));
+  EXPECT_THAT(guess_experiment({write("driven.csv", angles_text(angle_rad, 0.05))}, "."),
+              HasSubstr("axis = \"x\""));
+}
+
+// A bob in a video, y downwards in the picture as a camera counts it; and about which point it
+// turns is read back.
+TEST_F(Guess, AVideoOfAPendulumShowsItsPivot) {
+  constexpr double length_m = 0.62, pivot_x_m = 0.31, pivot_y_m = -0.05, interval_s = 1.0 / 30.0;
+  const std::vector<double> angle_rad = Swing{15.8, 0.0, 0.06, 0.0}.from(0.5, interval_s, 400);
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> noise(0.0, 5e-4);
+  std::string text = "t\tx\ty\n";
+  for (size_t i = 0; i < angle_rad.size(); ++i) {
+    text += written("%.5f\t%.5f\t%.5f\n", interval_s * static_cast<double>(i),
+                    pivot_x_m + length_m * std::sin(angle_rad[i]) + noise(random),
+                    pivot_y_m + length_m * std::cos(angle_rad[i]) + noise(random));
+  }
+  const fs::path file = write("video.txt", text);
+  const std::string toml = guess_experiment({file}, ".");
+  EXPECT_THAT(toml, AllOf(HasSubstr("topology = \"one_axis\""), HasSubstr("axis = \"x\"")));
+  const Settings root(std::make_shared<const SettingsNode>(parse_toml(toml, "video.toml")));
+  const RecordingOptions options = read_recording_options(root.table("recording"));
+  ASSERT_TRUE(options.pivot_m);
+  EXPECT_NEAR((*options.pivot_m)[0], pivot_x_m, 0.01);
+  EXPECT_NEAR((*options.pivot_m)[1], pivot_y_m, 0.01);
+  const Recording recording = read_recording(file, options);
+  EXPECT_EQ(recording.find("x_m"), nullptr);
+  const Channel* angle = recording.find("angle_rad");
+  ASSERT_NE(angle, nullptr);
+  for (size_t i = 0; i < angle_rad.size(); ++i) {
+    EXPECT_NEAR(angle->values[i], angle_rad[i], 0.02) << i;
+  }
+}
+
+// A straight track is part of any large circle.
+TEST_F(Guess, ATrackIsNoCircle) {
+  std::mt19937_64 random(10);
+  std::normal_distribution<double> noise(0.0, 1e-3);
+  std::string text = "t_s,x_m,y_m\n";
+  for (int i = 0; i < 300; ++i) {
+    const double along = 0.4 * std::cos(0.2 * i);
+    text +=
+        written("%.2f,%.4f,%.4f\n", 0.05 * i, along + noise(random), 0.1 * along + noise(random));
+  }
+  const std::string toml = guess_experiment({write("track.csv", text)}, ".");
+  EXPECT_THAT(toml, AllOf(HasSubstr("topology = \"planar\""), Not(HasSubstr("pivot_m"))));
+}
+
+TEST_F(Guess, OneCoordinateOrASpeedIsAlongALine) {
+  std::string
+      cart =
+          "Data Set 1:Time(s),Data Set 1:Position(m),Data Set 1:Velocity(m/s),Acceleration(m/s²)\n",
+      car = "time (s);speed (km/h)\n";
+  for (int i = 0; i < 60; ++i) {
+    cart += written("%.3f,%.4f,%.4f,0\n", 0.033 * i, 0.3 + 0.1 * std::cos(0.2 * i),
+                    -0.6 * std::sin(0.2 * i));
+    car += written("%d;%.2f\n", i, 50.0 - 0.5 * i);
+  }
+  EXPECT_THAT(
+      guess_experiment({write("cart.csv", cart)}, "."),
+      AllOf(HasSubstr("topology = \"planar\""), HasSubstr("x_m = \"Data Set 1:Position(m)\""),
+            Not(HasSubstr("velocity_x_m_s ="))));
+  EXPECT_THAT(
+      guess_experiment({write("car.csv", car)}, "."),
+      AllOf(HasSubstr("topology = \"planar\""), HasSubstr("velocity_x_km_h = \"speed (km/h)\"")));
 }
 
 // θ'' = −k θ − c θ': a damped cosine, which a hand releases after 0.4 s, with readings of 3 mrad.

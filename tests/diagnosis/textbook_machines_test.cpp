@@ -29,6 +29,11 @@ Channel noisy(const std::string& name, std::vector<double> values, double sigma,
   return {name, std::move(values)};
 }
 
+std::vector<double> rounded(std::vector<double> values, double step) {
+  for (double& value : values) value = step * std::round(value / step);
+  return values;
+}
+
 void expect_number(const Diagnosis& d, const std::string& kind, const std::string& key,
                    size_t component, double truth) {
   const FittedParameter& p = parameter(d, kind, key);
@@ -94,6 +99,56 @@ TEST(TextbookMachines, AFlywheelThatAMotorSpinsUp) {
   }
 }
 
+// θ'' = −k (θ − θ₀) − c θ', as a program for schools writes it: angles to a hundredth, whose zero
+// is a few digits beside the rest position, and a rate from the unrounded angles before and after,
+// which the first row lacks and which is too small by sin(ωh)/(ωh).
+TEST(TextbookMachines, ATorsionPendulumWithItsZeroBesideItsRest) {
+  constexpr double k = 8.4, c = 0.047, rest_rad = -0.023, interval_s = 0.11;
+  const double omega = std::sqrt(k - 0.25 * c * c);
+  const auto angle_at = [&](double t) {
+    return rest_rad + 2.1 * std::exp(-0.5 * c * t) *
+                          (std::cos(omega * t) + 0.5 * c / omega * std::sin(omega * t));
+  };
+  std::vector<double> angle_rad, rate_rad_s;
+  for (int i = 0; i < 240; ++i) {
+    const double t = interval_s * i;
+    angle_rad.push_back(angle_at(t));
+    rate_rad_s.push_back(
+        i == 0 ? NAN : 0.5 / interval_s * (angle_at(t + interval_s) - angle_at(t - interval_s)));
+  }
+  const Diagnosis d = diagnose(
+      machine("[platform]\ntopology = \"one_axis\"\n"),
+      {{"school.csv", recording_of(interval_s, {{"angle_rad", rounded(angle_rad, 0.01)},
+                                                {"rate_rad_s", rounded(rate_rad_s, 0.001)}})}},
+      {});
+  EXPECT_THAT(d.warnings, Contains(HasSubstr("difference of neighbouring angles")));
+  EXPECT_THAT(kinds_of(d), UnorderedElementsAre("tether", "bearing_drag")) << d.sentence;
+  expect_number(d, "tether", "stiffness_N_m_per_rad", 0, k);
+  expect_number(d, "tether", "pull_N_m", 0, k * rest_rad);
+  expect_number(d, "bearing_drag", "coefficient_N_m_s", 0, c);
+}
+
+// x'' = −k (x − x₀) − c x' of a cart between two springs, by the one distance that an ultrasonic
+// sensor reads to a millimetre.
+TEST(TextbookMachines, ACartOnASpringByOneCoordinate) {
+  constexpr double k = 27.0, c = 0.21, rest_m = 0.42, interval_s = 0.06;
+  const double omega = std::sqrt(k - 0.25 * c * c);
+  std::vector<double> distance_m;
+  for (int i = 0; i < 260; ++i) {
+    const double t = interval_s * i;
+    distance_m.push_back(rest_m +
+                         0.11 * std::exp(-0.5 * c * t) *
+                             (std::cos(omega * t) + 0.5 * c / omega * std::sin(omega * t)));
+  }
+  const Diagnosis d =
+      diagnose(machine("[platform]\ntopology = \"planar\"\n"),
+               {{"cart.csv", recording_of(interval_s, {noisy("x_m", distance_m, 0.001, 12)})}}, {});
+  EXPECT_THAT(kinds_of(d), UnorderedElementsAre("sliding_spring", "sliding_drag")) << d.sentence;
+  expect_number(d, "sliding_spring", "stiffness_N_per_m", 0, k);
+  expect_number(d, "sliding_spring", "pull_N", 0, k * rest_m);
+  expect_number(d, "sliding_drag", "coefficient_kg_s", 0, c);
+}
+
 // Correlated errors of a camera, of a scale of time [s], as of a lens or a hand: e^(−Δt/scale) of
 // each remains at the next reading.
 std::vector<double> drifting(double sigma, double scale_s, double interval_s, size_t rows,
@@ -137,11 +192,6 @@ TEST(TextbookMachines, APendulumInSixReadingsAPeriod) {
       {});
   EXPECT_THAT(kinds_of(d), Contains("static_unbalance")) << d.sentence;
   expect_number(d, "static_unbalance", "offset_m", 2, -k / 9.80665);
-}
-
-std::vector<double> rounded(std::vector<double> values, double step) {
-  for (double& value : values) value = step * std::round(value / step);
-  return values;
 }
 
 // ω' = T − q ω² from a rest of 0.6 s: θ = ln cosh(√(T q) t)/q, by an encoder of 1024 steps.

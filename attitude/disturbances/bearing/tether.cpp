@@ -1,6 +1,8 @@
 // A cable or hose that pulls back to zero attitude: T = −k × the rotation vector from it.
 //
 // stiffness_N_m_per_rad: k ≥ 0, the same about every axis, no hysteresis.
+// pull_N_m (default 0): the torque at zero attitude, about the one axis or else about body z, so
+// that about one axis pull/k is where it is slack.
 // winds_up (default false): the vector is that of the shortest way back, which changes side after
 // half a turn, as the catalogue has it. A cable that is wound up remembers it: with true, whole
 // turns about body z count besides, T = −k (r + 2π n z), so that the torque about z goes on
@@ -18,6 +20,11 @@ namespace {
 constexpr ScalarKey stiffness(
     "stiffness_N_m_per_rad", Range::not_negative(),
     "k in T = −k φ; φ is the smallest rotation to zero attitude and jumps at half a turn");
+
+constexpr ScalarKey pull("pull_N_m", 0.0, {},
+                         "torque at zero attitude, about the one axis (where it is slack at "
+                         "pull/k) or about body z",
+                         stiffness.end());
 
 namespace key {
 constexpr FlagKey winds_up(
@@ -53,8 +60,8 @@ class Tether final : public TorqueLaw<Tether> {
     if (about_one_axis_) {
       const Vec3Of<T> axis = now.platform.axis.template cast<T>();
       own.rate_of(twist) = axis.dot(now.rate_body_rad_s);
-      return -own[stiffness] * whole_turns(own, T(2.0 * atan2(T(axis.dot(q.vec())), T(q.w())))) *
-             axis;
+      const T angle = whole_turns(own, T(2.0 * atan2(T(axis.dot(q.vec())), T(q.w()))));
+      return (own[pull] - own[stiffness] * angle) * axis;
     }
     // q and −q are the same attitude; the one with w ≥ 0 is the short way.
     const T side = where_at_least(q.w(), 0.0, T(1.0), T(-1.0));
@@ -66,7 +73,9 @@ class Tether final : public TorqueLaw<Tether> {
       const T from_attitude = 2.0 * atan2(T(side * q.z()), T(side * q.w()));
       wound[2] += whole_turns(own, from_attitude) - from_attitude;
     }
-    return -own[stiffness] * wound;
+    Vec3Of<T> torque = -own[stiffness] * wound;
+    torque[2] += own[pull];
+    return torque;
   }
 
  private:
@@ -83,11 +92,23 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   const bool about_one_axis = context.platform.turns_about_one_axis(),
              winds_up = settings.get(key::winds_up) || about_one_axis;
   Disturbance d = make_disturbance<Tether>(
-      {scalar_parameter(settings, stiffness)}, Stage::torque,
+      {scalar_parameter(settings, stiffness), parameters_of(settings, pull)}, Stage::torque,
       winds_up ? std::vector<ExtraState>{{twist.name}} : std::vector<ExtraState>{}, winds_up,
       about_one_axis);
   d.is_abrupt = !about_one_axis;
   return d;
+}
+
+std::vector<Parametrisation> of_experiment(const DisturbanceContext& context) {
+  Parametrisation p{"a cable pulls the platform back to zero attitude",
+                    {EffectKey::not_negative(stiffness.name, 1e-5)}};
+  const bool about_one_axis = context.platform.turns_about_one_axis();
+  if (about_one_axis) {
+    p.explanation = "a spring or a twisted line pulls back in proportion to the angle";
+  }
+  p.keys.push_back(about_one_axis ? EffectKey::number(pull.name, 1e-6)
+                                  : EffectKey::fixed_at(pull.name, 0.0));
+  return {p};
 }
 
 }  // namespace
@@ -96,10 +117,11 @@ DisturbanceKind kind() {
   return {.name = "tether",
           .summary = "a cable pulls back to zero attitude",
           .read = read,
-          .screening = {.parametrisations = {{"a cable pulls the platform back to zero attitude",
-                                              {EffectKey::not_negative(stiffness.name, 1e-5)}}},
+          .screening = {.of_experiment = of_experiment,
+                        .widths = "`stiffness_N_m_per_rad` 1e-05 (≥ 0), about one axis also "
+                                  "`pull_N_m` 1e-06; needs a bearing",
                         .needs = Requirement::bearing},
-          .keys = {stiffness, key::winds_up}};
+          .keys = {stiffness, pull, key::winds_up}};
 }
 
 }  // namespace photorque::kinds::tether

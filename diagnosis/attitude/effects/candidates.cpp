@@ -348,10 +348,15 @@ bool only_slows_down(const std::vector<Observation>& runs, const Vec3& axis) {
   });
 }
 
-// Velocities of a sliding body along lab x and y, by central differences of positions over plus and
-// minus an eighth of the run.
-std::vector<Vec2> velocities_m_s(const Observation& seen) {
-  std::vector<Vec2> place_m, velocity;
+// Places of a sliding body, and its velocities by central differences over plus and minus an eighth
+// of the run.
+struct Path {
+  std::vector<Vec2> place_m, velocity_m_s;
+};
+
+Path path_of(const Observation& seen) {
+  Path path;
+  std::vector<Vec2>&place_m = path.place_m, &velocity = path.velocity_m_s;
   std::vector<double> time_s;
   const auto x = static_cast<size_t>(Scalar::position_x), y = x + 1;
   for (size_t i = 0; i < seen.blocks(); ++i) {
@@ -367,16 +372,24 @@ std::vector<Vec2> velocities_m_s(const Observation& seen) {
     velocity.push_back((place_m[i + reach] - place_m[i - reach]) /
                        (time_s[i + reach] - time_s[i - reach]));
   }
-  return velocity;
+  return path;
 }
 
 // Whether the sliding body moves in one direction and slows down in every run; it may stop.
 bool only_slides_out(const std::vector<Observation>& runs) {
   return std::ranges::all_of(runs, [](const Observation& seen) {
-    const std::vector<Vec2> velocity = velocities_m_s(seen);
+    const auto [place_m, velocity] = path_of(seen);
     if (velocity.size() < 2) return false;
     const Vec2 start = velocity.front();
     constexpr double along = 0.95, slower = 0.8, little = 0.1;
+    // What swings comes back within the time of a difference.
+    double farthest_m = 0.0, back_m = 0.0;
+    for (const Vec2& place : place_m) {
+      const double out_m = (place - place_m.front()).dot(start.normalized());
+      farthest_m = std::max(farthest_m, out_m);
+      back_m = std::max(back_m, farthest_m - out_m);
+    }
+    if (back_m > little * farthest_m) return false;
     return velocity.back().norm() < slower * start.norm() &&
            std::ranges::all_of(velocity, [&](const Vec2& now) {
              return now.norm() < little * start.norm() ||
@@ -414,8 +427,8 @@ bool swings_little(const std::vector<Observation>& runs) {
   return sees && most_rad - least_rad < little_rad;
 }
 
-// Rates alone do not show where the angle is zero: the zero is where a restoring torque vanishes.
-// The components of such a torque with an effect there are excluded.
+// Where the angle is zero is shown neither by rates alone nor by a body that does not swing: the
+// zero is where a restoring torque vanishes. Its components with an effect there are excluded.
 void set_zero_at_rest(const AttitudeModel& nominal, Candidate& c) {
   if (!is_restoring(c, nominal)) return;
   AttitudeModel model = nominal;
@@ -537,16 +550,14 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     });
     const bool sees_angle = std::ranges::any_of(
         runs, [](const Observation& seen) { return seen.sees_some_attitude(); });
-    if (!sees_angle && !context.platform.slides()) {
+    const bool swings_freely = !covered.has_commands && swings(runs, context.platform.axis);
+    if ((!sees_angle || (!is_level && !swings_freely)) && !context.platform.slides()) {
       for (Candidate& c : all.list) set_zero_at_rest(nominal.model, c);
     }
     // In small swings the weight has a constant torque, and a steady torque is an error of the
-    // angle's zero; so it is in every swing that only its rates show.
+    // angle's zero; so it is beside a spring, and in every swing that only its rates show.
     const bool hides_steady =
-        sees_angle ? is_level && has_weight && swings_little(runs)
-                   : std::ranges::any_of(runs, [&](const Observation& seen) {
-                       return !angles_of_swing(seen, context.platform.axis).row.empty();
-                     });
+        sees_angle && is_level ? has_weight && swings_little(runs) : swings_freely;
     if (hides_steady && !context.platform.slides()) {
       std::erase_if(all.list, [](const Candidate& c) { return c.effect.how.steady; });
     }
