@@ -241,7 +241,11 @@ Diagnosis described(const ModuleDesign& design, const ModuleNominal& nominal,
   const size_t chosen = answer.decision.chosen;
   for (const size_t c : answer.trials[chosen].candidates) {
     const ModuleHypothesis& h = answer.hypotheses[c];
-    if (d.verdict != Verdict::unexplained || h.count < 2 || h.count < h.largest_count) continue;
+    const bool is_best = std::ranges::none_of(answer.joint, [&](const ModuleTrial& other) {
+      return other.log_evidence > answer.joint[chosen].log_evidence;
+    });
+    if (d.verdict != Verdict::unexplained || !is_best) continue;
+    if (h.count < 2 || h.count < h.largest_count) continue;
     d.because = "the largest tested number of cells of " + h.kind +
                 " fits best: the fault is spread over more cells, unequally";
   }
