@@ -87,6 +87,7 @@ CHANGES = {
     "hot": {"light": 0.95, "celsius": 61},
     "half_shaded": {"light": 0.95, "shade": dict.fromkeys(range(10), 0.5)},
     "shorted_and_contact": {"light": 0.95, "shorted": (0,), "contact_ohm": 0.4},
+    "shorted_and_shaded": {"light": 0.95, "shorted": (0,), "shade": {33: 0.5}},
 }
 
 

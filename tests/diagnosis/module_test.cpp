@@ -447,6 +447,36 @@ TEST(ModuleOfNgspice, NamesTwoFaults) {
   EXPECT_NEAR(number_of(shorted.effects[1], "resistance_ohm"), 0.4, 0.02);
 }
 
+// The cell in the shade and the cells without voltage are under different diodes. Alone, no effect
+// is near the curve.
+TEST(ModuleOfNgspice, NamesAShadeBesideAShortedDiode) {
+  const Diagnosis d = of_ngspice("shorted_and_shaded", 318.15);
+  ASSERT_EQ(d.effects.size(), 2u) << d.sentence;
+  EXPECT_TRUE(can_be(d.effects[0], "cell_shaded")) << d.sentence;
+  EXPECT_NEAR(number_of(d.effects[0], "factor"), 0.5, 0.01);
+  EXPECT_EQ(d.effects[1].kind, "bypass_shorted");
+}
+
+// Cells of one module break down alike: 11 cells in unequal light with the breakdown that curve 070
+// of docs/real_light.md gives. Two cells, each with a breakdown of its own, fit to 0.4 %.
+TEST(ModuleDiagnosis, NamesNoTwoCellsWhereManyAreShaded) {
+  constexpr int many = 96;
+  const ModuleState::Breakdown breakdown = {1.5, -6.75, 5.9};
+  ModuleState state;
+  state.shaded = {{3, 0.49, breakdown},
+                  {2, 0.75, breakdown},
+                  {2, 0.79, breakdown},
+                  {2, 0.83, breakdown},
+                  {2, 0.87, breakdown}};
+  ModuleDesign design;
+  design.cells = many;
+  design.references = {measured(module_curve({many}, usual, {}), 1)};
+  const Diagnosis d =
+      diagnose_module(design, {measured(module_curve({many}, usual, state), 2)}, {});
+  EXPECT_EQ(d.verdict, Verdict::unexplained) << d.sentence;
+  EXPECT_TRUE(d.effects.empty()) << d.sentence;
+}
+
 // Curves of a healthy module at other light and temperature (pvlib, ../shared): measured, so that
 // no translation is exact. Nothing may be named.
 TEST(ModuleDiagnosis, NamesNothingInMeasuredCurvesOfAHealthyModule) {

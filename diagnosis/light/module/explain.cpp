@@ -86,22 +86,6 @@ double chi2_of_healthy(const ModuleNominal& nominal, const std::vector<ModuleRun
   return chi2;
 }
 
-// Whether the largest tested number of cells of a kind is clearly more likely than fewer. The
-// effect is then distributed over the module in a way that this kind only mimics.
-bool is_at_largest_count(const ModuleAnswer& answer, const std::string& kind,
-                         double min_log_evidence_gain) {
-  double largest = -INFINITY, fewer = -INFINITY;
-  int most = 0;
-  for (size_t i = 0; i < answer.hypotheses.size(); ++i) {
-    const ModuleHypothesis& h = answer.hypotheses[i];
-    if (h.kind != kind || h.count == 0) continue;
-    most = h.largest_count;
-    double& best = h.count == h.largest_count ? largest : fewer;
-    best = std::max(best, answer.joint[i].log_evidence);
-  }
-  return most > 1 && largest > fewer + min_log_evidence_gain;
-}
-
 // The hypotheses of one kind, which differ in the number of cells, with their fits.
 struct Family {
   std::vector<ModuleHypothesis> hypotheses;
@@ -209,48 +193,149 @@ std::vector<double> own_of(const ModuleHypothesis& h, const ModuleTrial& trial) 
   return {x.begin(), x.end()};
 }
 
-// A fault of some cells together with another one or with one of all cells.
-void fit_pairs(const ModuleFitter& fitter, const std::vector<ModuleRun>& train,
-               const std::vector<ModuleRun>& everything, int threads, ModuleAnswer& answer) {
-  constexpr std::pair<const char*, const char*> kinds[] = {
-      {"cell_shaded", "series_resistance"},      {"cell_shaded", "shunt"},
-      {"cell_cracked", "series_resistance"},     {"cell_cracked", "shunt"},
-      {"substring_shaded", "series_resistance"}, {"substring_shaded", "shunt"},
-      {"bypass_shorted", "series_resistance"},   {"bypass_shorted", "shunt"},
-      {"cell_shaded", "bypass_shorted"},         {"cell_shaded", "cell_shaded"},
-      {"cell_shaded", "substring_shaded"}};
-  std::vector<ModuleHypothesis> pairs;
-  for (const auto& [first, second] : kinds) {
-    const size_t a = best_of_kind(answer, first), b = best_of_kind(answer, second);
-    if (a == 0 || b == 0) continue;
-    const ModuleHypothesis &of_a = answer.hypotheses[a], &of_b = answer.hypotheses[b];
-    ModuleHypothesis h = both(of_a, of_b);
-    h.members = {{a, 0}, {b, of_a.parameters.size()}};
-    std::vector<std::vector<double>> starts = of_b.starts;
-    if (starts.empty()) {
-      starts = {own_of(of_b, answer.joint[b])};
-      constexpr double inside = 0.3;
-      std::vector<double>& plain = starts.emplace_back();
-      for (const inference::Parameter& p : of_b.parameters) {
-        plain.push_back(p.value + (p.lowest == p.value ? inside * p.sigma : 0.0));
+// Two effects together, from the fit of the first and every start of the second. If the second has
+// no starts, also from every start of the first: alone, it may have stood for both.
+ModuleHypothesis pair_of(const ModuleAnswer& answer, size_t a, size_t b) {
+  const ModuleHypothesis &of_a = answer.hypotheses[a], &of_b = answer.hypotheses[b];
+  ModuleHypothesis h = both(of_a, a, of_b, b);
+  const auto add_start = [&](std::vector<double> start, const std::vector<double>& of_second) {
+    start.resize(h.parameters.size());
+    for (size_t k = 0; k < of_second.size(); ++k) start[h.members[1].at[k]] = of_second[k];
+    h.starts.push_back(std::move(start));
+  };
+  const std::vector<double> alone = own_of(of_a, answer.joint[a]);
+  for (const std::vector<double>& start : of_b.starts) add_start(alone, start);
+  if (!of_b.starts.empty()) return h;
+  add_start(alone, own_of(of_b, answer.joint[b]));
+  constexpr double inside = 0.3;
+  std::vector<double> plain;
+  for (const inference::Parameter& p : of_b.parameters) {
+    plain.push_back(p.value + (p.lowest == p.value ? inside * p.sigma : 0.0));
+  }
+  add_start(alone, plain);
+  for (const std::vector<double>& start : of_a.starts) add_start(start, plain);
+  return h;
+}
+
+// Fits of pairs of effects.
+class Pairs {
+ public:
+  Pairs(const ModuleFitter& fitter, const std::vector<ModuleHypothesis>& all,
+        const std::vector<ModuleRun>& train, const std::vector<ModuleRun>& everything, int threads,
+        ModuleAnswer& answer)
+      : fitter_(fitter),
+        all_(all),
+        train_(train),
+        everything_(everything),
+        threads_(threads),
+        answer_(answer) {}
+
+  // A fault of some cells together with another one or with one of all cells.
+  void fit() {
+    constexpr std::pair<const char*, const char*> kinds[] = {
+        {"cell_shaded", "series_resistance"},      {"cell_shaded", "shunt"},
+        {"cell_cracked", "series_resistance"},     {"cell_cracked", "shunt"},
+        {"substring_shaded", "series_resistance"}, {"substring_shaded", "shunt"},
+        {"bypass_shorted", "series_resistance"},   {"bypass_shorted", "shunt"},
+        {"cell_shaded", "bypass_shorted"},         {"cell_shaded", "cell_shaded"},
+        {"cell_shaded", "substring_shaded"}};
+    const size_t first = answer_.hypotheses.size();
+    std::vector<ModuleHypothesis> pairs;
+    for (const auto& [one, other] : kinds) {
+      const size_t a = best_of_kind(answer_, one), b = best_of_kind(answer_, other);
+      if (a > 0 && b > 0) pairs.push_back(pair_of(answer_, a, b));
+    }
+    add(std::move(pairs), nullptr);
+    if (first == answer_.hypotheses.size()) return;
+    // Other numbers of cells, as long as they are more likely: next to another fault the number of
+    // the single fit says little.
+    constexpr int most_steps = 4;
+    size_t best = best_from(first);
+    for (int step = 0; step < most_steps; ++step) {
+      std::vector<ModuleHypothesis> others = neighbours(best, first);
+      const ModuleTrial near = answer_.joint[best];
+      add(std::move(others), &near);
+      const size_t next = best_from(first);
+      if (next == best) break;
+      best = next;
+    }
+  }
+
+ private:
+  // Fits hypotheses to the training curves, `near` a solution or from their starts, and to all.
+  void add(std::vector<ModuleHypothesis> more, const ModuleTrial* near) {
+    std::vector<ModuleTrial> trials(more.size()), joint(more.size());
+    parallel_for(more.size(), threads_, [&](size_t i) {
+      trials[i] = fitter_.fit(more[i], train_, near != nullptr ? &near->shared : nullptr);
+      joint[i] = fitter_.fit(more[i], everything_, &trials[i].shared);
+    });
+    const auto append = [](auto& to, auto& some) {
+      std::ranges::move(some, std::back_inserter(to));
+    };
+    append(answer_.hypotheses, more);
+    append(answer_.trials, trials);
+    append(answer_.joint, joint);
+  }
+
+  // The best pair from index `first`, which is one.
+  size_t best_from(size_t first) const {
+    size_t best = first;
+    for (size_t i = first; i < answer_.joint.size(); ++i) {
+      if (answer_.hypotheses[i].members.empty()) continue;
+      if (answer_.joint[i].log_evidence > answer_.joint[best].log_evidence) best = i;
+    }
+    return best;
+  }
+
+  // Index of the effect with another number of cells, which is fitted if it was not.
+  size_t with_count(size_t effect, int count) {
+    const std::string kind = answer_.hypotheses[effect].kind;
+    const auto is_it = [&](const ModuleHypothesis& h) {
+      return h.kind == kind && h.count == count;
+    };
+    const auto& fitted = answer_.hypotheses;
+    const auto found = std::ranges::find_if(fitted, is_it);
+    if (found != fitted.end()) return static_cast<size_t>(found - fitted.begin());
+    const ModuleTrial near = answer_.joint[effect];
+    add({*std::ranges::find_if(all_, is_it)}, &near);
+    return fitted.size() - 1;
+  }
+
+  // Pairs with the next smaller or larger number of cells of one effect that were not fitted.
+  std::vector<ModuleHypothesis> neighbours(size_t pair, size_t first) {
+    std::vector<ModuleHypothesis> result;
+    for (size_t which = 0; which < 2; ++which) {
+      const size_t effect = answer_.hypotheses[pair].members[which].hypothesis;
+      const int own = answer_.hypotheses[effect].count;
+      int below = 0, above = 0;
+      for (const ModuleHypothesis& h : all_) {
+        if (own == 0 || h.kind != answer_.hypotheses[effect].kind) continue;
+        if (h.count < own) below = std::max(below, h.count);
+        if (h.count > own && (above == 0 || h.count < above)) above = h.count;
+      }
+      for (const int count : {below, above}) {
+        if (count == 0) continue;
+        size_t members[2] = {answer_.hypotheses[pair].members[0].hypothesis,
+                             answer_.hypotheses[pair].members[1].hypothesis};
+        members[which] = with_count(effect, count);
+        const auto is_same = [&](const ModuleHypothesis& h) {
+          return h.members.size() == 2 && h.members[0].hypothesis == members[0] &&
+                 h.members[1].hypothesis == members[1];
+        };
+        const auto from = answer_.hypotheses.begin() + static_cast<Index>(first);
+        if (std::any_of(from, answer_.hypotheses.end(), is_same)) continue;
+        result.push_back(pair_of(answer_, members[0], members[1]));
       }
     }
-    for (const std::vector<double>& start : starts) {
-      h.starts.push_back(own_of(of_a, answer.joint[a]));
-      h.starts.back().insert(h.starts.back().end(), start.begin(), start.end());
-    }
-    pairs.push_back(std::move(h));
+    return result;
   }
-  std::vector<ModuleTrial> trials(pairs.size()), joint(pairs.size());
-  parallel_for(pairs.size(), threads, [&](size_t i) {
-    trials[i] = fitter.fit(pairs[i], train);
-    joint[i] = fitter.fit(pairs[i], everything, &trials[i].shared);
-  });
-  const auto append = [](auto& to, auto& more) { std::ranges::move(more, std::back_inserter(to)); };
-  append(answer.hypotheses, pairs);
-  append(answer.trials, trials);
-  append(answer.joint, joint);
-}
+
+  const ModuleFitter& fitter_;
+  const std::vector<ModuleHypothesis>& all_;
+  const std::vector<ModuleRun>&train_, &everything_;
+  int threads_;
+  ModuleAnswer& answer_;
+};
 
 // Prediction of the held-out data by each trial, significance of its effects, and the decision.
 void decide_on(const ModuleFitter& fitter, const ModuleData& data, const Thresholds& limits,
@@ -271,8 +356,9 @@ void decide_on(const ModuleFitter& fitter, const ModuleData& data, const Thresho
   for (size_t i = 0; i < count; ++i) {
     const ModuleHypothesis& h = answer.hypotheses[i];
     traits[i].name = h.kind.empty() ? h.label : h.kind;
-    traits[i].is_empirical =
-        h.is_empirical || is_at_largest_count(answer, h.kind, limits.search.min_log_evidence_gain);
+    // If the largest tested number of cells is clearly the best one, the effect is distributed over
+    // the module in a way that this kind only mimics.
+    traits[i].is_empirical = h.is_empirical || (h.count > 1 && h.count == h.largest_count);
     traits[i].parameters = h.parameters.size();
     answer.trials[i].candidates = candidates_of(i);
   }
@@ -349,11 +435,14 @@ ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nom
   const bool is_odd = answer.decision.finding != inference::Finding::nothing_missing;
   if (!is_odd && !leaves_more(answer.joint.front())) return answer;
   fit_effects(fitter, design, nominal, hypotheses, data.train, everything, threads, answer);
-  size_t best = 0;
+  size_t best = 0;  // of the physical ones
   for (size_t i = 1; i < answer.joint.size(); ++i) {
+    if (answer.hypotheses[i].is_empirical) continue;
     if (answer.joint[i].log_evidence > answer.joint[best].log_evidence) best = i;
   }
-  if (leaves_more(answer.joint[best])) fit_pairs(fitter, data.train, everything, threads, answer);
+  if (leaves_more(answer.joint[best])) {
+    Pairs(fitter, hypotheses, data.train, everything, threads, answer).fit();
+  }
   decide_on(fitter, data, limits, answer);
   return answer;
 }

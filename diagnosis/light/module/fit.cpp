@@ -32,6 +32,22 @@ Acting acting(const ModuleDesign& design, const ModuleNominal& nominal, const Mo
   return a;
 }
 
+// Every third point of the curves, if they are many.
+std::vector<ModuleRun> thinned(std::vector<ModuleRun> runs) {
+  constexpr size_t every = 3, fewest = 20;
+  for (ModuleRun& run : runs) {
+    const ModuleSweep all = run.sweep;
+    if (all.voltage_V.size() < every * fewest) continue;
+    run.sweep.voltage_V.clear();
+    run.sweep.current_A.clear();
+    for (size_t i = 0; i < all.voltage_V.size(); i += every) {
+      run.sweep.voltage_V.push_back(all.voltage_V[i]);
+      run.sweep.current_A.push_back(all.current_A[i]);
+    }
+  }
+  return runs;
+}
+
 }  // namespace
 
 double ModuleTrial::runs() const {
@@ -82,7 +98,8 @@ double ModuleFitter::first_light(const ModuleHypothesis& h, const ModuleRun& run
 }
 
 ModuleTrial ModuleFitter::fit_from(const ModuleHypothesis& h, const std::vector<ModuleRun>& runs,
-                                   const std::vector<double>& own, const VectorXd* from) const {
+                                   const std::vector<double>& own, const VectorXd* from,
+                                   const VectorXd* at) const {
   inference::Parameters parameters;
   for (Index k = 0; k < of_module; ++k) {
     parameters.shared.push_back({"module", "", from ? (*from)[k] : 0.0, 0.0, 1.0, -10.0, 10.0});
@@ -126,7 +143,7 @@ ModuleTrial ModuleFitter::fit_from(const ModuleHypothesis& h, const std::vector<
   inference::Options options;
   options.max_iterations = 30;
   ModuleTrial trial;
-  trial.fit = inference::fit(model, model.start(), options);
+  trial.fit = inference::fit(model, at != nullptr ? *at : model.start(), options);
   trial.shared = trial.fit.at.tail(of_module + static_cast<Index>(h.parameters.size()));
   return trial;
 }
@@ -137,11 +154,17 @@ ModuleTrial ModuleFitter::fit(const ModuleHypothesis& h, const std::vector<Modul
   for (const inference::Parameter& p : h.parameters) plain.push_back(p.value);
   std::vector<std::vector<double>> starts = h.starts;
   if (starts.empty() || from != nullptr) starts = {plain};
+  // The starts are compared on a part of the points.
+  const std::vector<ModuleRun> some = starts.size() > 1 ? thinned(runs) : runs;
   ModuleTrial best;
   for (const std::vector<double>& start : starts) {
-    ModuleTrial trial = fit_from(h, runs, start, from);
+    ModuleTrial trial = fit_from(h, some, start, from);
     if (!(trial.fit.chi2 < best.fit.chi2) && best.fit.at.size() > 0) continue;
     best = std::move(trial);
+  }
+  if (starts.size() > 1) {
+    const VectorXd at = best.fit.at, shared = best.shared;
+    best = fit_from(h, runs, plain, &shared, &at);
   }
   double evidence = inference::log_evidence(best.fit);
   if (!std::isfinite(evidence)) evidence = -1e300;

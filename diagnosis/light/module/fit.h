@@ -32,9 +32,10 @@ struct ModuleHypothesis {
     std::function<double(std::span<const double> x)> value;
   };
   std::vector<Number> numbers;
-  // Of two effects together: the index of each among the hypotheses, and its first parameter.
+  // Of two effects together: the index of each among the hypotheses, and its parameters here.
   struct Member {
-    size_t hypothesis, first;
+    size_t hypothesis;
+    std::vector<size_t> at;
   };
   std::vector<Member> members;
 };
@@ -51,8 +52,10 @@ ModuleHypothesis cracked_hypothesis(const ModuleDesign& design, const ModuleNomi
                                     const ModuleHypothesis& shaded, std::span<const double> own,
                                     const ModuleHypothesis& any_cracked);
 
-// Two effects together; the parameters of `a` come first.
-ModuleHypothesis both(const ModuleHypothesis& a, const ModuleHypothesis& b);
+// Two effects together. The breakdown of the cells and the drop of the diodes, which belong to the
+// make of the module, are common to both. `of_a` and `of_b`: indices of the effects.
+ModuleHypothesis both(const ModuleHypothesis& a, size_t of_a, const ModuleHypothesis& b,
+                      size_t of_b);
 
 // A curve with the selection of its fitted points.
 struct ModuleRun {
@@ -96,8 +99,10 @@ class ModuleFitter {
   // Initial log light of the run in a fit.
   double first_light(const ModuleHypothesis& h, const ModuleRun& run,
                      const inference::Parameters& parameters) const;
+  // `from`: shared parameters, or nullptr for `own` and the nominal module; `at`: all parameters.
   ModuleTrial fit_from(const ModuleHypothesis& h, const std::vector<ModuleRun>& runs,
-                       const std::vector<double>& own, const Eigen::VectorXd* from) const;
+                       const std::vector<double>& own, const Eigen::VectorXd* from,
+                       const Eigen::VectorXd* at = nullptr) const;
 
   const ModuleDesign& design_;
   const ModuleNominal& nominal_;

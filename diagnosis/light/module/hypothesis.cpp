@@ -1,7 +1,9 @@
 #include "diagnosis/light/module/fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 
 namespace photorque {
 namespace {
@@ -38,7 +40,7 @@ void add_bypass_drop(const ModuleDesign& design, ModuleHypothesis& h) {
   h.act = [act = std::move(h.act), at = h.parameters.size() - 1](X x, ModuleState& state,
                                                                  ModuleCell& cell) {
     act(x, state, cell);
-    state.bypass_drop *= std::exp(x[at]);
+    state.bypass_drop = std::exp(x[at]);
   };
 }
 
@@ -48,7 +50,7 @@ void add_bypass_drop(const ModuleDesign& design, ModuleHypothesis& h) {
 // bypass the cells, their drop is a nuisance parameter: 0.35 V (Schottky) to 0.7 V (junction).
 void add_reverse(const ModuleDesign& design, ModuleHypothesis& h) {
   const size_t first = h.parameters.size();
-  h.parameters.push_back(wide("breakdown_fraction", 0.0, 2.0, -8.0, std::log(7.0)));
+  h.parameters.push_back(wide("breakdown_fraction", std::log(0.05), 2.5, -8.0, std::log(7.0)));
   h.parameters.push_back(wide("breakdown_V", std::log(10.0), 0.8, std::log(0.5), std::log(200.0)));
   h.parameters.push_back(wide("breakdown_exponent", std::log(3.4), 0.5, 0.0, std::log(30.0)));
   h.parameters.push_back(wide("leak", 0.0, 1.0, -5.0, 5.0));
@@ -92,7 +94,7 @@ ModuleHypothesis shaded(const ModuleDesign& design, int count, double alternativ
   const double other_cells_V = 0.6 * std::max(1, design.bypass_every);
   const size_t dark = h.starts.size();
   h.starts.push_back(h.starts[1]);
-  h.starts[dark][1] = std::log(0.005);
+  h.starts[dark][1] = std::log(0.003);
   h.starts[dark][2] = std::log(std::clamp(1.2 * other_cells_V, 1.0, 100.0));
   if (!is_bypassed) {
     // Without a bypass diode the whole module drives them, even into hard breakdown.
@@ -242,19 +244,34 @@ ModuleHypothesis cracked_hypothesis(const ModuleDesign& design, const ModuleNomi
   return h;
 }
 
-ModuleHypothesis both(const ModuleHypothesis& a, const ModuleHypothesis& b) {
+ModuleHypothesis both(const ModuleHypothesis& a, size_t of_a, const ModuleHypothesis& b,
+                      size_t of_b) {
   ModuleHypothesis h;
   h.kind = a.kind + " and " + b.kind;
   h.label = a.label + " and " + b.label;
   h.effects = a.effects + b.effects;
   h.alternatives = a.alternatives * b.alternatives;
   h.limits_current = a.limits_current;
+  h.members = {{of_a, {}}, {of_b, {}}};
+  constexpr const char* common[] = {"breakdown_fraction", "breakdown_V", "breakdown_exponent",
+                                    "bypass_drop"};
   h.parameters = a.parameters;
-  h.parameters.insert(h.parameters.end(), b.parameters.begin(), b.parameters.end());
-  h.act = [first = a.act, second = b.act, count = a.parameters.size()](X x, ModuleState& state,
-                                                                       ModuleCell& cell) {
-    first(x.first(count), state, cell);
-    second(x.subspan(count), state, cell);
+  for (size_t k = 0; k < a.parameters.size(); ++k) h.members[0].at.push_back(k);
+  for (const inference::Parameter& p : b.parameters) {
+    const auto same = std::ranges::find(a.parameters, p.name, &inference::Parameter::name);
+    const bool is_common =
+        same != a.parameters.end() && std::ranges::find(common, p.name) != std::end(common);
+    h.members[1].at.push_back(is_common ? static_cast<size_t>(same - a.parameters.begin())
+                                        : h.parameters.size());
+    if (!is_common) h.parameters.push_back(p);
+  }
+  h.act = [acts = std::array{a.act, b.act}, members = h.members](X x, ModuleState& state,
+                                                                 ModuleCell& cell) {
+    for (size_t k = 0; k < acts.size(); ++k) {
+      std::vector<double> own;
+      for (const size_t at : members[k].at) own.push_back(x[at]);
+      acts[k](own, state, cell);
+    }
   };
   return h;
 }

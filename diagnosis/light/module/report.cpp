@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
+#include <numeric>
 
 namespace photorque {
 namespace {
@@ -27,15 +28,18 @@ double squares_of(const ModuleFitter& fitter, const ModuleAnswer& answer, size_t
   return std::sqrt(squares / std::max(1.0, points));
 }
 
-// Standard errors of `own` parameters of the hypothesis from number `first` of `all`.
-std::vector<double> own_errors(const ModuleTrial& trial, size_t first, size_t own, size_t all) {
+// Fitted values and standard errors of the parameters at `which` of the `all` of a hypothesis.
+std::pair<std::vector<double>, std::vector<double>> own_numbers(const ModuleTrial& trial,
+                                                                const std::vector<size_t>& which,
+                                                                size_t all) {
   const Eigen::MatrixXd C = trial.fit.shared_posterior();
-  std::vector<double> errors;
-  for (size_t k = first; k < first + own; ++k) {
-    const auto at = C.rows() - static_cast<Eigen::Index>(all) + static_cast<Eigen::Index>(k);
+  std::vector<double> values, errors;
+  for (const size_t k : which) {
+    const auto from_end = static_cast<Eigen::Index>(all - k), at = C.rows() - from_end;
+    values.push_back(trial.shared[trial.shared.size() - from_end]);
     errors.push_back(std::sqrt(std::max(0.0, C(at, at))));
   }
-  return errors;
+  return {std::move(values), std::move(errors)};
 }
 
 // Other kinds that explain the curves as well in the place of candidate `which` of the chosen
@@ -55,18 +59,25 @@ void add_equals(const ModuleAnswer& answer, size_t which, const Thresholds& limi
       std::max(1.0, joint.fit.data_chi2 / static_cast<double>(joint.fit.samples));
   const double within =
       std::max(limits.search.min_log_evidence_gain * beyond_noise, model_error * gain);
-  // Shaded and partly cut-off cells differ by some hundredths of a volt, which is below the
-  // accuracy of the model of the other cells.
-  constexpr double cut_off_or_dark = 5e-3;
-  const double between_them =
-      std::max(within, std::min(hopeless_log_evidence, cut_off_or_dark * gain));
-  const auto is_dim = [](const std::string& kind) {
-    return kind == "cell_shaded" || kind == "cell_cracked";
+  // A part of the gain that counts as an error of the model of the other cells.
+  const auto within_part = [&](double part, double most = hopeless_log_evidence) {
+    return std::max(within, std::min(most, part * gain));
   };
+  // Shaded and partly cut-off cells, and some of them more or less, differ by some hundredths of a
+  // volt, which is below the accuracy of the model of the other cells.
+  const auto is_dim = [](const std::string& kind) {
+    return kind == "cell_shaded" || kind == "cell_cracked" || kind == "bypass_open";
+  };
+  const double cut_off_or_dark = within_part(5e-3),
+               more_or_less = within_part(5e-3, 0.5 * hopeless_log_evidence);
+  // A leak and a part cut off both lower the knee of a cell, by little more than cells differ.
+  const auto lowers_knee = [](const std::string& kind) {
+    return kind == "cell_cracked" || kind == "cell_shunted";
+  };
+  const double leak_or_cut_off = within_part(0.1);
   // Leaks and light that falls while the voltage rises both tilt the curve up to its knee. Beyond
   // it they differ by little more than unequal leaks do.
-  constexpr double leak_or_light = 0.25;
-  const double tilted = std::max(within, std::min(hopeless_log_evidence, leak_or_light * gain));
+  const double leak_or_light = within_part(0.25);
   const auto tilts = [](const std::string& kind) {
     return kind == "shunt" || kind == "cell_shunted" || kind == "unsteady_light";
   };
@@ -82,10 +93,13 @@ void add_equals(const ModuleAnswer& answer, size_t which, const Thresholds& limi
     if (rest.size() != 1) continue;
     const ModuleHypothesis& other = answer.hypotheses[rest.front()];
     const double behind = joint.log_evidence - answer.joint[i].log_evidence;
-    const double limit = is_dim(h.kind) && is_dim(other.kind) ? between_them
-                         : tilts(h.kind) && tilts(other.kind) ? tilted
-                                                              : within;
-    if (behind > (other.kind == h.kind ? within : limit) || other.kind.empty()) continue;
+    const auto both = [&](const auto& is) { return is(h.kind) && is(other.kind); };
+    const double limit = other.kind == h.kind ? (is_dim(h.kind) ? more_or_less : within)
+                         : both(is_dim)       ? cut_off_or_dark
+                         : both(lowers_knee)  ? leak_or_cut_off
+                         : both(tilts)        ? leak_or_light
+                                              : within;
+    if (behind > limit || other.kind.empty()) continue;
     if (other.kind == h.kind) {
       fewest = std::min(fewest, other.count);
       most = std::max(most, other.count);
@@ -93,6 +107,11 @@ void add_equals(const ModuleAnswer& answer, size_t which, const Thresholds& limi
     }
     std::vector<std::string>& rivals = effect.indistinguishable_from;
     if (std::ranges::find(rivals, other.kind) == rivals.end()) rivals.push_back(other.kind);
+  }
+  // Two groups of cells of one kind only stand for cells in several states.
+  if (named.size() == 2 && answer.hypotheses[named[1 - which]].kind == h.kind) {
+    fewest = 1;
+    most = h.largest_count;
   }
   if (most > fewest) {
     effect.texts.emplace_back("count_between",
@@ -109,12 +128,11 @@ FoundEffect found_in_module(const ModuleAnswer& answer, size_t which, const Thre
   effect.kind = h.kind;
   effect.explanation = h.explanation;
   if (h.count > 0) effect.parameters.push_back({"count", {static_cast<double>(h.count)}, {}});
-  const size_t own = h.parameters.size(),
-               first = all.members.empty() ? 0 : all.members[which].first;
-  const double* const numbers =
-      joint.shared.data() + joint.shared.size() - all.parameters.size() + first;
-  const std::vector<double> x(numbers, numbers + own);
-  const std::vector<double> errors = own_errors(joint, first, own, all.parameters.size());
+  const size_t own = h.parameters.size();
+  std::vector<size_t> at(own);
+  std::iota(at.begin(), at.end(), size_t{0});
+  if (!all.members.empty()) at = all.members[which].at;
+  const auto [x, errors] = own_numbers(joint, at, all.parameters.size());
   for (const ModuleHypothesis::Number& number : h.numbers) {
     double variance = 0.0;
     for (size_t k = 0; k < own; ++k) {
@@ -221,6 +239,16 @@ Diagnosis described(const ModuleDesign& design, const ModuleNominal& nominal,
   d.confidence = answer.decision.confidence;
   d.because = answer.decision.because;
   const size_t chosen = answer.decision.chosen;
+  for (const size_t c : answer.trials[chosen].candidates) {
+    const ModuleHypothesis& h = answer.hypotheses[c];
+    const bool is_best = std::ranges::none_of(answer.joint, [&](const ModuleTrial& other) {
+      return other.log_evidence > answer.joint[chosen].log_evidence;
+    });
+    if (d.verdict != Verdict::unexplained || !is_best) continue;
+    if (h.count < 2 || h.count < h.largest_count) continue;
+    d.because = "the largest tested number of cells of " + h.kind +
+                " fits best: the fault is spread over more cells, unequally";
+  }
   if (d.verdict == Verdict::missing_physics) {
     for (size_t which = 0; which < answer.decision.names.size(); ++which) {
       d.effects.push_back(found_in_module(answer, which, limits));
