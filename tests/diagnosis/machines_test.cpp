@@ -236,7 +236,8 @@ TEST(Machines, RecordingsAreCutWhereSomethingHappened) {
 }
 
 // Steps of an encoder and decaying oscillations are not kinks: an angle that turns evenly by a
-// tenth of a step a row, and one of an amplitude that falls to e^-5.
+// tenth of a step a row, one of an amplitude that falls to e^-5, and a swing counted in steps of
+// 0.09° that a file rounds to 0.01°.
 TEST(Machines, StepsOfAnEncoderAndTheBeginningOfADecayAreNoKinks) {
   Platform axle;
   axle.topology = Topology::one_axis;
@@ -249,7 +250,12 @@ TEST(Machines, StepsOfAnEncoderAndTheBeginningOfADecayAreNoKinks) {
     swings.values.push_back(0.5 * std::exp(-t / 120.0) * std::cos(t) + noise(random));
     kicked.values.push_back(swings.values.back() + 0.8 * std::max(0.0, t - 55.0));
   }
-  for (const Channel& channel : {counted, swings}) {
+  Channel rounded{"angle_rad", Swing{120.0, 2.3, 0.19, 0.0}.from(1.1, 0.001, 5000)};
+  for (double& angle_rad : rounded.values) {
+    const double counted_deg = 0.09 * std::floor(angle_rad / degree_rad / 0.09);
+    angle_rad = 0.01 * std::round(counted_deg / 0.01) * degree_rad;
+  }
+  for (const Channel& channel : {counted, swings, rounded}) {
     const Segments cut = observe_segments(recording_of(0.1, {channel}), "axle.csv", axle);
     EXPECT_EQ(cut.kinks, 0);
     EXPECT_EQ(cut.all.size(), 1U);
