@@ -413,12 +413,10 @@ std::optional<Answer> identify_with_discrepancy(const NominalModel& nominal, Rec
     Contest contest(next, compared, data, segment_count(next, data, own), options.threads);
     Contender won = contest.winner();
     Trial fitted = refit_with_discrepancy(won.trial, next.all, own, data);
-    for (;;) {
-      const auto least = std::ranges::min_element(fitted.significance);
-      if (least == fitted.significance.end() ||
-          *least >= options.limits.decision.min_significance) {
-        break;
-      }
+    while (!inference::is_significant(fitted.significance, options.limits.decision)) {
+      const auto least = std::ranges::min_element(fitted.significance, {}, [](double sigma) {
+        return std::isnan(sigma) ? inference::infinity : sigma;
+      });
       won = contest.without(won, static_cast<size_t>(least - fitted.significance.begin()));
       fitted = refit_with_discrepancy(won.trial, next.all, own, data);
     }
