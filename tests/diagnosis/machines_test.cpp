@@ -502,6 +502,7 @@ TEST(Machines, WhatIsLeftCountsAsNoiseAsCorrelatedAsItIs) {
     row[5] = slow + normal(random);
     left.off.push_back(row);
     seen.time_s.push_back(interval_s * i);
+    seen.gyro_rows.emplace_back(0.0, 0.0, 1.0);
   }
   NoiseLevels own;
   own.gyro_rad_s = Vec3::Constant(0.5);
