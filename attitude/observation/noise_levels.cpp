@@ -364,6 +364,38 @@ NoiseLevels with_discrepancy(const std::vector<Prediction>& residuals,
   return noise;
 }
 
+void set_profiles(const std::vector<Prediction>& residuals, size_t parts,
+                  std::vector<Observation>& runs) {
+  // The residuals of a part count as so many independent numbers, those of all as one.
+  constexpr double independent = 4.0;
+  size_t blocks = 0;
+  for (const Observation& seen : runs) blocks += seen.blocks();
+  for (size_t run = 0; run < runs.size(); ++run) {
+    Observation& seen = runs[run];
+    const size_t own = std::max<size_t>(1, (parts * seen.blocks() + blocks / 2) / blocks);
+    seen.profile = {seen.time_s.front(), seen.duration_s() / static_cast<double>(own),
+                    std::vector<double>(own, 1.0)};
+    std::vector<double> sum(own, 0.0), count(own, 0.0);
+    for (size_t i = 0; i < seen.blocks(); ++i) {
+      const double since = (seen.time_s[i] - seen.profile.begin_s) / seen.profile.part_s;
+      const size_t part = std::min(own - 1, static_cast<size_t>(std::max(0.0, since)));
+      for (int channel = 0; channel < channel_count; ++channel) {
+        const double off = residuals[run].off[i][channel], rows = seen.rows_of(i, channel);
+        if (!std::isfinite(off) || !(rows > 0.0)) continue;
+        const ChannelNoise noise = seen.noise.of(channel);
+        const double variance = noise.coloured + (1.0 - noise.coloured) / rows;
+        sum[part] += off * off / (noise.level * noise.level * variance);
+        count[part] += 1.0;
+      }
+    }
+    for (size_t part = 0; part < own; ++part) {
+      if (!(count[part] > 0.0)) continue;
+      const double square = (1.0 + independent * sum[part] / count[part]) / (1.0 + independent);
+      seen.profile.factor[part] = std::sqrt(square);
+    }
+  }
+}
+
 NoiseLevels noise_from_spread(const std::vector<Observation>& runs, const NoiseLevels& own) {
   constexpr double part = 0.1;
   NoiseLevels noise = own;
