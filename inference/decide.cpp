@@ -20,21 +20,8 @@ class Judge {
                        [&](size_t c) { return all_[c].is_empirical; });
   }
 
-  // Whether every candidate that has a size differs significantly from zero.
-  bool is_significant(size_t trial, const std::vector<double>& significance) const {
-    const std::vector<size_t>& candidates = trials_[trial].candidates;
-    for (size_t i = 0; i < candidates.size(); ++i) {
-      if (significance[i] < limits_.min_significance)
-        return false;  // NaN (no size) counts as significant
-    }
-    return true;
-  }
-
-  // Uses the significance on fitted and held-out data together where the trial has one.
   bool is_significant(size_t trial) const {
-    const Explanation& t = trials_[trial];
-    return is_significant(trial,
-                          t.joint_significance.empty() ? t.significance : t.joint_significance);
+    return inference::is_significant(trials_[trial], limits_);
   }
 
   // The trial of largest evidence whose log odds against the nominal model reach the limit; 0 if
@@ -51,16 +38,17 @@ class Judge {
     return best;
   }
 
-  // Removes candidates from the trial, one at a time, as long as one is not needed (is_missed).
+  // Removes candidates from the trial, one at a time, as long as one is not needed (is_missed) or,
+  // without those removed before, within its error.
   size_t pruned(size_t trial) const {
     while (trial != 0) {
       size_t fewer = trial;
       for (size_t i = 0; i < trials_.size(); ++i) {
         if (!is_part(i, trial) || !trials_[i].objection.empty()) continue;
-        if (is_missed(i, trial)) continue;
+        if (is_missed(i, trial) && is_significant(trial)) continue;
         if (fewer == trial || trials_[i].log_evidence > trials_[fewer].log_evidence) fewer = i;
       }
-      if (fewer == trial) return trial;
+      if (fewer == trial) return is_significant(trial) ? trial : 0;
       trial = fewer;
     }
     return trial;
@@ -245,6 +233,16 @@ double probability_of(const std::vector<double>& probability,
 
 }  // namespace
 
+bool is_significant(const std::vector<double>& significance, const Thresholds::Decision& limits) {
+  return std::ranges::none_of(significance,
+                              [&](double sigma) { return sigma < limits.min_significance; });
+}
+
+bool is_significant(const Explanation& trial, const Thresholds::Decision& limits) {
+  return is_significant(
+      trial.joint_significance.empty() ? trial.significance : trial.joint_significance, limits);
+}
+
 Decision decide(const std::vector<Explanation>& trials, const std::vector<CandidateTraits>& all,
                 const Checks& checks, const Thresholds::Decision& limits) {
   const Judge judge(trials, all, checks, limits);
@@ -302,8 +300,8 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
   });
   const bool is_likely = of_group >= limits.min_probability;
   // Weak: not probable enough, and not significant in the fitted recordings alone.
-  const bool is_weak = d.confidence < limits.min_probability &&
-                       !judge.is_significant(named, trials[named].significance);
+  const bool is_weak =
+      d.confidence < limits.min_probability && !is_significant(trials[named].significance, limits);
   d.undecided = is_weak && judge.predicts(0);
   if (d.undecided) {
     d.confidence = 1.0 - d.confidence;

@@ -76,6 +76,12 @@ struct Decision {
   bool held_out_tests_names = true;
 };
 
+// Gate (b): whether every candidate that has a size (NaN: it has none) differs from neutral.
+bool is_significant(const std::vector<double>& significance, const Thresholds::Decision& limits);
+
+// The same for a trial, on fitted and held-out data together where it has been fitted to both.
+bool is_significant(const Explanation& trial, const Thresholds::Decision& limits);
+
 // Trial 0 is the nominal model. `excess_sigma` is called for the best named trial. The finding
 // "nothing missing" requires that the nominal model also predicts the held-out data.
 Decision decide(const std::vector<Explanation>& trials, const std::vector<CandidateTraits>& all,

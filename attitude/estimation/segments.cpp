@@ -54,22 +54,29 @@ double usual_of(const std::vector<double>& sizes) {
   return static_cast<double>(steps.size()) < fewest ? usual : upper_median(steps);
 }
 
-// For each value, the largest of three medians: of the values around it, before it and after it.
-std::vector<double> usual_nearby(const std::vector<double>& sizes) {
+// Change of the rate above which a reading is a kink, near each reading. 12 medians are 8 standard
+// deviations of Gaussian readings. Most readings of an encoder change by less than its step, some
+// by one step or two: 2.5 times the change that nine of ten readings do not exceed.
+std::vector<double> kink_threshold(const std::vector<double>& sizes) {
   constexpr size_t group = 32;
+  constexpr double medians = 12.0, most = 0.9, steps = 2.5;
   const size_t groups = std::max<size_t>(1, sizes.size() / group);
-  std::vector<double> medians;
+  std::vector<double> of_group;
   for (size_t s = 0; s < groups; ++s) {
     const auto first = sizes.begin() + static_cast<std::ptrdiff_t>(s * group);
-    medians.push_back(upper_median({first, s + 1 < groups ? first + group : sizes.end()}));
+    std::vector<double> near(first, s + 1 < groups ? first + group : sizes.end());
+    std::ranges::sort(near);
+    const auto large = static_cast<size_t>(most * static_cast<double>(near.size()));
+    of_group.push_back(std::max(medians * near[near.size() / 2], steps * near[large]));
   }
-  std::vector<double> usual;
+  const double least = medians * usual_of(sizes);
+  std::vector<double> threshold;
   for (size_t i = 0; i < sizes.size(); ++i) {
     const size_t at = std::min(i / group, groups - 1);
-    usual.push_back(std::max(
-        {medians[at == 0 ? 0 : at - 1], medians[at], medians[std::min(at + 1, groups - 1)]}));
+    threshold.push_back(std::max({least, of_group[at == 0 ? 0 : at - 1], of_group[at],
+                                  of_group[std::min(at + 1, groups - 1)]}));
   }
-  return usual;
+  return threshold;
 }
 
 // Rows at which the angle about the one axis, or the path of a sliding body, has a kink without a
@@ -112,12 +119,9 @@ std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   if (changes.empty()) return kinks;
   std::vector<double> sizes;
   for (const Change& change : changes) sizes.push_back(change.rate);
-  const double usual = usual_of(sizes);
-  const std::vector<double> nearby = usual_nearby(sizes);
-  // For a Gaussian, 12 times this median is 8 standard deviations.
-  constexpr double medians = 12.0;
+  const std::vector<double> threshold = kink_threshold(sizes);
   for (size_t i = 0; i < changes.size(); ++i) {
-    kinks[changes[i].row] = changes[i].rate > medians * std::max(usual, nearby[i]) ? 1 : 0;
+    kinks[changes[i].row] = changes[i].rate > threshold[i] ? 1 : 0;
   }
   return kinks;
 }

@@ -245,9 +245,9 @@ std::optional<NoiseLevel> gyro_level(const std::vector<Observation>& seen,
 
 namespace {
 
-// Residuals of one channel of one run, in order of time.
+// Residuals of one channel of one run, in order of time, and the readings of each block.
 struct LeftSeries {
-  std::vector<double> time_s, value;
+  std::vector<double> time_s, value, rows;
 };
 
 void append_left(const std::vector<Prediction>& residuals, const std::vector<Observation>& runs,
@@ -259,6 +259,7 @@ void append_left(const std::vector<Prediction>& residuals, const std::vector<Obs
       if (!std::isfinite(x)) continue;
       series.time_s.push_back(runs[run].time_s[i]);
       series.value.push_back(x);
+      series.rows.push_back(runs[run].rows_of(i, channel));
     }
   }
 }
@@ -278,13 +279,25 @@ std::vector<std::vector<int>> alike_channels() {
   return groups;
 }
 
-double mean_square(const std::vector<LeftSeries>& all) {
-  double sum = 0.0, count = 0.0;
+// Mean square of the residuals of blocks, and of one reading where those of a block are
+// independent.
+struct MeanSquares {
+  double of_blocks = 0.0, of_readings = 0.0;
+};
+
+MeanSquares mean_squares(const std::vector<LeftSeries>& all) {
+  MeanSquares sum;
+  double count = 0.0;
   for (const LeftSeries& s : all) {
-    for (const double x : s.value) sum += x * x;
+    for (size_t i = 0; i < s.value.size(); ++i) {
+      const double square = s.value[i] * s.value[i];
+      sum.of_blocks += square;
+      sum.of_readings += s.rows[i] * square;
+    }
     count += static_cast<double>(s.value.size());
   }
-  return count > 0.0 ? sum / count : 0.0;
+  if (!(count > 0.0)) return {};
+  return {sum.of_blocks / count, sum.of_readings / count};
 }
 
 // The part of the mean square that neighbours share, and the time over which they do.
@@ -336,18 +349,51 @@ NoiseLevels with_discrepancy(const std::vector<Prediction>& residuals,
   for (const std::vector<int>& channels : alike_channels()) {
     std::vector<LeftSeries> left;
     for (const int channel : channels) append_left(residuals, runs, channel, left);
-    const double square = mean_square(left);
-    ChannelNoise found{std::sqrt(square)};
-    if (square > 0.0 && remainder == Remainder::correlated) {
-      const Shared shared = shared_by_neighbours(left, square);
-      found.coloured = shared.fraction;
-      found.time_s = shared.time_s;
+    const MeanSquares square = mean_squares(left);
+    ChannelNoise found{std::sqrt(square.of_readings)};
+    if (square.of_blocks > 0.0 && remainder == Remainder::correlated) {
+      const Shared shared = shared_by_neighbours(left, square.of_blocks);
+      const double coloured = shared.fraction * square.of_blocks,
+                   all = coloured + (1.0 - shared.fraction) * square.of_readings;
+      found = {std::sqrt(all), coloured / all, shared.time_s};
     }
     for (const int channel : channels) {
       if (found.level > own.of(channel).level) noise.set(channel, found);
     }
   }
   return noise;
+}
+
+void set_profiles(const std::vector<Prediction>& residuals, size_t parts,
+                  std::vector<Observation>& runs) {
+  // The residuals of a part count as so many independent numbers, those of all as one.
+  constexpr double independent = 4.0;
+  size_t blocks = 0;
+  for (const Observation& seen : runs) blocks += seen.blocks();
+  for (size_t run = 0; run < runs.size(); ++run) {
+    Observation& seen = runs[run];
+    const size_t own = std::max<size_t>(1, (parts * seen.blocks() + blocks / 2) / blocks);
+    seen.profile = {seen.time_s.front(), seen.duration_s() / static_cast<double>(own),
+                    std::vector<double>(own, 1.0)};
+    std::vector<double> sum(own, 0.0), count(own, 0.0);
+    for (size_t i = 0; i < seen.blocks(); ++i) {
+      const double since = (seen.time_s[i] - seen.profile.begin_s) / seen.profile.part_s;
+      const size_t part = std::min(own - 1, static_cast<size_t>(std::max(0.0, since)));
+      for (int channel = 0; channel < channel_count; ++channel) {
+        const double off = residuals[run].off[i][channel], rows = seen.rows_of(i, channel);
+        if (!std::isfinite(off) || !(rows > 0.0)) continue;
+        const ChannelNoise noise = seen.noise.of(channel);
+        const double variance = noise.coloured + (1.0 - noise.coloured) / rows;
+        sum[part] += off * off / (noise.level * noise.level * variance);
+        count[part] += 1.0;
+      }
+    }
+    for (size_t part = 0; part < own; ++part) {
+      if (!(count[part] > 0.0)) continue;
+      const double square = (1.0 + independent * sum[part] / count[part]) / (1.0 + independent);
+      seen.profile.factor[part] = std::sqrt(square);
+    }
+  }
 }
 
 NoiseLevels noise_from_spread(const std::vector<Observation>& runs, const NoiseLevels& own) {

@@ -39,12 +39,19 @@ std::optional<NoiseLevel> gyro_level(const std::vector<Observation>& seen,
 
 // The noise of the runs including the residuals of a fit (`residuals`, NaN where nothing was read),
 // at least `own`, the noise of the readings alone. Channel by channel. White: with the mean square
-// of the residuals; correlated: also with the time after which their autocorrelation falls below
-// 1/e, so that a slow residual counts as few independent numbers.
+// of the residuals, independent from block to block; correlated: also with the time after which
+// their autocorrelation falls below 1/e, so that a slow residual counts as few independent numbers.
 enum class Remainder { white, correlated };
 NoiseLevels with_discrepancy(const std::vector<Prediction>& residuals,
                              const std::vector<Observation>& runs, const NoiseLevels& own,
                              Remainder remainder);
+
+// Sets the profiles of the runs, whose noise is that of with_discrepancy(): in each of about
+// `parts` parts of them the mean square of the residuals, drawn towards that of all. A part in
+// which something else acts then counts less, as with Student's t (K. L. Lange, R. J. A. Little and
+// J. M. G. Taylor, J. Am. Stat. Assoc. 84 (1989) 881).
+void set_profiles(const std::vector<Prediction>& residuals, size_t parts,
+                  std::vector<Observation>& runs);
 
 // Whether some channel of `now` is quieter than before by a tenth or more.
 bool is_quieter(const NoiseLevels& now, const NoiseLevels& before);

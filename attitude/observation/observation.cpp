@@ -47,6 +47,13 @@ void NoiseLevels::set(int channel, const ChannelNoise& noise) {
   colour.time_s[k] = noise.time_s;
 }
 
+double NoiseProfile::at(double time_s) const {
+  if (factor.empty()) return 1.0;
+  const double part = (time_s - begin_s) / part_s;
+  return factor[static_cast<size_t>(
+      std::clamp(part, 0.0, static_cast<double>(factor.size()) - 1.0))];
+}
+
 NoiseLevels noise_levels(const Sensors& sensors) {
   NoiseLevels noise;
   if (states_camera_noise(sensors)) noise.camera_rad = sensors.camera->noise_rad;

@@ -36,6 +36,14 @@ struct NoiseLevels {
   void set(int channel, const ChannelNoise& noise);
 };
 
+// Factors of the noise in equal parts of a run, where a model leaves more in some than in others.
+struct NoiseProfile {
+  double begin_s = 0.0, part_s = 0.0;
+  std::vector<double> factor;  // of each part; empty: 1
+
+  double at(double time_s) const;
+};
+
 // Those of the instruments; where they state none, the usual ones above.
 NoiseLevels noise_levels(const Sensors& sensors);
 bool states_camera_noise(const Sensors& sensors);
@@ -84,6 +92,7 @@ struct Observation {
   std::vector<Vec3> gyro_rows;  // by axis
   std::array<ScalarReadings, scalar_count> scalar = {};
   NoiseLevels noise;
+  NoiseProfile profile = {};
   double row_interval_s = 0.0;  // of the file
   int64_t rows = 0;             // of the file
 

@@ -36,7 +36,8 @@ double reading_interval_s(const Observation& seen, int channel) {
   return intervals_s.empty() ? 0.0 : upper_median(std::move(intervals_s));
 }
 
-Whitening::Whitening(const Observation& seen, int channel, Eigen::Index width) {
+Whitening::Whitening(const Observation& seen, int channel, Eigen::Index width)
+    : profile_(seen.profile) {
   const ChannelNoise noise = seen.noise.of(channel);
   level_ = noise.level;
   if (!(noise.coloured > 0.0) || !(noise.time_s > 0.0)) return;

@@ -16,10 +16,11 @@ namespace photorque {
 // Of one channel, block after block in order of time: what the blocks before lead to expect is
 // subtracted, and the rest divided by its standard deviation. Noise is white, plus a part whose
 // correlation falls off as exp(−t/τ) (an AR(1) process, sampled whenever there is a reading), as
-// ChannelNoise says. A block is the mean of its readings: its variance and its correlation with
-// others are those of such means in closed form, so that averages are whitened as exactly as
-// readings. The recursion is that of the Kalman filter (Anderson & Moore, Optimal Filtering, 1979,
-// section 5.3), linear in the readings, so that predictions and their derivatives go the same way.
+// ChannelNoise says, times the factor of the run's profile. A block is the mean of its readings:
+// its variance and its correlation with others are those of such means in closed form, so that
+// averages are whitened as exactly as readings. The recursion is that of the Kalman filter
+// (Anderson & Moore, Optimal Filtering, 1979, section 5.3), linear in the readings, so that
+// predictions and their derivatives go the same way.
 class Whitening {
  public:
   // `width`: how many numbers go through at once: a residual and its slopes.
@@ -29,10 +30,12 @@ class Whitening {
   // unit becomes independent of all before, in units of its standard deviation.
   template <typename Row>
   void apply(double time_s, double rows, Row&& row) {
+    const double factor = profile_.at(time_s);
     if (!coloured_) {
-      row *= std::sqrt(rows) / level_;
+      row *= std::sqrt(rows) / (level_ * factor);
       return;
     }
+    if (factor != 1.0) row /= factor;
     const Gain now = gain(time_s, rows);
     expected_ *= now.decay;
     row = row * now.scale - expected_;
@@ -49,6 +52,7 @@ class Whitening {
   };
   Gain gain(double time_s, double rows);
 
+  NoiseProfile profile_;
   bool coloured_ = false;
   double level_;
   double white_variance_ = 0.0, coloured_variance_ = 0.0, time_s_ = 0.0;

@@ -61,9 +61,7 @@ void prefer_simpler(const Thresholds& limits, Answer& a) {
     const Trial& t = a.trials[i];
     const bool stands = t.objection.empty() && t.log_evidence > alike && t.predictive &&
                         t.predictive->sigma < limits.decision.max_predictive_sigma &&
-                        std::ranges::all_of(t.significance, [&](double s) {
-                          return s >= limits.decision.min_significance;
-                        });
+                        inference::is_significant(t, limits.decision);
     if (!stands || simpler_by(t, a.chosen(), a).value_or(0.0) <= 0.0) continue;
     a.decision.chosen = a.decision.best_named = i;
   }
@@ -135,9 +133,6 @@ void keep_what_predicts(const RecordedData& data, const Thresholds& limits, Answ
     }
   }
   a.decision.chosen = kept;
-  const std::vector<size_t>& acts = a.trials[kept].candidates;
-  std::erase_if(a.decision.beside_law,
-                [&](size_t c) { return std::find(acts.begin(), acts.end(), c) == acts.end(); });
   a.decision.because = kept == 0 ? "no tried explanation predicts the held-out data"
                                  : "the best explanation does not predict the held-out data";
 }
@@ -165,12 +160,20 @@ bool law_is_far_better(const Answer& a, const Thresholds& limits) {
   return is_law && law < limits.discrepancy.max_fraction_of_law * known;
 }
 
-// Describes the unexplained residual by a refined law in time.
+// Describes the unexplained residual by a refined law in time. A name beside it that is within its
+// error in this description is dropped.
 void describe(const RecordedData& data, const DiagnoseOptions& options, Answer& a) {
   if (a.decision.finding != inference::Finding::unknown) return;
   Trial& chosen = a.trials[a.decision.chosen];
   chosen = refined_in_time(chosen, a.all, data.train);
   keep_what_predicts(data, options.limits, a);
+  const Trial& now = a.chosen();
+  std::erase_if(a.decision.beside_law, [&](size_t c) {
+    const auto at = std::ranges::find(now.candidates, c) - now.candidates.begin();
+    const auto i = static_cast<size_t>(at);
+    return i == now.candidates.size() ||
+           !inference::is_significant({now.significance[i]}, options.limits.decision);
+  });
 }
 
 bool has_law(const Trial& trial, const Candidates& all) {

@@ -61,31 +61,39 @@ std::vector<double> CrossValidation::chi2(const Trial& trial) const {
 std::vector<double> CrossValidation::predicted(const Trial& trial,
                                                const std::vector<RunStart>& begins,
                                                size_t fold) const {
-  std::vector<Observation> rest, whole;
+  // Runs that are left out as a whole, and the others.
+  std::vector<Observation> whole, rest;
   std::vector<RunStart> begins_of_rest;
-  const bool are_runs = segments_.size() == runs_.size();
-  for (size_t run = 0; run < runs_.size(); ++run) {
-    if (are_runs && run % folds == fold) {
-      whole.push_back(runs_[run]);
-      continue;
-    }
-    rest.push_back(runs_[run]);
-    begins_of_rest.push_back(begins[run]);
+  std::vector<size_t> place(runs_.size());
+  std::vector<bool> is_whole(runs_.size(), false);
+  for (size_t i = fold; i < segments_.size(); i += folds) {
+    const Segment& s = segments_[i];
+    is_whole[s.run] = s.last - s.first == runs_[s.run].blocks();
   }
-  for (size_t i = fold; i < segments_.size() && !are_runs; i += folds) {
-    leave_out(segments_[i].first, segments_[i].last, rest[segments_[i].run]);
+  for (size_t run = 0; run < runs_.size(); ++run) {
+    std::vector<Observation>& these = is_whole[run] ? whole : rest;
+    place[run] = these.size();
+    these.push_back(runs_[run]);
+    if (!is_whole[run]) begins_of_rest.push_back(begins[run]);
+  }
+  const std::vector<Observation> complete = rest;
+  for (size_t i = fold; i < segments_.size(); i += folds) {
+    const Segment& s = segments_[i];
+    if (!is_whole[s.run]) leave_out(s.first, s.last, rest[place[s.run]]);
   }
   const inference::Effort effort{.max_iterations = domain_.limits().fitting.brief_iterations};
   const Trial others = domain_.refit(trial, rest, begins_of_rest, effort);
   if (!std::isfinite(others.fit.chi2)) return {};
-  if (are_runs) return domain_.predict(others, whole).fit.run_chi2;
   std::vector<double> result;
   try {
-    const std::vector<Prediction> residuals = residuals_of(others.fit, runs_);
+    const std::vector<double> of_whole =
+        whole.empty() ? std::vector<double>() : domain_.predict(others, whole).fit.run_chi2;
+    const std::vector<Prediction> residuals = residuals_of(others.fit, complete);
     for (size_t i = fold; i < segments_.size(); i += folds) {
-      double sum = 0.0;
-      for (size_t block = segments_[i].first; block < segments_[i].last; ++block) {
-        for (const double r : residuals[segments_[i].run].residual[block]) {
+      const Segment& s = segments_[i];
+      double sum = is_whole[s.run] ? of_whole[place[s.run]] : 0.0;
+      for (size_t block = s.first; block < s.last && !is_whole[s.run]; ++block) {
+        for (const double r : residuals[place[s.run]].residual[block]) {
           if (std::isfinite(r)) sum += r * r;
         }
       }

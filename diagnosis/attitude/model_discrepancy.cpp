@@ -22,6 +22,15 @@ void use_noise(const NoiseLevels& noise, RecordedData& data) {
   }
 }
 
+// Counts the residual of a fit to the train runs as noise, which follows its size in `parts` parts;
+// 0: it is equal everywhere.
+void use_rest(const Fit& fit, const NoiseLevels& own, Remainder remainder, size_t parts,
+              RecordedData& data) {
+  const std::vector<Prediction> residuals = residuals_of(fit, data.train);
+  use_noise(with_discrepancy(residuals, data.train, own, remainder), data);
+  if (parts > 0) set_profiles(residuals, parts, data.train);
+}
+
 // Number of segments, limited to one to three times `limits.segments`: the number of independent
 // residuals of the best explanation, n (1 − ρ)/(1 + ρ) for n readings with neighbour correlation ρ.
 // With few segments, a difference that varies between them is not significant.
@@ -268,18 +277,14 @@ class Contest {
 // more weight relative to the priors, so the refit is repeated while the held-out prediction
 // improves.
 Trial refit_with_discrepancy(const Trial& named, const Candidates& all, const NoiseLevels& own,
-                             RecordedData data) {
+                             size_t parts, RecordedData data) {
   constexpr int most_rounds = 6;
   Trial result = named;
-  const auto use_rest = [&](Remainder remainder) {
-    use_noise(with_discrepancy(residuals_of(result.fit, data.train), data.train, own, remainder),
-              data);
-  };
   const auto held_chi2 = [&](const Trial& t) {
     return propagate_model(t.fit, data.held, all.limits).chi2;
   };
   for (int round = 0; round < most_rounds; ++round) {
-    use_rest(Remainder::white);
+    use_rest(result.fit, own, Remainder::white, parts, data);
     const Trial again = refit(result, all, data.train, result.fit.best.runs);
     if (!std::isfinite(again.fit.chi2) || !again.objection.empty() ||
         !(held_chi2(again) < 0.9 * held_chi2(result))) {
@@ -287,7 +292,7 @@ Trial refit_with_discrepancy(const Trial& named, const Candidates& all, const No
     }
     result = again;
   }
-  use_rest(Remainder::correlated);
+  use_rest(result.fit, own, Remainder::correlated, parts, data);
   const Trial again = refit(result, all, data.train, result.fit.best.runs);
   return std::isfinite(again.fit.chi2) ? again : result;
 }
@@ -391,15 +396,17 @@ bool is_consistent_with_noise(const Fit& fit, const RecordedData& data) {
 std::optional<Answer> identify_with_discrepancy(const NominalModel& nominal, RecordedData& data,
                                                 const DiagnoseOptions& options, const Trial* laws) {
   const NoiseLevels own = data.train.front().noise;
+  // What all laws together leave is no missing effect. What the nominal model leaves may be one: it
+  // must not count less where it is largest.
+  const size_t parts = laws != nullptr ? options.limits.discrepancy.segments : 0;
   std::optional<Answer> best;
   use_noise(noise_from_spread(data.train, own), data);
   Fit left_by = laws != nullptr ? laws->fit : fit_nominal(nominal, data.train, options.limits);
   for (int round = 0; round < options.limits.discrepancy.max_rounds; ++round) {
     if (!std::isfinite(left_by.chi2)) break;
-    const NoiseLevels noise =
-        with_discrepancy(residuals_of(left_by, data.train), data.train, own, Remainder::white);
-    if (round > 0 && !is_quieter(noise, data.train.front().noise)) break;
-    use_noise(noise, data);
+    const NoiseLevels before = data.train.front().noise;
+    use_rest(left_by, own, Remainder::white, parts, data);
+    if (round > 0 && !is_quieter(data.train.front().noise, before)) break;
     tell(options, "naming effects, with the residual counted as noise");
     const Among among = among_with_discrepancy(nominal, data);
     const Candidates all = candidates_among(among, nominal, data.train, options.limits);
@@ -412,15 +419,13 @@ std::optional<Answer> identify_with_discrepancy(const NominalModel& nominal, Rec
     if (!tries_sets) compared = likely_of(next);
     Contest contest(next, compared, data, segment_count(next, data, own), options.threads);
     Contender won = contest.winner();
-    Trial fitted = refit_with_discrepancy(won.trial, next.all, own, data);
-    for (;;) {
-      const auto least = std::ranges::min_element(fitted.significance);
-      if (least == fitted.significance.end() ||
-          *least >= options.limits.decision.min_significance) {
-        break;
-      }
+    Trial fitted = refit_with_discrepancy(won.trial, next.all, own, parts, data);
+    while (!inference::is_significant(fitted.significance, options.limits.decision)) {
+      const auto least = std::ranges::min_element(fitted.significance, {}, [](double sigma) {
+        return std::isnan(sigma) ? inference::infinity : sigma;
+      });
       won = contest.without(won, static_cast<size_t>(least - fitted.significance.begin()));
-      fitted = refit_with_discrepancy(won.trial, next.all, own, data);
+      fitted = refit_with_discrepancy(won.trial, next.all, own, parts, data);
     }
     left_by = won.trial.fit;
     if (won.trial.candidates.empty() || !fitted.objection.empty()) break;

@@ -236,7 +236,8 @@ TEST(Machines, RecordingsAreCutWhereSomethingHappened) {
 }
 
 // Steps of an encoder and decaying oscillations are not kinks: an angle that turns evenly by a
-// tenth of a step a row, and one of an amplitude that falls to e^-5.
+// tenth of a step a row, one of an amplitude that falls to e^-5, and a swing counted in steps of
+// 0.09° that a file rounds to 0.01°.
 TEST(Machines, StepsOfAnEncoderAndTheBeginningOfADecayAreNoKinks) {
   Platform axle;
   axle.topology = Topology::one_axis;
@@ -249,7 +250,12 @@ TEST(Machines, StepsOfAnEncoderAndTheBeginningOfADecayAreNoKinks) {
     swings.values.push_back(0.5 * std::exp(-t / 120.0) * std::cos(t) + noise(random));
     kicked.values.push_back(swings.values.back() + 0.8 * std::max(0.0, t - 55.0));
   }
-  for (const Channel& channel : {counted, swings}) {
+  Channel rounded{"angle_rad", Swing{120.0, 2.3, 0.19, 0.0}.from(1.1, 0.001, 5000)};
+  for (double& angle_rad : rounded.values) {
+    const double counted_deg = 0.09 * std::floor(angle_rad / degree_rad / 0.09);
+    angle_rad = 0.01 * std::round(counted_deg / 0.01) * degree_rad;
+  }
+  for (const Channel& channel : {counted, swings, rounded}) {
     const Segments cut = observe_segments(recording_of(0.1, {channel}), "axle.csv", axle);
     EXPECT_EQ(cut.kinks, 0);
     EXPECT_EQ(cut.all.size(), 1U);
@@ -496,6 +502,7 @@ TEST(Machines, WhatIsLeftCountsAsNoiseAsCorrelatedAsItIs) {
     row[5] = slow + normal(random);
     left.off.push_back(row);
     seen.time_s.push_back(interval_s * i);
+    seen.gyro_rows.emplace_back(0.0, 0.0, 1.0);
   }
   NoiseLevels own;
   own.gyro_rad_s = Vec3::Constant(0.5);
@@ -507,6 +514,43 @@ TEST(Machines, WhatIsLeftCountsAsNoiseAsCorrelatedAsItIs) {
   EXPECT_EQ(noise.gyro_rad_s[0], 0.5);
   EXPECT_FALSE(is_quieter(noise, noise));
   EXPECT_TRUE(is_quieter(own, noise));
+}
+
+// Independent residuals of 1 in means of 25 readings: so many times the noise of one reading, or a
+// fit would take each mean for five times as exact as it is. In the last quarter they are 3.
+TEST(Machines, WhatIsLeftOfMeansCountsAsTheirNoise) {
+  std::mt19937_64 random(17);
+  std::normal_distribution<double> normal;
+  Observation seen;
+  Prediction left;
+  for (int i = 0; i < 8000; ++i) {
+    WhiteRow row = WhiteRow::Constant(NAN);
+    row[5] = (i < 6000 ? 1.0 : 3.0) * normal(random);
+    left.off.push_back(row);
+    seen.time_s.push_back(0.1 * i);
+    seen.gyro_rows.emplace_back(0.0, 0.0, 25.0);
+    seen.attitude_rows.push_back(0.0);
+  }
+  NoiseLevels own;
+  own.gyro_rad_s = Vec3::Constant(0.5);
+  std::vector<Observation> runs = {seen};
+  // (3 · 1 + 9)/4 = 3.
+  for (const Remainder remainder : {Remainder::white, Remainder::correlated}) {
+    runs[0].noise = with_discrepancy({left}, runs, own, remainder);
+    EXPECT_NEAR(runs[0].noise.gyro_rad_s[2], 5.0 * std::sqrt(3.0), 0.3);
+    set_profiles({left}, 4, runs);
+    // Four fifths of the mean square in a part, one fifth of that of all.
+    EXPECT_NEAR(runs[0].profile.at(0.0), std::sqrt(0.8 / 3.0 + 0.2), 0.02);
+    EXPECT_NEAR(runs[0].profile.at(799.0), std::sqrt(0.8 * 3.0 + 0.2), 0.05);
+    Whitening whitening(runs[0], 5, 1);
+    double square = 0.0;
+    for (size_t i = 0; i < seen.blocks(); ++i) {
+      Eigen::RowVectorXd row = Eigen::RowVectorXd::Constant(1, left.off[i][5]);
+      whitening.apply(seen.time_s[i], 25.0, row);
+      if (i >= 6000) square += row[0] * row[0] / 2000.0;
+    }
+    EXPECT_NEAR(square, 3.0 / (0.8 * 3.0 + 0.2), 0.15);
+  }
 }
 
 // A wheel that speeds up as if its drag were −5e-4 N m s, which no experiment can state.

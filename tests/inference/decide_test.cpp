@@ -136,6 +136,18 @@ TEST(Decide, ANameWithinItsErrorIsNotSaid) {
   EXPECT_EQ(decided(trials, mutant).finding, Finding::named);
 }
 
+// Two names stand together; "second" is hardly missed, and alone "first" is within its error.
+TEST(Gates, ANameThatIsWithinItsErrorWithoutAnotherIsNotSaid) {
+  std::vector<Explanation> trials = {explanation({}, 0.0, 1.0), explanation({0}, 100.0, 1.0),
+                                     explanation({0, 1}, 102.0, 1.0)};
+  trials[1].joint_significance = {3.9};
+  EXPECT_EQ(decided(trials).finding, Finding::nothing_missing);
+  Thresholds::Decision mutant;
+  mutant.min_significance = 3.0;
+  EXPECT_EQ(decided(trials, mutant).finding, Finding::named);
+  EXPECT_EQ(decided(trials, mutant).chosen, 1u);
+}
+
 TEST(Decide, HopelessEvidenceHasAProbabilityAsWell) {
   const Decision d = decided({explanation({}, -1e300, 40.0), explanation({0}, -1e300, 1.0)});
   EXPECT_TRUE(std::isfinite(d.confidence));
