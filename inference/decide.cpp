@@ -88,6 +88,16 @@ class Judge {
     return equal;
   }
 
+  // The best trial with exactly those names of the trial for which `counts` is true, if it is
+  // significant; 0 if there is none.
+  size_t part_of(size_t trial, const std::function<bool(size_t)>& counts) const {
+    std::multiset<std::string> names;
+    for (const size_t c : trials_[trial].candidates) {
+      if (counts(c)) names.insert(all_[c].name);
+    }
+    return names.empty() ? 0 : best_with(names);
+  }
+
   // Whether the trial predicts the held-out data. If the nominal model has been tested on them, an
   // untested trial does not pass.
   bool predicts(size_t trial) const {
@@ -160,9 +170,14 @@ class Judge {
   size_t without(size_t trial, size_t which) const {
     std::multiset<std::string> rest = names_of(trial);
     rest.erase(rest.find(all_[trials_[trial].candidates[which]].name));
+    return best_with(rest);
+  }
+
+  // The significant trial of largest evidence with exactly these names; 0 if there is none.
+  size_t best_with(const std::multiset<std::string>& names) const {
     size_t best = 0;
     for (size_t i = 1; i < trials_.size(); ++i) {
-      if (names_of(i) != rest || !trials_[i].objection.empty() || !is_significant(i)) continue;
+      if (names_of(i) != names || !trials_[i].objection.empty() || !is_significant(i)) continue;
       if (best == 0 || trials_[i].log_evidence > trials_[best].log_evidence) best = i;
     }
     return best;
@@ -293,8 +308,13 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
   }
   // Gate (a) of decide.h. Trials that contain the same names, in any parametrisation, count
   // together.
-  d.confidence =
-      probability_of(d.probability, [&](size_t i) { return judge.has_names_of(named, i); });
+  const auto probability_of_all = [&](size_t trial) {
+    return probability_of(d.probability, [&](size_t i) { return judge.has_names_of(trial, i); });
+  };
+  const auto acts = [&](size_t c) {
+    return probability_of(d.probability, [&](size_t i) { return judge.has_name(i, all[c].name); });
+  };
+  d.confidence = probability_of_all(named);
   const double of_group = probability_of(d.probability, [&](size_t i) {
     return judge.has_names_of(named, i) || judge.exchanges_one(named, i);
   });
@@ -303,33 +323,40 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
   const bool is_weak =
       d.confidence < limits.min_probability && !is_significant(trials[named].significance, limits);
   d.undecided = is_weak && judge.predicts(0);
+  d.chosen = named;
   if (d.undecided) {
+    d.chosen = 0;
     d.confidence = 1.0 - d.confidence;
-  } else if (is_weak || !is_likely) {
-    // An effect is certain, but several explanations are about equally likely. No effect is named,
-    // because parameters common to all of them may have a common error.
-    d.finding = Finding::unknown;
-    d.because = "several explanations are about as likely";
-    d.chosen = named;
-    d.confidence = 1.0 - d.confidence;
-    for (const size_t c : trials[named].candidates) {
-      const double acts =
-          probability_of(d.probability, [&](size_t i) { return judge.has_name(i, all[c].name); });
-      if (!is_weak && acts >= limits.min_probability) d.beside_law.push_back(c);
+    return d;
+  }
+  if (is_weak || !is_likely) {
+    // Something else acts beside the probable names, but several effects are about equally likely.
+    // Where the probable ones alone explain the recordings, they are named.
+    d.chosen = judge.part_of(named, [&](size_t c) { return acts(c) >= limits.min_probability; });
+    if (d.chosen == 0 || !judge.predicts(d.chosen) ||
+        checks.excess_sigma(d.chosen) > limits.max_excess_sigma) {
+      d.finding = Finding::unknown;
+      d.because = "several explanations are about as likely";
+      d.chosen = named;
+      d.confidence = 1.0 - d.confidence;
+      for (const size_t c : trials[named].candidates) {
+        if (!is_weak && acts(c) >= limits.min_probability) d.beside_law.push_back(c);
+      }
+      return d;
     }
-  } else {
-    d.finding = Finding::named;
-    d.chosen = named;
-    d.held_out_tests_names = judge.is_tested(named);  // gate (e)
-    for (size_t which = 0; which < trials[named].candidates.size(); ++which) {
-      Name name{trials[named].candidates[which]};
-      name.probability = probability_of(d.probability, [&](size_t i) {
-        return judge.has_name(i, all[name.candidate].name) || judge.exchanges(named, which, i);
-      });
-      if (which < gains.size()) name.gain_sigma = gains[which];
-      name.equal_places = judge.equal_places(named, which);  // gate (f)
-      d.names.push_back(std::move(name));
-    }
+    gains.clear();
+    d.confidence = probability_of_all(d.chosen);
+  }
+  d.finding = Finding::named;
+  d.held_out_tests_names = judge.is_tested(d.chosen);  // gate (e)
+  for (size_t which = 0; which < trials[d.chosen].candidates.size(); ++which) {
+    Name name{trials[d.chosen].candidates[which]};
+    name.probability = probability_of(d.probability, [&](size_t i) {
+      return judge.has_name(i, all[name.candidate].name) || judge.exchanges(d.chosen, which, i);
+    });
+    if (which < gains.size()) name.gain_sigma = gains[which];
+    name.equal_places = judge.equal_places(d.chosen, which);  // gate (f)
+    d.names.push_back(std::move(name));
   }
   return d;
 }

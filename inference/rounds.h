@@ -106,13 +106,14 @@ class Rounds {
     return first.candidates;
   }
 
-  // Whether slow effects may take the place of one that swings: several together, one of which only
-  // a combination is significant, or one that leaves something. What remains may cancel in means of
-  // neighbours, but it raises χ².
+  // Whether slow effects may take the place of one that swings: several together, the limit of one
+  // that swings, one of which only a combination is significant, or one that leaves something. What
+  // remains may cancel in means of neighbours, but it raises χ².
   bool may_be_surrogates(const Trial& at) const {
     const bool swings = std::ranges::any_of(
         at.candidates, [&](size_t c) { return domain_.candidates()[c].is_fast; });
     if (at.candidates.empty() || swings) return false;
+    if (domain_.candidates()[at.candidates.front()].is_limit_of_swinging) return true;
     const double most = limits_.search.explained_sigma;
     const bool is_vague = std::ranges::any_of(at.largest_component, [&](double sigma) {
       return sigma < limits_.decision.min_significance;

@@ -236,6 +236,13 @@ struct ParametersAndStates {
     for (int i = 0; i < 9; ++i) m(i / 3, i % 3) = parameters[key.first + i];
     return m;
   }
+  // A symmetric matrix: xx, yy, zz, xy, xz, yz.
+  Mat3Of<T> operator[](const KeyOf<6>& key) const {
+    const T* m = parameters + key.first;
+    Mat3Of<T> full;
+    full << m[0], m[3], m[4], m[3], m[1], m[5], m[4], m[5], m[2];
+    return full;
+  }
   // One number of an array of any length.
   template <int size>
   const T& element(const KeyOf<size>& key, int index) const {

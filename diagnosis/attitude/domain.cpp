@@ -18,6 +18,7 @@ inference::CandidateTraits traits_of(const Candidate& c) {
   traits.is_empirical = c.empirical();
   traits.is_linear = c.is_linear();
   traits.is_fast = c.effect.how.fast;
+  traits.is_limit_of_swinging = c.effect.how.inertia_change_kg_m2 != nullptr;
   traits.is_of_instrument = c.start.stage == Stage::measurement;
   // Several appendages with different frequencies and axes are distinguishable.
   if (c.effect.how.scan == Scan::mode) traits.most = 2;
@@ -43,7 +44,7 @@ AttitudeDomain::AttitudeDomain(const Candidates& all) : all_(all) {
 
 Trial AttitudeDomain::extend(const Trial& parent, size_t candidate, const Start& start,
                              const Runs& runs, const Effort& effort) const {
-  return photorque::extend(parent, all_, candidate, start.disturbance, runs, settings_of(effort));
+  return photorque::extend(parent, all_, candidate, start, runs, settings_of(effort));
 }
 
 Trial AttitudeDomain::refit(const Trial& trial, const Runs& runs, const std::vector<Begin>& begins,

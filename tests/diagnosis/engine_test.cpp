@@ -93,8 +93,8 @@ TEST(Score, PredictsWhatTwoEffectsGainTogether) {
   EXPECT_NEAR(predicted[{1}].gain, alone[1].gain, 1e-6 * alone[1].gain);
   EXPECT_NEAR(predicted[{}].gain, 0.0, 1e-9);
 
-  const Trial one = extend(nominal_trial(nominal, all), all, dipole, all[dipole].start, runs);
-  const Trial both = extend(one, all, draught, all[draught].start, runs);
+  const Trial one = extend(nominal_trial(nominal, all), all, dipole, {all[dipole].start}, runs);
+  const Trial both = extend(one, all, draught, {all[draught].start}, runs);
   const double gained = nominal.chi2 - both.fit.chi2;
   EXPECT_NEAR((predicted[{0, 1}].gain), gained, 0.05 * gained);
   EXPECT_GT(gained, nominal.chi2 - one.fit.chi2 + 20.0);
@@ -191,7 +191,7 @@ TEST(Trial, AThirdOfTheInertiaIsNoExplanation) {
   settings.max_iterations = 60;
   const Trial trial =
       extend(nominal_trial(fit_nominal(nominal, runs), all), all,
-             static_cast<size_t>(error - all.list.begin()), error->start, runs, settings);
+             static_cast<size_t>(error - all.list.begin()), {error->start}, runs, settings);
   EXPECT_NE(trial.objection.find("inertia would change by"), std::string::npos) << trial.objection;
 }
 
@@ -213,8 +213,8 @@ TEST(Trial, NumbersBeyondPhysicsAreFittedAnew) {
     };
     const size_t draught = named("room_draft"), cable = named("tether");
     Trial trial = extend(nominal_trial(fit_nominal(nominal_model(), runs), all), all, draught,
-                         all[draught].start, runs);
-    if (with_cable) trial = extend(trial, all, cable, all[cable].start, runs);
+                         {all[draught].start}, runs);
+    if (with_cable) trial = extend(trial, all, cable, {all[cable].start}, runs);
     return std::pair(trial, within_physics(trial, all, runs));
   };
   const auto value = [](const Trial& t, size_t candidate, size_t p) {

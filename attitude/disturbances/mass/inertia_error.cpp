@@ -10,23 +10,19 @@ constexpr KeyOf<6> delta(
     "delta_kg_m2",
     "[xx, yy, zz, xy, xz, yz], about the centre of rotation; the sum must be an inertia tensor");
 
-template <class T>
-Mat3Of<T> symmetric(const T& xx, const T& yy, const T& zz, const T& xy, const T& xz, const T& yz) {
-  Mat3Of<T> m;
-  m << xx, xy, xz, xy, yy, yz, xz, yz, zz;
-  return m;
-}
-
 struct InertiaError final : LawOf<InertiaError> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
-    const auto d = [&](int i) { return own.element(delta, i); };
-    now.change_inertia(symmetric<T>(d(0), d(1), d(2), d(3), d(4), d(5)));
+    now.change_inertia(own[delta]);
   }
 };
 
 Mat3 as_matrix(const Parameters& d) {
-  return symmetric(d[0].value, d[1].value, d[2].value, d[3].value, d[4].value, d[5].value);
+  Mat3 m;
+  m << d[0].value, d[3].value, d[4].value,  //
+      d[3].value, d[1].value, d[5].value,   //
+      d[4].value, d[5].value, d[2].value;
+  return m;
 }
 
 Mat3 inertia_change_kg_m2(const Disturbance& error) {

@@ -83,6 +83,30 @@ Eigen::MatrixXd answers(const PropagatedRun& run, const std::vector<Swing>& swin
   return rows.topRows(used);
 }
 
+// Sums of products of the responses and the residual of one run, without parts slower than a swing.
+Eigen::MatrixXd sums_of(const PropagatedRun& run, const std::vector<Swing>& swing,
+                        const std::vector<Vec3>& axes, const std::vector<Vec3>& answer_body,
+                        double frequency_Hz) {
+  const auto count = static_cast<Eigen::Index>(axes.size());
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(count + 1, count + 1);
+  for (Eigen::Index channel = 0; channel < 6; ++channel) {
+    Eigen::MatrixXd rows = answers(run, swing, axes, answer_body, channel);
+    if (rows.rows() == 0) continue;
+    const double a_second = static_cast<double>(rows.rows()) / run.seen.duration_s();
+    const auto half = static_cast<Eigen::Index>(0.5 * a_second / frequency_Hz);
+    take_out_slow(rows, 2 * std::max<Eigen::Index>(1, half) + 1);
+    sums += rows.transpose() * rows;
+  }
+  return sums;
+}
+
+// The score of the strengths whose responses the sums contain.
+Score score_of(const Eigen::MatrixXd& sums) {
+  const Eigen::Index count = sums.rows() - 1;
+  return solve_score(sums.topLeftCorner(count, count), sums.col(count).head(count),
+                     sums.diagonal().head(count));
+}
+
 }  // namespace
 
 Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inertia_kg_m2,
@@ -92,18 +116,9 @@ Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inert
   for (const Vec3& axis : axes) answer_body.push_back(-inertia_kg_m2.inverse() * axis);
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(count + 1, count + 1);
   for (const PropagatedRun& run : runs) {
-    const std::vector<Swing> swing = swings(run, frequency_Hz, damping);
-    for (Eigen::Index channel = 0; channel < 6; ++channel) {
-      Eigen::MatrixXd rows = answers(run, swing, axes, answer_body, channel);
-      if (rows.rows() == 0) continue;
-      const double a_second = static_cast<double>(rows.rows()) / run.seen.duration_s();
-      const auto half = static_cast<Eigen::Index>(0.5 * a_second / frequency_Hz);
-      take_out_slow(rows, 2 * std::max<Eigen::Index>(1, half) + 1);
-      sums += rows.transpose() * rows;
-    }
+    sums += sums_of(run, swings(run, frequency_Hz, damping), axes, answer_body, frequency_Hz);
   }
-  return solve_score(sums.topLeftCorner(count, count), sums.col(count).head(count),
-                     sums.diagonal().head(count));
+  return score_of(sums);
 }
 
 namespace {
@@ -242,11 +257,80 @@ Tuned tuned(const std::vector<PropagatedRun>& runs, const Mat3& inertia_kg_m2,
   return best;
 }
 
+// Free swings of an appendage that was deflected at the start of a run: the body swings against it
+// along −I⁻¹ a. Angle and rate of a unit swing: cosine (x) and sine (y).
+std::vector<Swing> free_swings(const PropagatedRun& run, double frequency_Hz, double damping) {
+  const double angular_frequency = 2.0 * pi * frequency_Hz, decay = damping * angular_frequency;
+  const std::vector<double>& time_s = run.seen.time_s;
+  std::vector<Swing> result(run.propagated.states.size());
+  for (size_t i = 0; i < result.size(); ++i) {
+    const double t_s = time_s[i] - time_s.front(), size = std::exp(-decay * t_s);
+    const double c = size * std::cos(angular_frequency * t_s);
+    const double s = size * std::sin(angular_frequency * t_s);
+    result[i].angle_rad = {c, s, 0.0};
+    result[i].rate_rad_s = {-decay * c - angular_frequency * s, -decay * s + angular_frequency * c,
+                            0.0};
+  }
+  return result;
+}
+
+struct FreeSwing {
+  double gain = 0.0;  // expected fall of χ²
+  double frequency_Hz = 0.0, damping = 0.0;
+  Vec3 direction = Vec3::UnitX();  // in which the body swings
+};
+
+// Free swings of any size in every run; their common direction.
+FreeSwing free_swing_at(const std::vector<PropagatedRun>& runs, double frequency_Hz,
+                        double damping) {
+  std::vector<Vec3> part, direction;
+  for (int k = 0; k < 6; ++k) {
+    part.push_back(Vec3::Unit(k % 2));
+    direction.push_back(Vec3::Unit(k / 2));
+  }
+  FreeSwing found{0.0, frequency_Hz, damping};
+  Mat3 directions = Mat3::Zero();
+  for (const PropagatedRun& run : runs) {
+    const Score own = score_of(
+        sums_of(run, free_swings(run, frequency_Hz, damping), part, direction, frequency_Hz));
+    if (own.estimate.size() != 6) continue;
+    found.gain += own.gain;
+    for (int k = 0; k < 2; ++k) {
+      const Vec3 v(own.estimate[k], own.estimate[k + 2], own.estimate[k + 4]);
+      directions += v * v.transpose();
+    }
+  }
+  found.direction = Eigen::SelfAdjointEigenSolver<Mat3>(directions).eigenvectors().col(2);
+  return found;
+}
+
+// The free swing of largest gain near these lines of the residual.
+FreeSwing best_free_swing(const std::vector<PropagatedRun>& runs,
+                          const std::vector<double>& lines_Hz, double highest_Hz) {
+  constexpr int steps = 3;
+  FreeSwing best;
+  for (const double line_Hz : lines_Hz) {
+    if (line_Hz > highest_Hz) continue;
+    FreeSwing near;
+    near.frequency_Hz = line_Hz;
+    for (double damping = 0.04; damping > 1e-3; damping *= 0.5) {
+      const double centre_Hz = near.frequency_Hz;
+      for (int k = -steps; k <= steps; ++k) {
+        FreeSwing at = free_swing_at(runs, centre_Hz * (1.0 + 0.5 * damping * k), damping);
+        if (at.gain > near.gain) near = at;
+      }
+    }
+    if (near.gain > best.gain) best = near;
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit,
                                         const std::vector<Observation>& runs,
                                         const std::vector<Observation>& slow_runs,
+                                        const std::vector<double>& lines_Hz,
                                         const Thresholds::Scoring& limits) {
   constexpr double step = 1.2, max_Hz = 5.0;
   constexpr size_t max_starts = 3, max_fast_starts = 2;
@@ -306,6 +390,18 @@ std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit
     modes.back().scanned_Hz = f_Hz;
   }
   start_at_peaks(modes, max_fast_starts);
+  double most = limits.min_scan_gain;
+  for (const Start& driven : starts) most = std::max(most, driven.gain);
+  if (const FreeSwing swing = best_free_swing(all, lines_Hz, highest_Hz); swing.gain > most) {
+    // The free swing determines J φ only. The fit finds J from what the motion drives.
+    constexpr double fraction = 0.05;
+    const Vec3 axis = (inertia_kg_m2 * swing.direction).normalized();
+    const double light_kg_m2 =
+        fraction / (1.0 - fraction) / axis.dot(inertia_kg_m2.inverse() * axis);
+    Disturbance light = with_parameter(start, "frequency_Hz", swing.frequency_Hz);
+    parameter_of(light, "damping").value = swing.damping;
+    starts.push_back({heavy(light, axis, light_kg_m2, inertia_kg_m2), swing.gain});
+  }
   return starts;
 }
 

@@ -25,11 +25,14 @@ Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inert
 
 // Starts for a flexible appendage: its frequency and axis.
 
-// The best flexible modes to add to `fit`, at most three. `start` is the disturbance with its
-// expected strength; `slow_runs` are averages of the runs, sufficient for slow motion.
+// The best flexible modes to add to `fit`: some that the motion drives, and one that was deflected
+// at the start of a run if it explains more. `start` is the disturbance with its expected strength;
+// `slow_runs` are averages of the runs, sufficient for slow motion; `lines_Hz` are the lines of the
+// residual.
 std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit,
                                         const std::vector<Observation>& runs,
                                         const std::vector<Observation>& slow_runs,
+                                        const std::vector<double>& lines_Hz,
                                         const Thresholds::Scoring& limits);
 
 }  // namespace photorque

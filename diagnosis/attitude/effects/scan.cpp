@@ -276,7 +276,7 @@ std::vector<Start> starts_of(const Candidate& candidate, const Trial& parent,
     case Scan::frequency:
       return sinusoid_starts(candidate, parent, runs, slow_runs, lines_Hz, limits);
     case Scan::mode:
-      return flexible_mode_starts(candidate.start, parent.fit, runs, slow_runs, limits);
+      return flexible_mode_starts(candidate.start, parent.fit, runs, slow_runs, lines_Hz, limits);
     case Scan::nothing:
       break;
   }

@@ -148,19 +148,23 @@ Trial nominal_trial(const Fit& nominal, const Candidates& all) {
   return trial;
 }
 
-Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const Disturbance& start,
+Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const Start& start,
              const std::vector<Observation>& runs, const FitSettings& settings) {
   Trial trial;
   trial.candidates = parent.candidates;
   trial.disturbances = parent.disturbances;
   Hypothesis h = parent.fit.best;
   FitSettings how = settings;
-  if (parent.fit.chi2_per_sample() > all.limits.diverged_chi2_per_sample) {
+  // A scan that explains most of the residual starts near the solution.
+  const bool is_near = std::isfinite(start.gain) && start.gain > 0.5 * parent.fit.chi2;
+  if (is_near) {
+    how.max_iterations = std::max(how.max_iterations, all.limits.fitting.patient_iterations);
+  } else if (parent.fit.chi2_per_sample() > all.limits.diverged_chi2_per_sample) {
     start_again(h, parent, runs);
     how.windows = all.limits.fitting.diverged_windows;
   }
   trial.candidates.push_back(candidate);
-  trial.disturbances.push_back(add_free(h, all[candidate], start, all.limits));
+  trial.disturbances.push_back(add_free(h, all[candidate], start.disturbance, all.limits));
   trial.fit =
       fit_unbent(h, h.model.disturbances.size() - trial.candidates.size(), runs, how, all.limits);
   judge(trial, all);

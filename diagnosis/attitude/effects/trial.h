@@ -109,7 +109,7 @@ Trial within_physics(const Trial& trial, const Candidates& all,
                      const std::vector<Observation>& runs);
 
 // Adds a candidate whose parameters start from `start`, and fits.
-Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const Disturbance& start,
+Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const Start& start,
              const std::vector<Observation>& runs, const FitSettings& settings = {});
 
 // Replaces the `which`-th candidate by another that starts from `start`, and fits. Neither may have

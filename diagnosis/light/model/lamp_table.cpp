@@ -89,9 +89,14 @@ Eigen::Array2d LampTable::factors(double slope, double height_m) const {
   for (size_t k = 0; k < weights.size(); ++k) {
     between += weights[k] * Eigen::Map<const Coefficients>(nodes_[first + k].front().data());
   }
-  Eigen::Array2d sum = between.tail<2>();
-  for (Eigen::Index p = terms - 1; p-- > 0;) sum = between.segment<2>(2 * p) + t * sum;
-  return sum / (height_m * height_m);
+  // In plain numbers: as arrays of two, the compiler keeps each sum in memory.
+  double along = 0.0, away = 0.0;
+  for (Eigen::Index p = terms; p-- > 0;) {
+    along = between[2 * p] + t * along;
+    away = between[2 * p + 1] + t * away;
+  }
+  const double scale = 1.0 / (height_m * height_m);
+  return {scale * along, scale * away};
 }
 
 bool LampTable::holds() const {
