@@ -173,7 +173,8 @@ FileHead head_of(const std::filesystem::path& path) {
   }
   if (unnamed) throw without_header(path, *unnamed, unnamed_separator);
   throw InputError({path.string()}, "header",
-                   "no rows of numbers between commas, semicolons, tabs or blanks",
+                   lines.empty() ? "an empty file"
+                                 : "no rows of numbers between commas, semicolons, tabs or blanks",
                    "a table with a header that names its columns");
 }
 
