@@ -52,7 +52,7 @@ struct CandidateTraits {
   bool is_fitted_first = false;
   // Whether it changes only readings, so that no torque takes its place.
   bool is_of_instrument = false;
-  // How often a trial may contain it.
+  // Maximum number of times that a trial may contain it.
   size_t most = 1;
 };
 

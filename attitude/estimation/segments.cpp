@@ -42,7 +42,7 @@ double long_gap_s(const Recording& recording) {
 
 // The size of most of these. Between the steps of an encoder nothing changes but by rounding: of
 // such readings, of those that do change.
-double usual_of(const std::vector<double>& sizes) {
+double typical_size(const std::vector<double>& sizes) {
   constexpr double rounding = 1e-6, fewest_steps = 0.005;
   const double usual = upper_median(sizes), least = rounding * std::ranges::max(sizes);
   if (usual > least) return usual;
@@ -55,7 +55,7 @@ double usual_of(const std::vector<double>& sizes) {
 }
 
 // For each value, the largest of three medians: of the values around it, before it and after it.
-std::vector<double> usual_nearby(const std::vector<double>& sizes) {
+std::vector<double> typical_nearby(const std::vector<double>& sizes) {
   constexpr size_t group = 32;
   const size_t groups = std::max<size_t>(1, sizes.size() / group);
   std::vector<double> medians;
@@ -79,7 +79,7 @@ std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   std::vector<char> kinks(rows.blocks(), 0);
   const bool slides = platform.slides();
   if (slides && !(rows.has(Scalar::position_x) && rows.has(Scalar::position_y))) return kinks;
-  if (!slides && (!platform.turns_about_one_axis() || !rows.sees_some_attitude())) return kinks;
+  if (!slides && (!platform.turns_about_one_axis() || !rows.has_some_attitude())) return kinks;
   struct Change {
     size_t row;
     double rate;  // rad/s or m/s
@@ -112,8 +112,8 @@ std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   if (changes.empty()) return kinks;
   std::vector<double> sizes;
   for (const Change& change : changes) sizes.push_back(change.rate);
-  const double usual = usual_of(sizes);
-  const std::vector<double> nearby = usual_nearby(sizes);
+  const double usual = typical_size(sizes);
+  const std::vector<double> nearby = typical_nearby(sizes);
   // For a Gaussian, 12 times this median is 8 standard deviations.
   constexpr double medians = 12.0;
   for (size_t i = 0; i < changes.size(); ++i) {
@@ -161,7 +161,7 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
       last = lawful.last;
       if (!lawful.left_out.empty()) result.exclusions.push_back(std::move(lawful.left_out));
     }
-    if (turns_alone && rows.sees_some_attitude() && !is_commanded(rows.schedule)) {
+    if (turns_alone && rows.has_some_attitude() && !is_commanded(rows.schedule)) {
       const size_t released = released_at(rows, platform.axis, first, last);
       if (released > first) {
         result.exclusions.push_back(

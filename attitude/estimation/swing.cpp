@@ -126,7 +126,7 @@ Eigen::MatrixXd with_friction(const Eigen::MatrixXd& motion, const Eigen::Matrix
 // The residual of the accelerations under the one law, over its usual scatter; over a twentieth of
 // the largest acceleration within half a period where that is more, because local cubics are off by
 // such a part.
-Eigen::VectorXd off_the_law(const Eigen::MatrixXd& motion) {
+Eigen::VectorXd scaled_residuals(const Eigen::MatrixXd& motion) {
   constexpr double part = 0.05 / 3.0;
   constexpr Eigen::Index half_period = steps_per_period / 2;
   Eigen::MatrixXd of_angle(motion.rows(), 4);
@@ -240,8 +240,8 @@ namespace {
 // The swing within the rows, if there is one.
 LocalMotion swing_of(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
   constexpr size_t fewest_readings = 60;
-  AxisReadings read = rows.sees_some_attitude() ? angles_about(rows, axis, first, last)
-                                                : angles_of_swing(rows, axis);
+  AxisReadings read = rows.has_some_attitude() ? angles_about(rows, axis, first, last)
+                                               : angles_of_swing(rows, axis);
   if (read.row.size() < fewest_readings) return {};
   leave_out_rest(read);
   return read.row.size() < fewest_readings ? LocalMotion() : local_motion(read);
@@ -266,7 +266,7 @@ size_t released_at(const Observation& rows, const Vec3& axis, size_t first, size
   constexpr double usual = 3.0;
   const LocalMotion local = swing_of(rows, axis, first, last);
   if (local.row.empty()) return first;
-  const Eigen::VectorXd off = off_the_law(local.motion);
+  const Eigen::VectorXd off = scaled_residuals(local.motion);
   int lawful = 0;
   for (size_t i = 0; i < local.row.size() / 4; ++i) {
     lawful = std::abs(off[static_cast<Eigen::Index>(i)]) < usual ? lawful + 1 : 0;

@@ -32,7 +32,7 @@ struct ModuleHypothesis {
     std::function<double(std::span<const double> x)> value;
   };
   std::vector<Number> numbers;
-  // Of two effects together: the index of each among the hypotheses, and its first parameter.
+  // One of two effects together: its index among the hypotheses, and its first parameter.
   struct Member {
     size_t hypothesis, first;
   };
