@@ -43,7 +43,7 @@ struct Map {
   // Values are those at the middles of the bins of a field that is smooth between them: drawn
   // interpolated, with contour lines.
   bool smooth = false;
-  // Of each value in the mean (the area of surface in each bin); empty where all count alike.
+  // Weight of each value in the mean (surface area of each bin); empty: equal weights.
   std::vector<double> weight = {};
 };
 
@@ -102,7 +102,7 @@ struct Plot {
   std::string name;
   std::string title;
   std::string x_label, y_label;
-  // Of a curve: the next of the palette, or one that has a meaning throughout a page.
+  // Colour of a curve: the next of the palette, or one with the same meaning on a whole page.
   enum class Colour { in_order, blue, vermilion, green, grey };
   struct Curve {
     std::string label;
@@ -150,7 +150,7 @@ struct BarChart {
   std::vector<Bar> bars;
 };
 
-// Everything one step of the program found.
+// All results of one step of the program.
 struct Product {
   std::vector<Quantity> quantities;
   std::vector<Map> maps;

@@ -21,15 +21,15 @@ template <class T>
 concept HasState = requires(T& value, Snapshot& snapshot) {
   value.keep(snapshot);
 };
-// Numbers, and vectors and structs of numbers, whose bytes are all that they are. (Eigen's vectors
-// are so although the compiler does not call them trivially copyable.)
+// Numbers, and vectors and structs of numbers, which can be copied as bytes. (Eigen's vectors can,
+// although they are not trivially copyable.)
 template <class T>
 concept MadeOfNumbers =
     std::is_trivially_destructible_v<T> && !std::is_pointer_v<T> && !HasState<T>;
 
 class Snapshot {
  public:
-  // Takes a state.
+  // Stores a state.
   Snapshot() = default;
   // Restores the state from `bytes`, which must outlive it.
   explicit Snapshot(const std::string& bytes) : source_(&bytes) {}
@@ -38,14 +38,14 @@ class Snapshot {
   void operator()(T&... values) {
     (value(values), ...);
   }
-  // A list, every element by `visit`.
+  // A list; `visit` processes each element.
   template <class List, class Visit>
   void each(List& list, const Visit& visit) {
     uint64_t count = list.size();
     value(count);
-    if (gives_back()) list.clear();
+    if (is_restoring_state()) list.clear();
     for (uint64_t i = 0; i < count && good_; ++i) {
-      if (gives_back()) list.emplace_back();
+      if (is_restoring_state()) list.emplace_back();
       visit(list[i]);
     }
   }
@@ -55,7 +55,7 @@ class Snapshot {
     expect(list.size());
     copy(reinterpret_cast<char*>(list.data()), list.size() * sizeof(T));
   }
-  // A number that the inputs fix: a state with another one is not of the same run.
+  // A number that follows from the inputs. A state with another number belongs to another run.
   void expect(uint64_t number) {
     uint64_t kept = number;
     value(kept);
@@ -69,9 +69,9 @@ class Snapshot {
     if (!good_) number = 0;
   }
 
-  bool gives_back() const { return source_ != nullptr; }
-  // Whether all was given back and nothing is left. What was given back is of no use otherwise.
-  bool is_whole() const { return good_ && (!gives_back() || at_ == source_->size()); }
+  bool is_restoring_state() const { return source_ != nullptr; }
+  // Whether the whole state was restored and no bytes remain. Otherwise the values are invalid.
+  bool is_whole() const { return good_ && (!is_restoring_state() || at_ == source_->size()); }
   // The bytes written so far.
   const std::string& bytes() const { return taken_; }
 
@@ -98,7 +98,7 @@ class Snapshot {
   void value(std::optional<T>& perhaps) {
     bool is_there = perhaps.has_value();
     value(is_there);
-    if (gives_back()) perhaps = is_there ? std::optional<T>(T{}) : std::nullopt;
+    if (is_restoring_state()) perhaps = is_there ? std::optional<T>(T{}) : std::nullopt;
     if (is_there) value(*perhaps);
   }
   template <class Block>
@@ -106,7 +106,7 @@ class Snapshot {
     uint64_t count = numbers.size();
     value(count);
     constexpr size_t each_bytes = sizeof(typename Block::value_type);
-    if (gives_back()) {
+    if (is_restoring_state()) {
       // No more than there are bytes for.
       good_ = good_ && count <= (source_->size() - at_) / each_bytes;
       numbers.resize(good_ ? count : 0);
@@ -114,7 +114,7 @@ class Snapshot {
     copy(reinterpret_cast<char*>(numbers.data()), numbers.size() * each_bytes);
   }
   void copy(char* numbers, size_t bytes) {
-    if (!gives_back()) {
+    if (!is_restoring_state()) {
       taken_.append(numbers, bytes);
       return;
     }

@@ -1,4 +1,4 @@
-// Vectors, rotations and rigid transforms: the fixed-size linear algebra that all folders share.
+// Vectors, rotations and rigid transforms: fixed-size linear algebra.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,8 +23,7 @@ inline Mat3 skew(const Vec3& a) {
 // A rotation followed by a translation, named by the frames it joins: world_from_body.
 // Maps points and directions of one right-handed frame into another.
 // `rotation` must be of unit norm; `translation_m` is the origin of the source frame, expressed in
-// the target frame. Composition reads as the names do: lab_from_led = lab_from_body *
-// body_from_led.
+// the target frame. Composition: lab_from_led = lab_from_body * body_from_led.
 struct RigidTransform {
   Quat rotation = Quat::Identity();
   Vec3 translation_m = Vec3::Zero();
@@ -65,7 +64,7 @@ inline Quat turn_by(const Vec3& rotation_rad) {
   return Quat(Eigen::AngleAxisd(angle_rad, rotation_rad / angle_rad));
 }
 
-// The rotation vector of a rotation, at most π long [rad]; exact for small ones too.
+// The rotation vector of a rotation, of length at most π [rad]; exact also for small rotations.
 inline Vec3 turn_vector(const Quat& rotation) {
   const double half_sine = rotation.vec().norm();
   if (half_sine == 0.0) return Vec3::Zero();

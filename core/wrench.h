@@ -27,8 +27,8 @@ struct WrenchEstimate {
   Wrench mean;
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
-  // One standard error per component, in the frame of `mean`. What is exact may be below 0 by
-  // rounding once it is turned.
+  // One standard error per component, in the frame of `mean`. After a rotation, rounding may make
+  // the variance of an exact component negative.
   Vec3 force_error_N() const { return covariance.diagonal().head<3>().cwiseMax(0.0).cwiseSqrt(); }
   Vec3 torque_error_N_m() const {
     return covariance.diagonal().tail<3>().cwiseMax(0.0).cwiseSqrt();
@@ -47,10 +47,10 @@ WrenchEstimate wrench_from_replicates(std::span<const WrenchComponents> replicat
 Wrench wrench_about(const Wrench& wrench, const Vec3& about_m);
 WrenchEstimate wrench_about(const WrenchEstimate& wrench, const Vec3& about_m);
 
-// The wrench on a body as a function of two angles, tabulated: how traced light reaches a
-// simulation of attitude without tracing.
+// The wrench on a body as a table over two angles. With it, a simulation of the attitude includes
+// light without tracing.
 
-// Where a table is looked up.
+// The two angles of a table.
 struct TableAngles {
   double polar_rad = 0.0;   // tilt or elevation
   double around_rad = 0.0;  // heading or azimuth
@@ -59,10 +59,11 @@ struct TableAngles {
 // Body-frame wrenches on the grid `around_rad` × `polar_rad`, around outermost.
 struct WrenchTable {
   enum class Angles {
-    // Of a platform under fixed light: polar is the tilt from the vertical in [0, π], around the
+    // Attitude of a platform under fixed light: polar is the tilt from the vertical in [0, π],
+    // around the
     // heading of the tilt, as in lab_from_body_at().
     tilt_heading,
-    // Of the direction towards a far light, in body axes: polar is the elevation in [−π/2, π/2]
+    // Direction towards a distant light, in body axes: polar is the elevation in [−π/2, π/2]
     // above the xy plane, around the azimuth from x towards y.
     azimuth_elevation,
   };
@@ -86,28 +87,28 @@ WrenchTable make_wrench_table(WrenchTable::Angles angles, std::vector<double> po
                               std::vector<double> around_rad,
                               const Vec3& about_body_m = Vec3::Zero());
 
-// Puts a body-frame wrench at a node, moved to the table's point.
+// Sets the wrench of a node from one in the body frame; its torque is converted to the reference
+// point of the table.
 void set_node(WrenchTable& table, size_t node, const WrenchEstimate& wrench);
 
-// The wrench between the nodes, bilinear in the two angles. The second angle wraps when the table
-// goes all round (its last node is no further from its first than its widest step); at a pole it
-// does not matter. NumericalError outside the grid (by more than 1e-9 rad): a table says nothing
-// about what was not traced.
+// The wrench between the nodes, bilinear in the two angles. The second angle is periodic if
+// the table covers the full circle (the gap between last and first node is at most its widest
+// step); at a pole it has no effect. NumericalError outside the grid (by more than 1e-9 rad).
 Wrench wrench_at(const WrenchTable& table, const TableAngles& angles);
 
 // Azimuth and elevation of a direction in body axes (any length but zero), and back (unit length).
 TableAngles azimuth_and_elevation(const Vec3& towards_light_body);
 Vec3 towards_light(const TableAngles& azimuth_elevation);
 
-// At a pole (tilt 0 or 180 deg, elevation ±90 deg) every azimuth is the same attitude, and azimuths
-// 360 deg apart always are: the table with all such nodes replaced by their mean.
+// The table with equivalent nodes replaced by their mean: nodes at a pole (tilt 0 or 180 deg,
+// elevation ±90 deg), and nodes whose azimuths differ by 360 deg.
 WrenchTable single_valued(const WrenchTable& table);
 
 // All forces and torques times `factor`: from a table per unit pressure to one at a given pressure.
 WrenchTable scaled(const WrenchTable& table, double factor);
 
 // For azimuth and elevation: the mean over the sphere of the force along the light's travel [N].
-// Positive for every passive body; a negative one betrays a table of the opposite sign convention.
+// Positive for every passive body; a negative value indicates the opposite sign convention.
 double mean_push_N(const WrenchTable& table);
 
 }  // namespace photorque

@@ -54,7 +54,7 @@ struct CandidateTraits {
   bool is_limit_of_swinging = false;
   // Whether it changes only readings, so that no torque takes its place.
   bool is_of_instrument = false;
-  // How often a trial may contain it.
+  // Maximum number of times that a trial may contain it.
   size_t most = 1;
 };
 

@@ -56,16 +56,16 @@ class Rounds {
       }
       std::vector<Trial> parents = {at};
       // Pieces only select the sets to fit to whole runs, so fits to them need not converge.
-      if (set_.pieces == 1) settle_leaders(domain_, set_.runs, threads_, found, parents);
+      if (set_.pieces == 1) converge_leaders(domain_, set_.runs, threads_, found, parents);
       for (Trial& parent : parents) keep(std::move(parent));
       for (Trial& trial : found) keep(std::move(trial));
       const Trial before = *std::find_if(trials_.begin(), trials_.end(), [&](const Trial& t) {
         return same_candidates(t.candidates, at.candidates);
       });
-      Trial best = best_to_go_on(swinging);
+      Trial best = best_to_continue(swinging);
       if (is_first && scans && may_be_surrogates(best)) {
-        const std::vector<size_t> fast = follow_what_swings(best);
-        best = best_to_go_on(swinging);
+        const std::vector<size_t> fast = search_oscillating_effects(best);
+        best = best_to_continue(swinging);
         if (!fast.empty() && includes(best.candidates, fast)) return;
       }
       const bool gained =
@@ -87,7 +87,7 @@ class Rounds {
   // The base is therefore scanned without them, but with the errors of instruments of `best`, and
   // rounds start from the best result. Returns the candidates of that result; empty: nothing
   // swings.
-  std::vector<size_t> follow_what_swings(const Trial& best) {
+  std::vector<size_t> search_oscillating_effects(const Trial& best) {
     const Trial base = with_instruments(domain_, best, trials_.front(), set_.runs);
     // A scan about a diverged base is useless if some candidate leads back to the readings.
     if (has_diverged(base, limits_) && !has_diverged(best, limits_)) return {};
@@ -462,7 +462,7 @@ class Rounds {
   }
 
   // The allowed trial of largest evidence that contains the candidates.
-  const Trial& best_to_go_on(const std::vector<size_t>& containing) const {
+  const Trial& best_to_continue(const std::vector<size_t>& containing) const {
     for (const size_t i : by_evidence(trials_)) {
       const Trial& t = trials_[i];
       if (t.objection.empty() && includes(t.candidates, containing)) return t;

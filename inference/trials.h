@@ -47,9 +47,9 @@ void refit_from_best(const D& domain, const std::vector<typename D::Run>& runs,
 // unfinished fit would seem to gain by the added candidate. For the same reason leaders and parents
 // are also refitted from the end of the best fit.
 template <Domain D>
-void settle_leaders(const D& domain, const std::vector<typename D::Run>& runs, int threads,
-                    std::vector<typename D::Trial>& found,
-                    std::vector<typename D::Trial>& parents) {
+void converge_leaders(const D& domain, const std::vector<typename D::Run>& runs, int threads,
+                      std::vector<typename D::Trial>& found,
+                      std::vector<typename D::Trial>& parents) {
   using Trial = typename D::Trial;
   const Thresholds& limits = domain.limits();
   std::vector<size_t> leaders = by_evidence(found);
@@ -115,18 +115,18 @@ void sort_by_evidence(std::vector<Trial>& trials) {
                    [](const Trial& a, const Trial& b) { return a.log_evidence > b.log_evidence; });
 }
 
-// Of trials with equal candidates in any order, keeps the best.
+// Keeps the best of trials with equal candidates in any order.
 template <class Trial>
 std::vector<Trial> deduplicated(std::vector<Trial> trials) {
   std::vector<Trial> kept;
   for (Trial& trial : trials) {
-    const auto twin = std::find_if(kept.begin(), kept.end(), [&](const Trial& t) {
+    const auto equal = std::find_if(kept.begin(), kept.end(), [&](const Trial& t) {
       return same_candidates(t.candidates, trial.candidates);
     });
-    if (twin == kept.end()) {
+    if (equal == kept.end()) {
       kept.push_back(std::move(trial));
-    } else if (trial.log_evidence > twin->log_evidence) {
-      *twin = std::move(trial);
+    } else if (trial.log_evidence > equal->log_evidence) {
+      *equal = std::move(trial);
     }
   }
   return kept;

@@ -51,8 +51,8 @@ class Weighing {
     const double gain = trials_[places.front()].log_evidence - nominal;
     add_leaders(places);
     const size_t found = trials_.size();
-    add_what_only_all_show(trials_.front().candidates);
-    add_what_only_all_show(best().joint.candidates);
+    add_candidates_of_all_runs(trials_.front().candidates);
+    add_candidates_of_all_runs(best().joint.candidates);
     refit_from_best();
     search_on();
     add_without_each();
@@ -375,7 +375,7 @@ class Weighing {
 
   // Adds candidates that gain on all runs beside `parent` (a leader) but are not yet leaders with
   // it.
-  void add_what_only_all_show(const std::vector<size_t>& parent) {
+  void add_candidates_of_all_runs(const std::vector<size_t>& parent) {
     const auto is_parent = [&](const Leader& l) { return trials_[l.at].candidates == parent; };
     const auto at = std::find_if(leaders_.begin(), leaders_.end(), is_parent);
     const Trial joint = at->joint, train = trials_[at->at];

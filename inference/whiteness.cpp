@@ -14,7 +14,7 @@ namespace {
 // Expected value of reading n: the median of predictions from both sides and from either side. A
 // single bad neighbour then has no influence, and a steadily growing residual is no outlier.
 double expected(const std::vector<double>& r, size_t n) {
-  std::vector<double> says;
+  std::vector<double> predictions;
   const bool left = n >= 1, right = n + 1 < r.size();
   // At an end, the prediction is the neighbour or the line through two neighbours, whichever is
   // nearer: residuals of unmodelled motion diverge there.
@@ -23,12 +23,12 @@ double expected(const std::vector<double>& r, size_t n) {
     const double along = 2.0 * one - two;
     return std::abs(r[n] - along) < std::abs(r[n] - one) ? along : one;
   }
-  says.push_back(0.5 * (r[n - 1] + r[n + 1]));
-  if (n >= 2) says.push_back(2.0 * r[n - 1] - r[n - 2]);
-  if (n + 2 < r.size()) says.push_back(2.0 * r[n + 1] - r[n + 2]);
-  if (n >= 2 && says.size() < 3) says.push_back(r[n - 2]);
-  if (n + 2 < r.size() && says.size() < 3) says.push_back(r[n + 2]);
-  return upper_median(says);
+  predictions.push_back(0.5 * (r[n - 1] + r[n + 1]));
+  if (n >= 2) predictions.push_back(2.0 * r[n - 1] - r[n - 2]);
+  if (n + 2 < r.size()) predictions.push_back(2.0 * r[n + 1] - r[n + 2]);
+  if (n >= 2 && predictions.size() < 3) predictions.push_back(r[n - 2]);
+  if (n + 2 < r.size() && predictions.size() < 3) predictions.push_back(r[n + 2]);
+  return upper_median(predictions);
 }
 
 }  // namespace

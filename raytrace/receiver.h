@@ -28,8 +28,8 @@ struct Hits {
   Column<uint32_t> triangle;  // index into that mesh's triangles
   Column<uint8_t> front;      // 1: hit from the front, 0: from the back
   Column<uint16_t> depth;     // 0: straight from the emitter
-  // Of the arriving rays, unit vectors in single precision; each of `count` entries. They lie in
-  // the tracer's memory and hold while it hands the hits out, not in a copy.
+  // Directions of the arriving rays, unit vectors in single precision, with `count` entries each.
+  // They are in the memory of the tracer and valid only while it processes these hits.
   std::array<const float*, 3> direction{};
   Column<double> cosine;                     // of the angle of incidence, in [0, 1]; to 3e-7
   std::array<Column<double>, 3> position_m;  // on the triangle's plane to 2e-10 of the scene size
@@ -72,7 +72,7 @@ class Receiver {
  public:
   virtual ~Receiver() = default;
 
-  // How many numbers the tracer sums for it per replicate.
+  // Number of sums per replicate.
   virtual size_t bins() const = 0;
 
   // Adds the contributions of these hits to `sums` (of bins() entries). Every entry must be a sum

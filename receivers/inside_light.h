@@ -25,7 +25,7 @@ class InsideLightReceiver final : public Receiver {
     uint32_t instance;
     Estimate outside_W, inside_W;
   };
-  // Those with light inside, the most first.
+  // Parts with light inside, the largest power first.
   std::vector<Part> lit_inside(const BinSums& sums) const;
   // On the inside of all together.
   Estimate inside_W(const BinSums& sums) const;

@@ -1,4 +1,4 @@
-// How a `[[receiver]]` of an experiment becomes a Receiver, and the keys that all kinds share.
+// Conversion of `[[receiver]]` of an experiment into a Receiver, and the common keys of all kinds.
 #pragma once
 
 #include <cstdint>

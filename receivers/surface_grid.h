@@ -76,7 +76,7 @@ struct SurfaceGridOptions {
   // Keep only faces turned towards this direction and look along it. Needed for closed bodies,
   // whose mean normal is zero.
   std::optional<Vec3> facing_body;
-  // How an error calls the user's choice of surface.
+  // Name of the surface in error messages.
   InputLocation where;
   std::string key = "receiver";
 };

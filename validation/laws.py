@@ -405,7 +405,7 @@ BOUNDS = {
     ("sliding_spring", "stiffness_N_per_m"): (0.0, math.inf),
 }
 
-# Of kinds whose nominal value a finding corrects: bounds where the nominal model has nothing of the kind.
+# Bounds of kinds that correct a nominal value, for nominal models without this kind.
 BOUNDS_ALONE = {("bearing_drag", "coefficient_N_m_s"): (-1e-6, math.inf)}
 
 

@@ -84,7 +84,7 @@ def plan_text(plan):
     counts = [(plan.per_kind, "of every kind"), (plan.pairs, "pairs")]
     if plan.of == "light":
         counts += [(plan.none, "with nothing missing"), (plan.outside, "of every law outside the catalogue"),
-                   (plan.below, "below what shows")]  # fmt: skip
+                   (plan.below, "below the limit")]  # fmt: skip
     else:
         counts += [(plan.triples, "triples"), (plan.known_unknown, "with a known effect and an unknown law"),
                    (plan.outside, "of every law outside the catalogue"), (plan.none, "with nothing missing"),
@@ -95,7 +95,7 @@ def plan_text(plan):
     if plan.of == "light":
         return f"{text}{100.0 * plan.dirty_share:g} % of the files dirty; seed {plan.seed}."
     rates = ", ".join(f"{rate:g}" for rate in plan.rates_Hz)
-    return (f"{text}{100.0 * plan.second_maker_share:g} % of the second maker, the others recordings of "
+    return (f"{text}{100.0 * plan.second_maker_share:g} % of the second generator, the others recordings of "
             f"{plan.duration_s:g} s and hold-outs of {plan.holdout_s:g} s at {rates} Hz, "
             f"{100.0 * plan.dirty_share:g} % of the files dirty; seed {plan.seed}.")  # fmt: skip
 

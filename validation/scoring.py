@@ -295,8 +295,8 @@ def questions(scores):
     indices = Fraction(sum(s.indices_right for s in scores), sum(s.indices for s in scores))
     table = [
         ("all cases: verdict and names right", anything, right, "≥ 95 %"),
-        ("one effect that shows: name right", shows(1), right, "≥ 95 %"),
-        ("one effect that shows: right within the group named", shows(1), lambda s: s.right_within_group),
+        ("one detectable effect: name right", shows(1), right, "≥ 95 %"),
+        ("one detectable effect: right up to indistinguishable effects", shows(1), lambda s: s.right_within_group),
         ("one strong effect (χ² gain above 50 000): name right",
          lambda s: shows(1)(s) and s.chi2_gain > STRONG_GAIN, right, "≥ 95 %"),
         ("one effect under correlated noise: name right",
@@ -312,25 +312,25 @@ def questions(scores):
         ("unknown law called unexplained: variable right",
          lambda s: alone(s) and s.verdict == "unexplained", lambda s: s.dependence_right),
         ("known effect and unknown law: unexplained, nothing wrong named", beside, right, "≥ 95 %"),
-        ("known effect and unknown law: the known one named too", beside, lambda s: s.known_named),
-        ("platforms and motions of the second maker: verdict and names right",
+        ("known effect and unknown law: the known one is named", beside, lambda s: s.known_named),
+        ("second generator: verdict and names right",
          lambda s: s.maker.startswith("second"), right, "≥ 95 %"),
         None,
         ("cases with a wrong name", anything, lambda s: s.wrong_name, "≤ 1 %"),
-        ("missing_physics that contradicts its own prediction by more than 5 σ",
+        ("missing_physics with held-out residuals more than 5 σ above the prediction",
          lambda s: s.names_missing_physics and math.isfinite(s.predictive_sigma),
          lambda s: s.predictive_sigma > MAX_SIGMA, "none"),
         ("missing_physics without a stated prediction", lambda s: s.names_missing_physics,
          lambda s: not math.isfinite(s.predictive_sigma), "none"),
         ("missing_physics whose held-out χ² is within 10 % of the oracle's", has_oracle, near_oracle, "≥ 95 %"),
-        ("the same, of those that expect the errors of their numbers to add at most 5 %",
+        ("as above, if parameter errors are expected to add at most 5 %",
          lambda s: has_oracle(s) and s.expected_chi2 <= MAX_EXPECTED, near_oracle, "≥ 95 %"),
         ("answers with a number beyond physics", answered, lambda s: s.impossible, "none"),
         ("answers without a confidence", answered, lambda s: not math.isfinite(s.confidence), "none"),
         ("cases without an answer", anything, lambda s: not s.answered, "none"),
         ("exits other than 0", anything, lambda s: s.exit_status != 0, "none"),
         ("improved.toml that propagates", replayed, lambda s: s.replay_status == 0, "all"),
-        ("improved.toml that repeats the recording as well as stated", replayed,
+        ("improved.toml that reproduces the recording with the stated χ²", replayed,
          lambda s: s.replays_as_stated, "all"),
     ]  # fmt: skip
     rows = [("effects rightly named: index of lamp, cell, string or diode right", indices, "≥ 98 %") if row is None
@@ -378,7 +378,7 @@ def figures(scores):
         table["pulls"] = (n, 0.0)
         table["pulls_rms"] = (rms, rms / math.sqrt(2.0 * n))
         table["pulls_within_1_sigma"] = (within / n, math.sqrt(within * (n - within) / n) / n)
-        # Of a normal distribution, the median of |x| is 0.6745.
+        # The median of |x| of a normal distribution is 0.6745.
         table["pulls_robust_sd"] = (statistics.median(abs(p) for p in pulls) / 0.6745, 0.0)
     if ratios:
         table["holdout_error_over_oracle_median"] = (statistics.median(ratios), 0.0)

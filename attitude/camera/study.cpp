@@ -188,9 +188,9 @@ Plot tilt_plot(const CameraStudy& study, const Table& degradation) {
   below.y_log = true;
   const std::pair<const char*, std::string> curves[] = {
       {"all", "all markers"},
-      {"one_dark", "the worst one dark"},
-      {"calibration", printed("markers' images off by %.3g px", study.calibration_px)},
-      {"radial", printed("k₁ off by %.3g", study.distortion_error.k1)},
+      {"one_dark", "without the most important marker"},
+      {"calibration", printed("images displaced by %.3g px at random", study.calibration_px)},
+      {"radial", printed("k₁ uncalibrated by %.3g", study.distortion_error.k1)},
       {"free", "centre not known"}};
   const std::vector<double>& tilt = degradation.column("tilt_deg").values;
   for (const auto& [name, label] : curves) {

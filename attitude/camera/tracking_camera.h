@@ -92,17 +92,17 @@ struct MarkerView {
   Vec2 smear_px = Vec2::Zero();  // displacement during the exposure
 };
 
-// How the platform stands and turns while an image is taken: the attitude is that at which the
-// image's middle row is exposed.
+// Attitude and rate of the platform during the exposure of an image: the attitude is that at which
+// the image's middle row is exposed.
 struct Pose {
   Quat lab_from_body = Quat::Identity();
   Vec3 rate_lab_rad_s = Vec3::Zero();
   Vec3 centre_m = Vec3::Zero();  // of rotation, in the lab
 };
 
-// Of a marker, where the pose takes it to be or, `in_truth`, where it is and as the lens shows it;
-// nothing where it is hidden, turned away, outside the image, fainter than an electron, or drawn
-// out over more than 128 pixels.
+// The image of a marker at the position that the pose assumes or, with `in_truth`, at the true
+// position with the true distortion. Empty if the marker is hidden, turned away, outside the image,
+// fainter than an electron, or blurred over more than 128 pixels.
 std::optional<MarkerView> view_of(const TrackingCamera& camera, size_t marker, const Pose& pose,
                                   bool in_truth = false);
 

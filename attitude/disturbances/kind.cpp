@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 
 #include "core/errors.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 
 namespace photorque {
@@ -35,7 +37,18 @@ Disturbance read_disturbance(const Settings& settings, const DisturbanceContext&
   std::vector<std::string> names;
   for (const DisturbanceKind& kind : kinds) names.push_back(kind.name);
   const DisturbanceKind& kind = kinds[settings.choice("kind", names)];
-  Disturbance disturbance = kind.read(settings, context);
+  Disturbance disturbance = [&] {
+    try {
+      return kind.read(settings, context);
+    } catch (const InputError&) {
+      if (settings.keys().size() > 1) throw;
+      constexpr size_t most = 8;
+      const std::span<const Key> shown(kind.keys.data(), std::min(most, kind.keys.size()));
+      throw settings.error("kind", in_quotes(kind.name) + " without its keys",
+                           "also " + joined_text(shown, ", ", &Key::name) +
+                               (kind.keys.size() > most ? ", …" : "") + " (docs/disturbances.md)");
+    }
+  }();
   disturbance.kind = kind.name;
   disturbance.per_recording =
       settings.flag_or("per_recording", false) || kind.screening.per_recording;
@@ -45,7 +58,10 @@ Disturbance read_disturbance(const Settings& settings, const DisturbanceContext&
 Key disturbance_table() {
   std::vector<Key::Choice> kinds;
   for (const DisturbanceKind& kind : disturbance_kinds()) {
-    kinds.push_back({kind.name, kind.summary, kind.keys});
+    const std::string& unranked = kind.budget.reason_against;
+    kinds.push_back({kind.name, kind.summary, kind.keys,
+                     screening_text(kind.screening) +
+                         (unranked.empty() ? "" : ". Not ranked by `budget`: " + unranked)});
   }
   return Key::tables(
       "disturbance",

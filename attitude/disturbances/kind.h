@@ -26,8 +26,7 @@ struct BudgetTraits {
   std::string reason_against = {};  // why it is not ranked; empty: it is
 };
 
-// Everything that is known about a kind of disturbance stands in its own file; no other file uses
-// its name.
+// All properties of a kind of disturbance are in its file; no other file uses its name.
 struct DisturbanceKind {
   std::string name;     // "bearing_drag"
   std::string summary;  // one sentence of physics

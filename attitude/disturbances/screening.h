@@ -1,5 +1,5 @@
-// Properties of a kind of disturbance as an effect that a model may lack: what a fit assumes about
-// its parameters before looking, and how `diagnose` has to look for it.
+// Properties of a kind of disturbance as an effect that a model may lack: the priors of its
+// parameters, and the method by which `diagnose` searches for it.
 #pragma once
 
 #include <optional>
@@ -15,15 +15,15 @@ struct EffectKey {
   static constexpr double unbounded = 1e308;
 
   std::string key;             // as in an experiment file
-  std::vector<double> start;   // where a fit begins; its size is the number of components
-  double scale = 1.0;          // size to be expected: the width of the prior
+  std::vector<double> start;   // initial values of a fit, one per component
+  double scale = 1.0;          // expected size: the standard deviation of the prior
   double lowest = -unbounded;  // bounds of physics
   double highest = unbounded;
   bool searched = false;  // enters nonlinearly: several starts are tried
   // Start and scale are multiples of the platform's mean moment of inertia.
   bool times_inertia = false;
   bool is_fixed = false;  // selects the law; not fitted
-  // Fixed at the largest that the recordings have of the channel of the key's name.
+  // Fixed at the largest value in the recordings of the channel with the key's name.
   bool is_largest_recorded = false;
 
   // A strength of either sign, one that cannot be negative, and one for each body axis.
@@ -47,36 +47,35 @@ struct EffectKey {
   static EffectKey vector_not_negative(const std::string& key, double scale) {
     return {key, {0.0, 0.0, 0.0}, scale, 0.0};
   }
-  // A shape (a frequency, an instant) whose starts a scan has to find.
+  // A frequency or an instant; a scan finds its initial value.
   static EffectKey shape(const std::string& key, double start, double scale, double lowest,
                          double highest = unbounded) {
     return {key, {start}, scale, lowest, highest, true};
   }
 };
 
-// One set of parameters with which an effect can be fitted: of one kind there may be several.
+// One set of parameters with which an effect can be fitted. A kind may have several sets.
 struct Parametrisation {
   std::string explanation;  // one sentence for the report
   std::vector<EffectKey> keys;
-  bool of_free_bodies = false;  // only they have it: no bearing turns them, and their shape shows
+  bool of_free_bodies = false;  // used only for bodies without a bearing
 };
 
 // A condition under which an effect is visible.
 enum class Requirement {
   none,
-  command,             // torques commanded, or forces
-  charge,              // a current
+  command,             // commanded torques or forces
+  charge,              // a battery current
   field,               // a magnetic field
-  gravity,             // weight on a support
-  bearing,             // something that carries the platform
-  air_bearing,         // and lets it turn about all axes
-  laboratory,          // that the attitude refers to: a bearing's, or round a free body at a stated
-                       // latitude
-  turning_laboratory,  // the same, seen by what turns about all axes
-  wheel,               // the measured speed of one
-  lamps,               // the measured current of some, and not always the same
-  plane,               // a platform that slides: the effect is a force
-  thrust,              // the same, and forces commanded
+  gravity,             // weight on a bearing
+  bearing,             // a bearing of any kind
+  air_bearing,         // a bearing that allows rotation about all axes
+  laboratory,          // a bearing, or a free body in a laboratory of stated latitude
+  turning_laboratory,  // an air bearing, or a free body in a laboratory of stated latitude
+  wheel,               // the measured speed of a wheel
+  lamps,               // the measured current of lamps, which changes during a recording
+  plane,               // a planar platform: the effect is a force
+  thrust,              // a planar platform with commanded forces
 };
 
 // A quantity that is scanned before a fit.
@@ -90,16 +89,16 @@ enum class Scan {
 // Another kind whose effect has the same form.
 struct ConfusableKind {
   std::string kind;
-  // The channel that alone separates them, whatever the start of a run; none: one is contained in
-  // the other, and both together are one effect.
+  // The channel that is needed to distinguish both kinds, for any start of a run. None: one kind
+  // contains the other, and both together count as one effect.
   Requirement distinguished_by = Requirement::none;
 };
 
-// All disturbances of one kind in a model, the nominal one and its correction of either sign, must
-// not sum to less than this: their parameters, SI.
-struct LeastSum {
+// Lower limit for the sum of the parameters [SI] of all disturbances of one kind in a model: the
+// nominal one and its correction, which may be negative.
+struct MinimumSum {
   double lowest = 0.0;
-  std::string objection;  // printed for a model that does
+  std::string objection;  // the message for a model below the limit
 };
 
 // The effect is a force on a platform that slides.
@@ -110,24 +109,28 @@ inline bool is_force(Requirement needs) {
 struct DisturbanceContext;  // attitude/disturbances/kind.h
 
 struct Screening {
-  // How `diagnose` fits the effect; none: it does not, for the reason that follows.
+  // The parameters that `diagnose` fits; empty: it does not test the kind, see `reason_against`.
   std::vector<Parametrisation> parametrisations = {};
   std::string reason_against = {};
-  // In place of these, where they follow from the experiment: none if it has nothing of the kind;
-  // and what documents say of them.
+  // Instead of `parametrisations`, if they depend on the experiment; empty if it has none of the
+  // kind. `widths` describes their expected sizes in documents.
   std::vector<Parametrisation> (*of_experiment)(const DisturbanceContext&) = nullptr;
   std::string widths = {};
   Requirement needs = Requirement::none;
   Scan scan = Scan::nothing;
   bool fast = false;           // acts within averages of the readings: fitted to all of them
-  bool per_recording = false;  // has another value after every switching on
-  bool steady = false;         // a torque that nothing changes, in the laboratory
-  // By how much a fitted disturbance changes the platform's inertia, of which there is a limit to
-  // credible value; null: not at all.
+  bool per_recording = false;  // has another value in each recording
+  bool steady = false;         // a constant torque in the lab frame
+  // Change of the platform's inertia by a fitted disturbance, for the limit of plausible changes;
+  // null: none.
   Mat3 (*inertia_change_kg_m2)(const Disturbance&) = nullptr;
   bool changes_mass = false;  // its first parameter is added to the platform's mass [kg]
-  std::optional<LeastSum> least_sum = {};
+  std::optional<MinimumSum> minimum_sum = {};
   std::vector<ConfusableKind> confusable_kinds = {};
 };
+
+// The test by `diagnose` in words, for documents: the expected sizes of the parameters [SI] and the
+// requirement, or the reason why there is no test.
+std::string screening_text(const Screening& screening);
 
 }  // namespace photorque

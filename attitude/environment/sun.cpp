@@ -7,6 +7,7 @@
 #include "attitude/environment/epoch.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/settings/files.h"
 
 namespace photorque {
 
@@ -267,8 +268,8 @@ SunPath read_sun(const Settings& settings) {
   }
   const double distance_au = settings.get(sun_key::distance) / astronomical_unit_m;
   if (settings.has(sun_key::table)) {
-    const std::filesystem::path path =
-        std::filesystem::path(settings.where().file).parent_path() / settings.get(sun_key::table);
+    const std::filesystem::path path = existing_file(
+        settings, sun_key::table, std::filesystem::path(settings.where().file).parent_path());
     return SunPath::table(
         read_time_series(path, {"sun_x", "sun_y", "sun_z"}, TimeSeries::Outside::hold),
         distance_au);

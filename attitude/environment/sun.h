@@ -39,7 +39,7 @@ HeliocentricOrbit orbit_of_earth(double since_J2000_s);
 class SunPath {
  public:
   static SunPath fixed(const Vec3& towards_lab_au);
-  // Of a table only the direction counts.
+  // The length of the vectors in a table is ignored.
   static SunPath table(TimeSeries towards_lab, double distance_au);
   static SunPath orbit(const HeliocentricOrbit& orbit, const Mat3& lab_from_ecliptic);
 
@@ -48,7 +48,7 @@ class SunPath {
   std::array<Vec3Of<Lanes>, 2> at(const Lanes& time_s) const;
 
  private:
-  // Of a table, or fixed.
+  // Direction from a table or a fixed one.
   std::array<Vec3, 2> of_table(double time_s) const;
 
   Vec3 fixed_au_ = Vec3::UnitX();
@@ -79,7 +79,7 @@ struct Pointing {
 SunPath read_sun(const Settings& settings);
 Key sun_table();
 
-// How much of the Sun is seen past a sphere.
+// Visible fraction of the Sun behind a sphere.
 
 // Fraction of a luminous disc that is not covered by an opaque one, in [0, 1]: angular radii of
 // both and the angle between their centres [rad]. The discs are flat: for sources of a few degrees

@@ -37,7 +37,7 @@ AxisReadings rates_about(const Observation& rows, const Vec3& axis, size_t first
 namespace {
 
 // A straight line through readings that are added one by one.
-class RestLine {
+class RegressionLine {
  public:
   void add(double t, double x) {
     if (count_ == 0.0) {
@@ -76,14 +76,14 @@ class RestLine {
 
 // The first reading of the motion after a rest of `rest` readings, a few later at most; 0: the
 // readings do not leave the rest at once.
-size_t leaves_at(const AxisReadings& read, size_t rest, double mean, double scatter) {
+size_t motion_start(const AxisReadings& read, size_t rest, double mean, double scatter) {
   constexpr size_t most_between = 12, least_after = 5;
   constexpr double away = 5.0, sudden = 10.0;
   const size_t after = std::clamp(rest, least_after, most_between);
   for (size_t first = rest; first <= rest + most_between; ++first) {
     if (first + after > read.value.size()) return 0;
     const double side = read.value[first] > mean ? 1.0 : -1.0;
-    RestLine moving;
+    RegressionLine moving;
     bool stays_away = true;
     for (size_t i = first; i < first + after; ++i) {
       stays_away = stays_away && side * (read.value[i] - mean) > away * scatter;
@@ -104,7 +104,7 @@ size_t first_after_rest(const AxisReadings& read, bool is_rate) {
   if (read.value.size() < 4 * fewest) return 0;
   const auto [least, most] = std::ranges::minmax_element(read.value);
   const double range = *most - *least, largest = std::max(std::abs(*least), std::abs(*most));
-  RestLine line;
+  RegressionLine line;
   for (size_t rest = 1; rest + fewest < read.value.size(); ++rest) {
     line.add(read.time_s[rest - 1], read.value[rest - 1]);
     if (rest < fewest) continue;
@@ -116,7 +116,8 @@ size_t first_after_rest(const AxisReadings& read, bool is_rate) {
                                    : std::abs(line.slope()) / line.slope_error();
     if (rest >= many && slope_sigma > clear_slope) return 0;
     if (slope_sigma > no_slope || (!is_constant && line.roughness() < least_rough)) continue;
-    if (const size_t first = leaves_at(read, rest, line.mean(), scatter); first > 0) return first;
+    if (const size_t first = motion_start(read, rest, line.mean(), scatter); first > 0)
+      return first;
   }
   return 0;
 }
@@ -130,7 +131,7 @@ size_t start_of_motion(const Observation& rows, const Vec3& axis, size_t first, 
     const size_t moves = first_after_rest(read, is_rate);
     sets_off = std::min(sets_off, moves == 0 ? first : read.row[moves]);
   };
-  if (rows.sees_some_attitude()) limit_to(angles_about(rows, axis, first, last), false);
+  if (rows.has_some_attitude()) limit_to(angles_about(rows, axis, first, last), false);
   if (rows.has_gyro) limit_to(rates_about(rows, axis, first, last), true);
   return sets_off == last ? first : sets_off;
 }

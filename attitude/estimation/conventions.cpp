@@ -309,7 +309,7 @@ std::string repair_free_rates(std::span<Observation> segments, const Mat3& inert
   constexpr size_t fewest = 20;
   std::vector<Change> changes;
   for (const Observation& seen : segments) {
-    if (!seen.has_gyro || seen.sees_some_attitude()) return "";
+    if (!seen.has_gyro || seen.has_some_attitude()) return "";
     const std::vector<Change> own = changes_of(seen);
     changes.insert(changes.end(), own.begin(), own.end());
   }

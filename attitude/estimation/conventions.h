@@ -16,7 +16,7 @@ namespace photorque {
 // The segments of one recording are read in one way: long ones decide for short ones.
 std::string repair_conventions(std::span<Observation> segments);
 
-// How roll, pitch and yaw of a recording are to be read.
+// Convention of roll, pitch and yaw in a recording.
 struct AngleConvention {
   std::string sequence;   // of angle_sequences
   double factor = 1.0;    // to radians, of the header's radians

@@ -218,7 +218,7 @@ namespace {
 // The least physical value of a key, from the kind's own file.
 double lowest_of(const DisturbanceKind* kind, const std::string& key) {
   if (kind == nullptr) return -inference::infinity;
-  if (kind->screening.least_sum) return kind->screening.least_sum->lowest;
+  if (kind->screening.minimum_sum) return kind->screening.minimum_sum->lowest;
   for (const Parametrisation& p : kind->screening.parametrisations) {
     for (const EffectKey& k : p.keys) {
       if (k.key == key && k.lowest > -EffectKey::unbounded) return k.lowest;

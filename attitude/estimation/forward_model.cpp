@@ -76,7 +76,7 @@ inference::Parameter parameter_of(const Hypothesis& h, const Free& f, double val
   return {name_of(h, f), "", value, f.mean, f.sigma, f.lowest, f.highest};
 }
 
-// Of each extra state, which of place (x, y) and velocity it is; −1: neither.
+// For each extra state, its number among position (x, y) and velocity; −1: neither.
 std::vector<int> places_among_extra(const AttitudeModel& model) {
   std::vector<int> places;
   for (const Disturbance& d : model.disturbances) {
@@ -87,15 +87,15 @@ std::vector<int> places_among_extra(const AttitudeModel& model) {
   return places;
 }
 
-// Whether readings determine it.
-bool tells_place(const Observation& seen, int which) {
+// Whether readings determine a position or velocity of a sliding body.
+bool determines_translation(const Observation& seen, int which) {
   const bool along_x = which % 2 == 0;
   return seen.has(along_x ? Scalar::position_x : Scalar::position_y) ||
          (which >= 2 && seen.has(along_x ? Scalar::velocity_x : Scalar::velocity_y));
 }
 
-// Where a run began. Quantities that no reading determines keep their value: rotations that no
-// camera sees by a radian, motion that the bearings of one axis hold by next to nothing.
+// Initial conditions of a run. Quantities that no reading determines keep their value, by priors:
+// 1 rad for rotations without attitude readings, nearly zero for motion that a bearing prevents.
 std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
                                                      const PlatformState& initial,
                                                      const Observation& seen) {
@@ -103,11 +103,11 @@ std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
   const char* axes[] = {"x", "y", "z"};
   const Platform& platform = model.platform;
   std::vector<inference::Parameter> result;
-  // Of a recording with attitudes some part may have none.
+  // A part of a recording with attitudes may have none.
   const bool has_attitudes =
       std::ranges::any_of(seen.attitude_rows, [](double rows) { return rows > 0.0; });
   // The rotation of a sliding body may not be observed.
-  const bool turn_is_seen = seen.sees_some_attitude() || seen.has_gyro || !platform.slides();
+  const bool turn_is_seen = seen.has_some_attitude() || seen.has_gyro || !platform.slides();
   const auto is_held = [&](int k) {
     if (!turn_is_seen) return true;
     return platform.turns_about_one_axis() && std::abs(platform.axis[k]) < 1e-12;
@@ -137,7 +137,7 @@ std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
     if (places[k] >= 0) {
       result.push_back({"initial state " + std::to_string(k + 1), "", initial.extra[k]});
       // A place that no reading determines stays.
-      if (!tells_place(seen, places[k])) {
+      if (!determines_translation(seen, places[k])) {
         result.back().mean = initial.extra[k];
         result.back().sigma = extra_state_sigma;
       }

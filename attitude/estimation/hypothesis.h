@@ -56,7 +56,7 @@ PlatformState first_state(const AttitudeModel& model, const Observation& seen);
 // Such starts of all runs, their own parameters at the nominal model.
 std::vector<RunStart> starts_from_data(const Hypothesis& h, const std::vector<Observation>& runs);
 
-// How one coordinate of a recording begins.
+// Initial condition of one coordinate of a recording.
 
 struct FirstLine {
   double value = 0.0, slope_1_s = 0.0;  // at the time of the run's first block; of the unit per s

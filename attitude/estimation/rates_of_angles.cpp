@@ -13,7 +13,7 @@ namespace photorque {
 bool is_rate_of_angle(const Observation& rows, const Vec3& axis) {
   constexpr size_t fewest = 20;
   constexpr double exactly = 0.05;
-  if (!rows.sees_some_attitude() || !rows.has_gyro) return false;
+  if (!rows.has_some_attitude() || !rows.has_gyro) return false;
   const AxisReadings angle = angles_about(rows, axis, 0, rows.blocks()),
                      read = rates_about(rows, axis, 0, rows.blocks());
   // The first or the last row often lacks its quotient.

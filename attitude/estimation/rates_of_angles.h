@@ -15,7 +15,7 @@ void drop_rates(Observation& rows);
 
 // An angle with fewer than nine readings a turn that turns in one sense, ten times at least, does
 // not show the law within a turn: the recording with mean rates between its readings instead.
-// Nothing for other recordings, with commands or with other readings of the rotation.
+// Empty for other recordings, with commands or with other readings of the rotation.
 std::optional<Recording> with_rates_of_far_turns(const Recording& recording,
                                                  const Platform& platform);
 

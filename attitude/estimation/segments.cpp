@@ -42,7 +42,7 @@ double long_gap_s(const Recording& recording) {
 
 // The size of most of these. Between the steps of an encoder nothing changes but by rounding: of
 // such readings, of those that do change.
-double usual_of(const std::vector<double>& sizes) {
+double typical_size(const std::vector<double>& sizes) {
   constexpr double rounding = 1e-6, fewest_steps = 0.005;
   const double usual = upper_median(sizes), least = rounding * std::ranges::max(sizes);
   if (usual > least) return usual;
@@ -69,7 +69,7 @@ std::vector<double> kink_threshold(const std::vector<double>& sizes) {
     const auto large = static_cast<size_t>(most * static_cast<double>(near.size()));
     of_group.push_back(std::max(medians * near[near.size() / 2], steps * near[large]));
   }
-  const double least = medians * usual_of(sizes);
+  const double least = medians * typical_size(sizes);
   std::vector<double> threshold;
   for (size_t i = 0; i < sizes.size(); ++i) {
     const size_t at = std::min(i / group, groups - 1);
@@ -86,7 +86,7 @@ std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   std::vector<char> kinks(rows.blocks(), 0);
   const bool slides = platform.slides();
   if (slides && !(rows.has(Scalar::position_x) && rows.has(Scalar::position_y))) return kinks;
-  if (!slides && (!platform.turns_about_one_axis() || !rows.sees_some_attitude())) return kinks;
+  if (!slides && (!platform.turns_about_one_axis() || !rows.has_some_attitude())) return kinks;
   struct Change {
     size_t row;
     double rate;  // rad/s or m/s
@@ -165,7 +165,7 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
       last = lawful.last;
       if (!lawful.left_out.empty()) result.exclusions.push_back(std::move(lawful.left_out));
     }
-    if (turns_alone && rows.sees_some_attitude() && !is_commanded(rows.schedule)) {
+    if (turns_alone && rows.has_some_attitude() && !is_commanded(rows.schedule)) {
       const size_t released = released_at(rows, platform.axis, first, last);
       if (released > first) {
         result.exclusions.push_back(

@@ -148,13 +148,13 @@ std::vector<Vec3> rates_of(const Observation& seen, const Vec3& base, const Quat
   return all;
 }
 
-struct Begun {
+struct FittedStart {
   RunStart start;
   double chi2;
 };
 
-// The fit of the first blocks of one run alone.
-Begun begun_from(const Hypothesis& h, const RunStart& start, const Observation& seen) {
+// Fits only the first blocks of one run.
+FittedStart begun_from(const Hypothesis& h, const RunStart& start, const Observation& seen) {
   constexpr int iterations = 20;
   Hypothesis one = h;
   one.runs = {start};
@@ -165,8 +165,8 @@ Begun begun_from(const Hypothesis& h, const RunStart& start, const Observation& 
   return {fitted.best.runs.empty() ? start : fitted.best.runs.front(), fitted.chi2};
 }
 
-// Leaning the other way, everything else turned with it: which a tilt and a heading do not separate
-// where only gravity has a direction, and directions that only priors decide.
+// The start rotated by half a turn about the vertical. If gravity is the only direction, the
+// readings of a tilt do not distinguish it from the original; only priors do.
 RunStart mirrored(RunStart start) {
   const Quat half(Eigen::AngleAxisd(pi, Vec3::UnitZ()));
   start.initial.lab_from_body = half * start.initial.lab_from_body * half.conjugate();
@@ -188,7 +188,7 @@ RunStart best_start(const Hypothesis& h, const RunStart& given, const Observatio
   if (starts.size() == 1) return starts.front();
   for (const size_t blocks : {few_blocks, more_blocks}) {
     const Observation beginning = seen.part(0, std::min(blocks, seen.blocks()));
-    std::vector<Begun> all;
+    std::vector<FittedStart> all;
     for (const RunStart& start : starts) all.push_back(begun_from(h, start, beginning));
     starts.clear();
     for (const size_t i : sorted_indices(
@@ -208,7 +208,7 @@ RunStart best_start(const Hypothesis& h, const RunStart& given, const Observatio
 void choose_starts(Hypothesis& hypothesis, const std::vector<Observation>& runs) {
   for (size_t run = 0; run < runs.size(); ++run) {
     const Observation& seen = runs[run];
-    if (seen.sees_some_attitude() || !seen.has_scalars()) continue;
+    if (seen.has_some_attitude() || !seen.has_scalars()) continue;
     hypothesis.runs[run] = best_start(hypothesis, hypothesis.runs[run], seen);
   }
 }

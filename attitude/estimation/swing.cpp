@@ -129,7 +129,7 @@ Eigen::MatrixXd with_friction(const Eigen::MatrixXd& motion, const Eigen::Matrix
 // The residual of the accelerations under the one law, over its usual scatter; over a twentieth of
 // the largest acceleration within half a period where that is more, because local cubics are off by
 // such a part.
-Eigen::VectorXd off_the_law(const Eigen::MatrixXd& motion) {
+Eigen::VectorXd scaled_residuals(const Eigen::MatrixXd& motion) {
   constexpr double part = 0.05 / 3.0;
   constexpr Eigen::Index half_period = steps_per_period / 2;
   Eigen::MatrixXd of_angle(motion.rows(), 4);
@@ -243,7 +243,7 @@ bool swings(const std::vector<Observation>& runs, const Vec3& axis) {
   constexpr int fewest = 4;
   std::vector<double> angle_rad;
   for (const Observation& seen : runs) {
-    if (!seen.sees_some_attitude() && !angles_of_swing(seen, axis).row.empty()) return true;
+    if (!seen.has_some_attitude() && !angles_of_swing(seen, axis).row.empty()) return true;
     const std::vector<double> of_run = angles_about(seen, axis, 0, seen.blocks()).value;
     angle_rad.insert(angle_rad.end(), of_run.begin(), of_run.end());
   }
@@ -265,7 +265,7 @@ namespace {
 // The angles of a swing within the rows; empty if there are few.
 AxisReadings swing_of(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
   constexpr size_t fewest_readings = 60;
-  AxisReadings read = rows.sees_some_attitude() ? angles_about(rows, axis, first, last)
+  AxisReadings read = rows.has_some_attitude() ? angles_about(rows, axis, first, last)
                                                 : angles_of_swing(rows, axis);
   if (read.row.size() >= fewest_readings) leave_out_rest(read);
   return read.row.size() < fewest_readings ? AxisReadings() : read;
@@ -356,7 +356,7 @@ size_t released_at(const Observation& rows, const Vec3& axis, size_t first, size
   constexpr double usual = 3.0;
   const LocalMotion local = motion_of(swing_of(rows, axis, first, last));
   if (local.row.empty()) return first;
-  const Eigen::VectorXd off = off_the_law(local.motion);
+  const Eigen::VectorXd off = scaled_residuals(local.motion);
   int lawful = 0;
   for (size_t i = 0; i < local.row.size() / 4; ++i) {
     lawful = std::abs(off[static_cast<Eigen::Index>(i)]) < usual ? lawful + 1 : 0;

@@ -239,24 +239,25 @@ Estimation estimate_attitude(const MotionModel& model, const Readings& readings,
   return FilterRun(model, readings, options).run();
 }
 
-double likeliest_rate_walk(const AttitudeModel& model, const Sensors& sensors,
-                           FilterSettings settings, const Readings& readings, size_t max_readings) {
+double max_likelihood_rate_walk(const AttitudeModel& model, const Sensors& sensors,
+                                FilterSettings settings, const Readings& readings,
+                                size_t max_readings) {
   double best = 0.0, most = -std::numeric_limits<double>::infinity();
   EstimationOptions options;
   options.smooths = false;
   options.max_readings = max_readings;
-  const auto look = [&](double walk, double tells) {
+  const auto look = [&](double walk, double min_gain) {
     settings.rate_walk_rad_s_rts = walk;
     const MotionModel motion(model, sensors, settings, readings.schedule);
     const double likelihood = estimate_attitude(motion, readings, options).log_likelihood;
-    if (!std::isfinite(likelihood) || likelihood <= most + tells) return;
+    if (!std::isfinite(likelihood) || likelihood <= most + min_gain) return;
     most = likelihood;
     best = walk;
   };
   // A larger random walk is used only if it increases the log likelihood by more than this.
-  constexpr double tells = 0.5;
+  constexpr double min_gain = 0.5;
   constexpr int lowest = -28, highest = 4;
-  for (int half = lowest; half <= highest; ++half) look(std::pow(10.0, 0.5 * half), tells);
+  for (int half = lowest; half <= highest; ++half) look(std::pow(10.0, 0.5 * half), min_gain);
   if (best == std::pow(10.0, 0.5 * lowest)) return best;
   for (const double exponent : {0.25, 0.125}) {
     const double middle = best;

@@ -58,7 +58,8 @@ Estimation estimate_attitude(const MotionModel& model, const Readings& readings,
 
 // The rate's random walk of maximum likelihood, to an eighth of a decade from 1e-14 to 100 rad/s
 // per √s; over the first `max_readings`.
-double likeliest_rate_walk(const AttitudeModel& model, const Sensors& sensors,
-                           FilterSettings settings, const Readings& readings, size_t max_readings);
+double max_likelihood_rate_walk(const AttitudeModel& model, const Sensors& sensors,
+                                FilterSettings settings, const Readings& readings,
+                                size_t max_readings);
 
 }  // namespace photorque

@@ -27,23 +27,24 @@ size_t settled_row(size_t rows) {
   return rows / 20;
 }
 
-Table ways_table(const std::vector<Ingredients>& ways, const TruthTrack& truth) {
+Table methods_table(const std::vector<Ingredients>& methods, const TruthTrack& truth) {
   Table table =
       Table::of("ingredients", "Contribution of each instrument and model",
                 {"way", "estimate", "rms_error_arcsec", "predicted_arcsec", "rms_rate_error_rad_s",
                  "nees_per_number", "rows_in_95_band", "nis_attitude", "nis_gyro", "rate_walk"});
-  for (const Ingredients& way : ways) {
-    const Estimation& e = way.estimation;
+  for (const Ingredients& method : methods) {
+    const Estimation& e = method.estimation;
     for (const bool smooth : {false, true}) {
       // Without attitude readings, the smoother equals the filter.
-      if (smooth && !way.settings.uses_attitude && way.settings.motion == Motion::gyro_drives) {
+      if (smooth && !method.settings.uses_attitude &&
+          method.settings.motion == Motion::gyro_drives) {
         continue;
       }
       const auto& estimates = smooth ? e.smoothed : e.filtered;
       RunErrors errors{not_known, not_known, not_known, not_known, 0};
       if (!truth.empty()) errors = run_errors(estimates, truth, settled_row(estimates.size()));
       table.row()
-          .set("way", way.name)
+          .set("way", method.name)
           .set("estimate", smooth ? "smoother" : "filter")
           .set("rms_error_arcsec", in_arcsec(errors.rms_attitude_rad))
           .set("predicted_arcsec", in_arcsec(rms_sigma_rad(estimates)))
@@ -52,7 +53,7 @@ Table ways_table(const std::vector<Ingredients>& ways, const TruthTrack& truth) 
           .set("rows_in_95_band", errors.part_in_band)
           .set("nis_attitude", e.attitude.numbers > 0 ? e.attitude.per_number() : not_known)
           .set("nis_gyro", e.gyro.numbers > 0 ? e.gyro.per_number() : not_known)
-          .set("rate_walk", way.settings.rate_walk_rad_s_rts);
+          .set("rate_walk", method.settings.rate_walk_rad_s_rts);
     }
   }
   return table;
@@ -92,7 +93,7 @@ Plot::Curve error_curve(const std::string& label, const std::vector<AttitudeEsti
 
 }  // namespace
 
-Plot ways_plot(const std::vector<Ingredients>& ways, const TruthTrack& truth) {
+Plot methods_plot(const std::vector<Ingredients>& methods, const TruthTrack& truth) {
   Plot plot;
   plot.name = "attitude_errors";
   plot.title = "Contribution of each instrument and model";
@@ -103,9 +104,9 @@ Plot ways_plot(const std::vector<Ingredients>& ways, const TruthTrack& truth) {
   Plot::Panel below;
   below.y_label = "smoother [arcsec]";
   below.y_log = true;
-  for (const Ingredients& way : ways) {
-    plot.curves.push_back(error_curve(way.name, way.estimation.filtered, truth));
-    below.curves.push_back(error_curve(way.name, way.estimation.smoothed, truth));
+  for (const Ingredients& method : methods) {
+    plot.curves.push_back(error_curve(method.name, method.estimation.filtered, truth));
+    below.curves.push_back(error_curve(method.name, method.estimation.smoothed, truth));
   }
   plot.below.push_back(below);
   return plot;

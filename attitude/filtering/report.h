@@ -13,9 +13,9 @@ size_t settled_row(size_t rows);
 // Interval of rows with which a plot has a few thousand points.
 size_t thinning(size_t rows);
 
-Table ways_table(const std::vector<Ingredients>& ways, const TruthTrack& truth);
+Table methods_table(const std::vector<Ingredients>& methods, const TruthTrack& truth);
 // Errors over time, against the truth or, without it, as predicted.
-Plot ways_plot(const std::vector<Ingredients>& ways, const TruthTrack& truth);
+Plot methods_plot(const std::vector<Ingredients>& methods, const TruthTrack& truth);
 Table parameter_table(const Estimation& estimation);
 Table estimate_table(const Estimation& estimation);
 

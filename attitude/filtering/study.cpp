@@ -44,42 +44,42 @@ constexpr TableKey estimate("estimate", "how the attitude is estimated");
 // Variance of the initial tilt if only an encoder measures the attitude: (0.01 rad)².
 constexpr double level_rad2 = 1e-4;
 
-// The ways that channels allow, the simplest first.
-std::vector<Ingredients> ways_for(const EstimateStudy& study, const Readings& readings) {
-  struct Way {
+// The methods that channels allow, the simplest first.
+std::vector<Ingredients> possible_methods(const EstimateStudy& study, const Readings& readings) {
+  struct Method {
     const char* name;
     Motion motion;
     bool attitude, gyro;
   };
-  const Way all[] = {{"gyro alone", Motion::gyro_drives, false, true},
-                     {"camera alone", Motion::rate_walks, true, false},
-                     {"camera, disturbances", Motion::disturbances, true, false},
-                     {"camera and gyro, gyro drives", Motion::gyro_drives, true, true},
-                     {"camera and gyro, rate walks", Motion::rate_walks, true, true},
-                     {"camera and gyro, disturbances", Motion::disturbances, true, true},
-                     {"gyro, disturbances", Motion::disturbances, false, true}};
+  const Method all[] = {{"gyro alone", Motion::gyro_drives, false, true},
+                        {"camera alone", Motion::rate_walks, true, false},
+                        {"camera, disturbances", Motion::disturbances, true, false},
+                        {"camera and gyro, gyro drives", Motion::gyro_drives, true, true},
+                        {"camera and gyro, rate walks", Motion::rate_walks, true, true},
+                        {"camera and gyro, disturbances", Motion::disturbances, true, true},
+                        {"gyro, disturbances", Motion::disturbances, false, true}};
   const bool sees = readings.sees_attitude() || readings.has_yaw;
   const bool whole_gyro =
       std::ranges::any_of(readings.all, [](const Reading& r) { return r.gyro_rad_s.allFinite(); });
-  std::vector<Ingredients> ways;
-  for (const Way& way : all) {
-    if ((way.attitude && !sees) || (way.gyro && !readings.has_gyro)) continue;
-    if (way.motion == Motion::gyro_drives && !whole_gyro) continue;
-    if (way.motion == Motion::disturbances && !way.attitude && sees) continue;
+  std::vector<Ingredients> methods;
+  for (const Method& method : all) {
+    if ((method.attitude && !sees) || (method.gyro && !readings.has_gyro)) continue;
+    if (method.motion == Motion::gyro_drives && !whole_gyro) continue;
+    if (method.motion == Motion::disturbances && !method.attitude && sees) continue;
     FilterSettings settings = study.filter;
-    settings.motion = way.motion;
-    settings.uses_attitude = way.attitude;
-    settings.uses_gyro = way.gyro;
-    ways.push_back({way.name, settings, {}});
+    settings.motion = method.motion;
+    settings.uses_attitude = method.attitude;
+    settings.uses_gyro = method.gyro;
+    methods.push_back({method.name, settings, {}});
   }
-  return ways;
+  return methods;
 }
 
-// The fullest way of the motion that was asked for.
-size_t choose(const std::vector<Ingredients>& ways, Motion motion) {
-  size_t best = ways.size() - 1;
-  for (size_t i = 0; i < ways.size(); ++i) {
-    const FilterSettings& s = ways[i].settings;
+// The fullest method of the motion that was asked for.
+size_t choose(const std::vector<Ingredients>& methods, Motion motion) {
+  size_t best = methods.size() - 1;
+  for (size_t i = 0; i < methods.size(); ++i) {
+    const FilterSettings& s = methods[i].settings;
     if (s.motion == motion && (s.uses_attitude || s.uses_gyro)) best = i;
   }
   return best;
@@ -96,8 +96,8 @@ void set_walk(const EstimateStudy& study, const Readings& readings, FilterSettin
   }
   settings.rate_walk_rad_s_rts =
       stated ? *stated
-             : likeliest_rate_walk(study.nominal.model, study.nominal.sensors, searched, readings,
-                                   study.search_readings);
+             : max_likelihood_rate_walk(study.nominal.model, study.nominal.sensors, searched,
+                                        readings, study.search_readings);
 }
 
 std::vector<std::string> unseen_by(const Platform& platform, const Readings& readings,
@@ -161,11 +161,11 @@ std::vector<std::string> unseen_by(const Platform& platform, const Readings& rea
 void require_noise(const Sensors& sensors) {
   if (sensors.camera && !(sensors.camera->noise_rad.minCoeff() > 0.0)) {
     throw InputError({}, "sensors.camera.noise_arcsec", "no noise",
-                     "numbers > 0: a filter weighs by noise");
+                     "numbers > 0, by which the filter weights the readings");
   }
   if (sensors.gyro && !(sensors.gyro->noise_rad_s > 0.0)) {
     throw InputError({}, "sensors.gyro.noise_rad_s", "no noise",
-                     "a number > 0: a filter weighs by noise");
+                     "a number > 0, by which the filter weights the readings");
   }
 }
 
@@ -176,7 +176,7 @@ RecordingNoise with_noise_of(const Sensors& sensors, const Recording& recording,
   if (knows_camera && knows_gyro) return result;
   const std::vector<Observation> seen = {observe(recording, name, platform)};
   const NoiseLevels usual;
-  if (!knows_camera && seen[0].sees_some_attitude()) {
+  if (!knows_camera && seen[0].has_some_attitude()) {
     if (!result.sensors.camera) result.sensors.camera.emplace();
     Vec3& noise_rad = result.sensors.camera->noise_rad;
     for (int k = 0; k < 3; ++k) {
@@ -221,16 +221,17 @@ EstimateStudy read_estimate(const Settings& root) {
   return study;
 }
 
-EstimateResult estimate_ways(const EstimateStudy& study, const Readings& readings,
-                             const TruthTrack& truth, const std::function<void(double)>& progress) {
+EstimateResult estimate_by_all_methods(const EstimateStudy& study, const Readings& readings,
+                                       const TruthTrack& truth,
+                                       const std::function<void(double)>& progress) {
   EstimateResult result;
-  result.ways = ways_for(study, readings);
-  result.chosen = choose(result.ways, study.filter.motion);
-  const auto count = static_cast<double>(result.ways.size());
-  for (size_t i = 0; i < result.ways.size(); ++i) {
-    Ingredients& way = result.ways[i];
-    set_walk(study, readings, way.settings);
-    const MotionModel model(study.nominal.model, study.nominal.sensors, way.settings,
+  result.methods = possible_methods(study, readings);
+  result.chosen = choose(result.methods, study.filter.motion);
+  const auto count = static_cast<double>(result.methods.size());
+  for (size_t i = 0; i < result.methods.size(); ++i) {
+    Ingredients& method = result.methods[i];
+    set_walk(study, readings, method.settings);
+    const MotionModel model(study.nominal.model, study.nominal.sensors, method.settings,
                             readings.schedule);
     EstimationOptions options;
     if (!readings.sees_attitude() && readings.has_yaw) {
@@ -239,13 +240,13 @@ EstimateResult estimate_ways(const EstimateStudy& study, const Readings& reading
     if (progress) {
       options.progress = [&](double part) { progress((static_cast<double>(i) + part) / count); };
     }
-    way.estimation = estimate_attitude(model, readings, options);
+    method.estimation = estimate_attitude(model, readings, options);
   }
-  const Estimation& chosen = result.ways[result.chosen].estimation;
+  const Estimation& chosen = result.methods[result.chosen].estimation;
   Product& product = result.product;
-  product.tables = {ways_table(result.ways, truth), parameter_table(chosen),
+  product.tables = {methods_table(result.methods, truth), parameter_table(chosen),
                     estimate_table(chosen)};
-  product.plots = {ways_plot(result.ways, truth)};
+  product.plots = {methods_plot(result.methods, truth)};
   result.unseen = unseen_by(study.nominal.model.platform, readings, chosen);
   const auto exact = [&](const std::string& name, double value) {
     if (std::isfinite(value)) product.quantities.push_back({name, {value, 0.0}});

@@ -47,7 +47,7 @@ struct Ingredients {
 };
 
 struct EstimateResult {
-  std::vector<Ingredients> ways;
+  std::vector<Ingredients> methods;
   size_t chosen = 0;  // among them: the one that is written
   Product product;
   // One line for each quantity that the recording does not determine.
@@ -55,9 +55,9 @@ struct EstimateResult {
 };
 
 // Estimates with every combination that the channels allow. `truth` may be empty.
-EstimateResult estimate_ways(const EstimateStudy& study, const Readings& readings,
-                             const TruthTrack& truth,
-                             const std::function<void(double)>& progress = {});
+EstimateResult estimate_by_all_methods(const EstimateStudy& study, const Readings& readings,
+                                       const TruthTrack& truth,
+                                       const std::function<void(double)>& progress = {});
 
 // The recording with attitude and gyro replaced by an estimate: the gyro reads the inertial rate,
 // without bias, scale and noise; commands, currents and others stay as they are.

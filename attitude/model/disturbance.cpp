@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/errors.h"
+#include "core/settings/files.h"
 
 namespace photorque {
 
@@ -115,8 +116,7 @@ size_t count_as_written(const Settings& settings, std::string_view key) {
 }
 
 std::filesystem::path file_of(const Settings& settings, std::string_view key) {
-  const std::filesystem::path experiment = settings.where().file;
-  return experiment.parent_path() / settings.text(key);
+  return existing_file(settings, key, std::filesystem::path(settings.where().file).parent_path());
 }
 
 PlacedParameters fixed_parameter(const std::string& key, std::span<const double> values_SI,

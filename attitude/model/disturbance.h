@@ -94,7 +94,7 @@ struct EvaluationContext {
   // rate decides, and the direction of slip that is held, 0 where the platform sticks.
   T slip_is_held, slip_sign;
 
-  // Of a platform that slides; zero for all others.
+  // Position and velocity of a planar platform; zero for all others.
   Vec3Of<T> position_lab_m, velocity_lab_m_s;
 
   // The conditions in body axes: valid after Stage::conditions.
@@ -363,8 +363,8 @@ PlacedParameters parameters_of(const Settings& settings, const KeyOf<size>& key)
     return array_parameter(settings, key.name, size, key.first);
   }
 }
-// How many numbers the user wrote for `key`: 0 for a single number, the length of an array, nine
-// for three rows of three; looks into { value = …, sigma = … }.
+// Number of values that the user wrote for `key`: 0 for a single number, the length of an array,
+// nine for three rows of three; looks into { value = …, sigma = … }.
 size_t count_as_written(const Settings& settings, std::string_view key);
 // The file that `key` names; a relative path counts from the experiment file.
 std::filesystem::path file_of(const Settings& settings, std::string_view key);
@@ -396,12 +396,11 @@ T active_from(const T& time_s, double start_s) {
   return where_at_least(time_s, start_s, T(1.0), T(0.0));
 }
 
-// How states that count from the inertial frame begin where the platform begins by turning as one
-// rigid body.
+// Initial values of states relative to the inertial frame, if the platform starts as one rigid
+// body.
 
-// The axis along which such a state takes part of the rate, body axes: the direction of the
-// disturbance's own `axis`, as that stands now, where it has one; otherwise
-// ExtraState::per_body_rate. Zero: it takes nothing.
+// The body axis whose rate such a state has at the start: the present value of `axis` of the
+// disturbance or, without one, ExtraState::per_body_rate. Zero: the state starts at zero.
 Vec3 bound_axis(const Disturbance& disturbance, const ExtraState& state);
 
 // ∂(bound_axis · rate) by a parameter of the disturbance [(rad/s) per the parameter's SI unit].

@@ -30,8 +30,7 @@ struct Platform {
   // Charge that the battery can give [C]; none: it never runs empty.
   std::optional<double> battery_capacity_C;
   double battery_voltage_V = usual_battery_voltage_V;  // nominal, > 0
-  // Of a one_axis platform: x, y or z, in body and lab axes alike, because it turns about nothing
-  // else.
+  // Rotation axis of a one_axis platform: x, y or z, equal in body and lab axes.
   Vec3 axis = Vec3::UnitZ();
   // The experiment names an effect that only a bearing has (its drag): then it stands on one,
   // whatever the topology.

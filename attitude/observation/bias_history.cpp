@@ -82,7 +82,7 @@ struct Equations {
 };
 
 // Removes outliers.
-void drop_far_ones(std::vector<double>& values) {
+void drop_bias_outliers(std::vector<double>& values) {
   constexpr double far = 9.0;  // of the median distance from zero: six standard deviations of noise
   std::vector<double> distances;
   for (const double x : values) {
@@ -137,8 +137,8 @@ void add_piece(const Observation& seen, const Span& span, Equations& sums) {
       series.rate_by.block<1, 3>(row, shared_count + 3 * knot) = (1.0 - part) * bias;
       series.rate_by.block<1, 3>(row, shared_count + 3 * (knot + 1)) = part * bias;
     }
-    drop_far_ones(series.angle_rad);
-    drop_far_ones(series.rate_rad_s);
+    drop_bias_outliers(series.angle_rad);
+    drop_bias_outliers(series.rate_rad_s);
     AngleNoise noise;
     noise.camera = seen.noise.of(k);
     noise.gyro_rad_s = seen.noise.gyro_rad_s;

@@ -333,9 +333,9 @@ Value curvature_of(const Slope<Value>& before, const Slope<Value>& after) {
 
 // Converts the mean over a block of `all` to a reading at its centre. The curvature of the motion
 // follows from the neighbouring blocks.
-class Straightened {
+class CentredReading {
  public:
-  Straightened(const Observation& all, size_t block) : all_(all), block_(block) {}
+  CentredReading(const Observation& all, size_t block) : all_(all), block_(block) {}
 
   // Writes the reading to the first block of `to`.
   void put_into(Observation& to) const {
@@ -405,7 +405,7 @@ void append_mean(const Observation& from, size_t first, size_t last, Observation
 }
 
 void correct_first_block(const Observation& all, size_t block, Observation& to) {
-  Straightened(all, block).put_into(to);
+  CentredReading(all, block).put_into(to);
 }
 
 }  // namespace photorque

@@ -210,7 +210,7 @@ class Search {
     Minimum white{Eigen::Vector2d::Zero(), INFINITY};
     // Twice, because another level may need another roughness.
     for (int round = 0; round < 2; ++round) {
-      const Eigen::Vector2d start(white.at[0], likeliest_roughness(white.at[0]));
+      const Eigen::Vector2d start(white.at[0], max_likelihood_roughness(white.at[0]));
       const Minimum next = simplex_minimum(plain, start, Eigen::Vector2d(0.2, 1.0), tolerance);
       if (next.value < white.value) white = next;
     }
@@ -252,7 +252,7 @@ class Search {
   }
 
   // The likelihood may have several maxima in the roughness.
-  double likeliest_roughness(double level) const {
+  double max_likelihood_roughness(double level) const {
     double best = 0.0, least = INFINITY;
     for (double roughness = -44.0; roughness <= 4.0; roughness += 3.0) {
       const double value = of({level, 0.0, 0.0, roughness});

@@ -37,7 +37,7 @@ class FieldReadings {
     }
   }
 
-  bool feels_turning() const { return place_m_.norm() > 0.0; }
+  bool depends_on_rotation() const { return place_m_.norm() > 0.0; }
 
   FieldRow at(const PlatformState& state, const Vec3& acceleration_rad_s2) const {
     const Vec3& w = state.rate_body_rad_s;
@@ -238,7 +238,7 @@ struct ExpectedReadings::Parts {
     if (sensitivity == nullptr) return;
     slopes.emplace(*sensitivity, of);
     slopes->see(sight.delay_s, sight.rate_then_rad_s(of.y.data()));
-    if (has_fields && fields.feels_turning()) turning.emplace(*sensitivity, of);
+    if (has_fields && fields.depends_on_rotation()) turning.emplace(*sensitivity, of);
   }
 
   const Samples& samples;

@@ -52,11 +52,11 @@ Deviations deviations(const Prediction& residuals, const Observation& seen, int 
     result.root_rows.push_back(std::sqrt(rows));
   }
   if (result.count() < deviation_window) return {};
-  lay_curves(result, std::vector<double>(result.count(), 1.0));
+  fit_smooth_curves(result, std::vector<double>(result.count(), 1.0));
   return result;
 }
 
-void lay_curves(Deviations& channel, const std::vector<double>& weight) {
+void fit_smooth_curves(Deviations& channel, const std::vector<double>& weight) {
   const size_t n = channel.count();
   channel.curve.resize(n);
   channel.size.resize(n);
@@ -143,12 +143,12 @@ void weigh(std::vector<Deviations>& runs, double degrees, double scale) {
     if (run.count() == 0) continue;
     std::vector<double> weight;
     for (const double x : run.size) weight.push_back(weight_of(x, degrees, scale));
-    lay_curves(run, weight);
+    fit_smooth_curves(run, weight);
   }
 }
 
 // The maximum-likelihood scale, whose square equals the weighted mean square.
-double likeliest_scale(const std::vector<Deviations>& runs, double degrees, double scale) {
+double max_likelihood_scale(const std::vector<Deviations>& runs, double degrees, double scale) {
   constexpr int most_steps = 100;
   constexpr double close = 1e-5;
   for (int step = 0; step < most_steps; ++step) {
@@ -188,20 +188,20 @@ double under_normal(const std::vector<Deviations>& runs) {
   return count * (std::log(2.0 * pi * sum / count) + 1.0);
 }
 
-struct Likeliest {
+struct TailFit {
   double log_degrees = 0.0, scale = 0.0, value = 0.0;
 };
 
 // Searches the degrees of freedom from 1 (the Cauchy distribution) to nearly normal, first in large
 // steps, then in small steps around the best.
-Likeliest likeliest(const std::vector<Deviations>& runs, double scale) {
+TailFit max_likelihood_tail(const std::vector<Deviations>& runs, double scale) {
   constexpr double large = 0.25, small = 0.05, longest = 4.0;
-  Likeliest best{0.0, scale, INFINITY};
+  TailFit best{0.0, scale, INFINITY};
   const auto look = [&](double first, double last, double step) {
     double s = best.scale;
     for (double log_degrees = first; log_degrees <= last; log_degrees += step) {
       const double degrees = std::exp(log_degrees);
-      s = likeliest_scale(runs, degrees, s);
+      s = max_likelihood_scale(runs, degrees, s);
       const double value = under_t(runs, degrees, s);
       if (value < best.value) best = {log_degrees, s, value};
     }
@@ -213,12 +213,12 @@ Likeliest likeliest(const std::vector<Deviations>& runs, double scale) {
 }
 
 // Standard deviation of ln ν, from the curvature of the profile likelihood.
-double log_degrees_sigma(const std::vector<Deviations>& runs, const Likeliest& at) {
+double log_degrees_sigma(const std::vector<Deviations>& runs, const TailFit& at) {
   constexpr double step = 0.1;
   double sides = 0.0;
   for (const double side : {-step, step}) {
     const double degrees = std::exp(at.log_degrees + side);
-    sides += under_t(runs, degrees, likeliest_scale(runs, degrees, at.scale));
+    sides += under_t(runs, degrees, max_likelihood_scale(runs, degrees, at.scale));
   }
   const double curvature = (sides - 2.0 * at.value) / (step * step);  // of −2 ln L
   return curvature > 0.0 ? std::sqrt(2.0 / curvature) : INFINITY;
@@ -248,10 +248,10 @@ std::optional<HeavyTail> heavy_tail(std::vector<Deviations> runs, const Threshol
   // Alternates between the weights of the curve and the distribution of its residuals.
   constexpr int turns = 3;
   weigh(runs, 4.0, scale);
-  Likeliest best = likeliest(runs, scale);
+  TailFit best = max_likelihood_tail(runs, scale);
   for (int turn = 1; turn < turns; ++turn) {
     weigh(runs, std::exp(best.log_degrees), best.scale);
-    best = likeliest(runs, best.scale);
+    best = max_likelihood_tail(runs, best.scale);
   }
   const double degrees = std::exp(best.log_degrees);
   const bool is_heavy = best.value < under_normal(runs) - limits.min_tail_gain;

@@ -34,7 +34,7 @@ constexpr size_t deviation_window = 15;
 Deviations deviations(const Prediction& residuals, const Observation& seen, int channel);
 
 // Again, with weights of the readings (> 0), as many as there are.
-void lay_curves(Deviations& channel, const std::vector<double>& weight);
+void fit_smooth_curves(Deviations& channel, const std::vector<double>& weight);
 
 // Standard deviation by the median of all sizes: a few large ones do not count. 0: no reading.
 double robust_level(const std::vector<Deviations>& runs);

@@ -91,7 +91,7 @@ bool is_near(const Prediction& about) {
   return true;
 }
 
-std::vector<Left> what_is_left(const Observation& seen, const Prediction* about) {
+std::vector<Left> block_residuals(const Observation& seen, const Prediction* about) {
   std::vector<Left> all(seen.blocks());
   if (about != nullptr && is_near(*about)) {
     for (size_t i = 0; i < seen.blocks(); ++i) {
@@ -138,7 +138,7 @@ std::vector<char> jumps_of(const Observation& seen) {
 }  // namespace
 
 KinematicRun kinematic_run(const Observation& seen, const Prediction* about) {
-  const std::vector<Left> left = what_is_left(seen, about);
+  const std::vector<Left> left = block_residuals(seen, about);
   const std::vector<char> jumps = jumps_of(seen);
   const double interval_s = reading_interval_s(seen, 0);
   const double gyro_interval_s = reading_interval_s(seen, 3);

@@ -15,7 +15,7 @@ struct KinematicSeries {
   std::vector<double> time_s;
   std::vector<double> angle_rad, rate_rad_s;  // left of camera and gyro; NaN: no reading
   std::vector<double> rows;                   // readings in the camera's block
-  // Of the gyro's x, y, z in this axis: squares of the direction cosines over the readings.
+  // Fractions of the gyro's x, y, z in this axis: mean squares of the direction cosines.
   std::vector<Vec3> gyro_share;
   std::vector<double> gyro_rows;                   // readings in the gyro's block
   bool about_readings = false;                     // as in KinematicRun

@@ -168,10 +168,10 @@ Differences differences_of(const Observation& seen, const KinematicRun& run, int
     const size_t before = read[n - 1];
     const double rows = std::max(seen.gyro_rows[i][k], seen.gyro_rows[before][k]);
     const bool gap = seen.time_s[i] - seen.time_s[before] > 1.5 * interval_s * rows + 1e-9;
-    // Averages over unlike numbers of readings have no common level.
-    const bool unlike = seen.gyro_rows[i][k] != seen.gyro_rows[before][k];
+    // Averages over differs numbers of readings have no common level.
+    const bool differs = seen.gyro_rows[i][k] != seen.gyro_rows[before][k];
     const auto jump = run.axis[0].jumps.begin();
-    if (gap || unlike ||
+    if (gap || differs ||
         std::any_of(jump + static_cast<std::ptrdiff_t>(before) + 1,
                     jump + static_cast<std::ptrdiff_t>(i) + 1, [](char j) { return j != 0; })) {
       good[n] = 0;
@@ -246,14 +246,14 @@ std::optional<NoiseLevel> gyro_level(const std::vector<Observation>& seen,
 namespace {
 
 // Residuals of one channel of one run, in order of time, and the readings of each block.
-struct LeftSeries {
+struct ResidualSeries {
   std::vector<double> time_s, value, rows;
 };
 
 void append_left(const std::vector<Prediction>& residuals, const std::vector<Observation>& runs,
-                 int channel, std::vector<LeftSeries>& all) {
+                 int channel, std::vector<ResidualSeries>& all) {
   for (size_t run = 0; run < runs.size(); ++run) {
-    LeftSeries& series = all.emplace_back();
+    ResidualSeries& series = all.emplace_back();
     for (size_t i = 0; i < residuals[run].off.size(); ++i) {
       const double x = residuals[run].off[i][channel];
       if (!std::isfinite(x)) continue;
@@ -285,10 +285,10 @@ struct MeanSquares {
   double of_blocks = 0.0, of_readings = 0.0;
 };
 
-MeanSquares mean_squares(const std::vector<LeftSeries>& all) {
+MeanSquares mean_squares(const std::vector<ResidualSeries>& all) {
   MeanSquares sum;
   double count = 0.0;
-  for (const LeftSeries& s : all) {
+  for (const ResidualSeries& s : all) {
     for (size_t i = 0; i < s.value.size(); ++i) {
       const double square = s.value[i] * s.value[i];
       sum.of_blocks += square;
@@ -306,9 +306,9 @@ struct Shared {
 };
 
 // Mean product of values so many readings apart, over the mean square.
-double autocorrelation(const std::vector<LeftSeries>& all, double square, size_t lag) {
+double autocorrelation(const std::vector<ResidualSeries>& all, double square, size_t lag) {
   double sum = 0.0, count = 0.0;
-  for (const LeftSeries& s : all) {
+  for (const ResidualSeries& s : all) {
     for (size_t i = lag; i < s.value.size(); ++i) sum += s.value[i] * s.value[i - lag];
     count += s.value.size() > lag ? static_cast<double>(s.value.size() - lag) : 0.0;
   }
@@ -316,10 +316,10 @@ double autocorrelation(const std::vector<LeftSeries>& all, double square, size_t
 }
 
 // Correlation of next neighbours; then where that has fallen to 1/e.
-Shared shared_by_neighbours(const std::vector<LeftSeries>& all, double square) {
+Shared shared_by_neighbours(const std::vector<ResidualSeries>& all, double square) {
   size_t longest = 0;
   double read_s = 0.0, intervals = 0.0;
-  for (const LeftSeries& s : all) {
+  for (const ResidualSeries& s : all) {
     longest = std::max(longest, s.value.size());
     if (s.value.size() < 2) continue;
     read_s += s.time_s.back() - s.time_s.front();
@@ -347,7 +347,7 @@ NoiseLevels with_discrepancy(const std::vector<Prediction>& residuals,
                              Remainder remainder) {
   NoiseLevels noise = own;
   for (const std::vector<int>& channels : alike_channels()) {
-    std::vector<LeftSeries> left;
+    std::vector<ResidualSeries> left;
     for (const int channel : channels) append_left(residuals, runs, channel, left);
     const MeanSquares square = mean_squares(left);
     ChannelNoise found{std::sqrt(square.of_readings)};

@@ -40,12 +40,12 @@ class NoiseSearch {
         axes_[k].axis.camera = stated_.of(static_cast<int>(k));
         axes_[k].axis.roughness = any_roughness;
       }
-      take_out_instruments();
+      remove_instruments();
     }
     find_cameras();
     if (has_gyro_) {
       find_gyro_colour();
-      take_out_instruments();
+      remove_instruments();
       if (any_colour()) find_cameras();
     }
     for (size_t k = 0; k < 3; ++k) result_.channel[k] = axes_[k].found;
@@ -98,7 +98,7 @@ class NoiseSearch {
     Minimum best;
     const std::array<AngleNoise, 3>* beside = nullptr;
     const auto try_beside = [&](const std::array<AngleNoise, 3>& cameras) {
-      const Minimum next = likeliest_gyro(cameras);
+      const Minimum next = max_likelihood_gyro(cameras);
       if (!(next.value < best_value)) return;
       best_value = next.value;
       best = next;
@@ -108,10 +108,10 @@ class NoiseSearch {
     try_beside(as_found);
     if (any_colour()) try_beside(camera_alone);
     if (!found) return;
-    const Minimum likeliest = at_stated_level(with_white_part(best, *beside), *beside);
+    const Minimum max_likelihood_tail = at_stated_level(with_white_part(best, *beside), *beside);
     // A lower level with a correlated part may explain more than the stated one with it.
-    if (!(likeliest.value < now - limits_.min_colour_gain)) return;
-    use_gyro(likeliest);
+    if (!(max_likelihood_tail.value < now - limits_.min_colour_gain)) return;
+    use_gyro(max_likelihood_tail);
     find_cameras();
   }
 
@@ -174,7 +174,7 @@ class NoiseSearch {
     return pure.value - mixed.value < limits_.min_mixture_gain ? pure : mixed;
   }
 
-  Minimum likeliest_gyro(const std::array<AngleNoise, 3>& cameras) const {
+  Minimum max_likelihood_gyro(const std::array<AngleNoise, 3>& cameras) const {
     const auto of = [&](const Eigen::VectorXd& x) { return of_gyro(cameras, x); };
     Minimum start{Eigen::Vector3d::Zero(), INFINITY};
     for (const double time_s : {0.2, 0.8, 3.0}) {
@@ -188,13 +188,13 @@ class NoiseSearch {
     return simplex_minimum(of, start.at, Eigen::Vector3d(0.2, 0.4, 2.0), 0.3, 120);
   }
 
-  void use_gyro(const Minimum& likeliest) {
+  void use_gyro(const Minimum& max_likelihood_tail) {
     const double log_sigma = gyro_log_sigma;
-    const double factor = std::exp(likeliest.at[0]);
-    const bool off = is_off(likeliest.at[0], log_sigma, limits_);
+    const double factor = std::exp(max_likelihood_tail.at[0]);
+    const bool off = is_off(max_likelihood_tail.at[0], log_sigma, limits_);
     gyro_.gyro_rad_s = (off ? factor : 1.0) * stated_.gyro_rad_s;
-    gyro_.gyro_coloured = coloured_fraction(likeliest.at);
-    gyro_.gyro_time_s = std::exp(likeliest.at[1]);
+    gyro_.gyro_coloured = coloured_fraction(max_likelihood_tail.at);
+    gyro_.gyro_time_s = std::exp(max_likelihood_tail.at[1]);
     for (int k = 0; k < 3; ++k) {
       FoundNoise& found = result_.channel[3 + static_cast<size_t>(k)];
       found.level_found = off;
@@ -206,7 +206,7 @@ class NoiseSearch {
   }
 
   // Contributions of instrument errors are fitted under the noise of each axis and removed.
-  void take_out_instruments() {
+  void remove_instruments() {
     double weight = 0.0, sum = 0.0;
     const Eigen::VectorXd prior = instrument_widths().cwiseAbs2().cwiseInverse();
     for (KinematicRun& run : left_) {

@@ -132,8 +132,8 @@ bool Observation::has_scalars() const {
                      [](const ScalarReadings& s) { return !s.rows.empty(); });
 }
 
-bool Observation::feels_attitude(const Platform& platform) const {
-  if (sees_some_attitude()) return true;
+bool Observation::measures_attitude(const Platform& platform) const {
+  if (has_some_attitude()) return true;
   for (int s = 0; s < scalar_count; ++s) {
     if (scalar[static_cast<size_t>(s)].rows.empty()) continue;
     const Measures measures = channel_traits(vector_channels + s).measures;
@@ -150,9 +150,9 @@ size_t Observation::readings(size_t first, size_t last) const {
   size_t count = 0;
   for (size_t i = first; i < last; ++i) {
     const bool has_place = has(Scalar::position_x) || has(Scalar::position_y);
-    bool read = sees_some_attitude() && !has_place ? attitude_rows[i] > 0.0
-                                                   : (gyro_rows[i].array() > 0.0).any();
-    if (!sees_some_attitude() || has_place) {
+    bool read = has_some_attitude() && !has_place ? attitude_rows[i] > 0.0
+                                                  : (gyro_rows[i].array() > 0.0).any();
+    if (!has_some_attitude() || has_place) {
       for (const ScalarReadings& s : scalar) read = read || (!s.rows.empty() && s.rows[i] > 0.0);
     }
     count += read ? 1 : 0;
@@ -204,7 +204,8 @@ Observation observe(const Recording& recording, const std::string& name, const P
                          (events > 0 ? ", " + std::to_string(events) + " of " +
                                            std::to_string(seen.rows) + " rows are marked as events"
                                      : ""),
-                     "at least " + std::to_string(fewest_readings));
+                     "at least " + std::to_string(fewest_readings) +
+                         (columns.has_attitude() ? ", quaternions of unit norm" : ""));
   }
   return seen.averaged(max_blocks);
 }

@@ -31,7 +31,7 @@ struct NoiseLevels {
   } camera_colour, gyro_colour;
   std::array<ChannelNoise, scalar_count> scalar = {};  // in SI
 
-  // Of a channel (recordings/columns.h).
+  // The noise of a channel (recordings/columns.h).
   ChannelNoise of(int channel) const;
   void set(int channel, const ChannelNoise& noise);
 };
@@ -44,11 +44,11 @@ struct NoiseProfile {
   double at(double time_s) const;
 };
 
-// Those of the instruments; where they state none, the usual ones above.
+// Noise levels of the instruments; without stated ones the defaults above.
 NoiseLevels noise_levels(const Sensors& sensors);
 bool states_camera_noise(const Sensors& sensors);
 bool states_gyro_noise(const Sensors& sensors);
-// Of any channel.
+// Whether the instruments state the noise of a channel.
 bool states_noise(const Sensors& sensors, int channel);
 
 // Readings of one scalar, block by block; empty where there are none at all.
@@ -81,7 +81,7 @@ struct Observation {
   struct Spread {
     double readings_s = 0.0, attitude_s = 0.0;  // root mean square about time_s
     double readings_fourth_s = 0.0;             // fourth root of the mean fourth power
-    // Of the gyro's times about time_s, the mean, and by how much its mean was moved for that.
+    // Mean of the gyro's times relative to time_s, and the resulting correction of its mean.
     double gyro_offset_s = 0.0;
     Vec3 gyro_moved_rad_s = Vec3::Zero();
   };
@@ -98,7 +98,7 @@ struct Observation {
 
   size_t blocks() const { return time_s.size(); }
   Spread spread_of(size_t block) const { return spread.empty() ? Spread() : spread[block]; }
-  // Of a channel as in NoiseLevels.
+  // Number of readings of a channel, numbered as in NoiseLevels.
   double rows_of(size_t block, int channel) const {
     if (channel >= vector_channels) {
       const auto& one = scalar[static_cast<size_t>(channel - vector_channels)];
@@ -108,11 +108,11 @@ struct Observation {
     return sees_axis[static_cast<size_t>(channel)] ? attitude_rows[block] : 0.0;
   }
   bool sees_attitude() const { return sees_axis[0] && sees_axis[1] && sees_axis[2]; }
-  bool sees_some_attitude() const { return sees_axis[0] || sees_axis[1] || sees_axis[2]; }
+  bool has_some_attitude() const { return sees_axis[0] || sees_axis[1] || sees_axis[2]; }
   bool has(Scalar s) const { return !scalar[static_cast<size_t>(s)].rows.empty(); }
   bool has_scalars() const;
   // Whether anything that is read would be different at another attitude of this platform.
-  bool feels_attitude(const Platform& platform) const;
+  bool measures_attitude(const Platform& platform) const;
   // Readings in the blocks [first, last): attitudes, or rates and scalars where there are none.
   size_t readings(size_t first, size_t last) const;
   double duration_s() const { return time_s.back() - time_s.front(); }

@@ -178,7 +178,7 @@ class Comparison {
     const PlatformState& state = moment.state;
     const Vec3 &camera_offset_body = moment.camera_offset_body, &gyro_rad_s = moment.gyro_rad_s;
     WhiteRow white = WhiteRow::Constant(NAN), off = white;
-    if (seen_.attitude_rows[block] > 0.0 && seen_.sees_some_attitude()) {
+    if (seen_.attitude_rows[block] > 0.0 && seen_.has_some_attitude()) {
       off.head<3>() = turn_vector(seen_.attitude[block] * state.lab_from_body.conjugate()) -
                       state.lab_from_body * camera_offset_body;
       if (platform_.turns_about_one_axis()) count_turns(off);

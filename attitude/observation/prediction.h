@@ -13,14 +13,14 @@ namespace photorque {
 
 // Readings with correlated noise turned into independent ones of unit variance.
 
-// Of one channel, block after block in order of time: what the blocks before lead to expect is
-// subtracted, and the rest divided by its standard deviation. Noise is white, plus a part whose
-// correlation falls off as exp(−t/τ) (an AR(1) process, sampled whenever there is a reading), as
-// ChannelNoise says, times the factor of the run's profile. A block is the mean of its readings:
-// its variance and its correlation with others are those of such means in closed form, so that
-// averages are whitened as exactly as readings. The recursion is that of the Kalman filter
-// (Anderson & Moore, Optimal Filtering, 1979, section 5.3), linear in the readings, so that
-// predictions and their derivatives go the same way.
+// Normalised innovations of one channel, in order of time: reading minus prediction from the
+// earlier blocks, divided by its standard deviation. Noise is white, plus a part whose correlation
+// falls off as exp(−t/τ) (an AR(1) process, sampled whenever there is a reading), as ChannelNoise
+// says, times the factor of the run's profile. A block is the mean of its readings: its variance
+// and its correlation with others are those of such means in closed form, so that averages are
+// whitened as exactly as readings. The recursion is that of the Kalman filter (Anderson & Moore,
+// Optimal Filtering, 1979, section 5.3), linear in the readings, so that predictions and their
+// derivatives go the same way.
 class Whitening {
  public:
   // `width`: how many numbers go through at once: a residual and its slopes.

@@ -39,7 +39,7 @@ class CollocationStep {
   // Solves the stages by Newton's method: some 50 times the work, but it settles however stiff the
   // equations are. stiffness() then says whether fixed-point iteration would do as well.
   Outcome attempt_stiff(double h_s, const ZeroOrderHold& held, double settled);
-  // How the last attempt was made, and step length · stiffness_1_s() of its last iteration.
+  // Method of the last attempt, and step length · stiffness_1_s() of its last iteration.
   bool is_stiff() const { return is_stiff_; }
   double stiffness() const { return stiffness_; }
   // Moves the start to the end of the attempted step, in compensated summation, and to the time
@@ -55,7 +55,7 @@ class CollocationStep {
   double start_s() const { return time_s_; }
   const std::vector<double>& start() const { return y_; }
   double length_s() const { return h_s_; }
-  // Of the last attempt, whether accepted or not. `stages` are at start + c h.
+  // Results of the last attempt, accepted or not. `stages` are at start + c h.
   std::span<const Lanes> stages() const { return stages_; }
   Lanes stage_times_s() const;
   std::vector<double> end() const;

@@ -61,7 +61,7 @@ Lanes DryContact::beyond(const Lanes& time_s, const ZeroOrderHold& held, const L
   return max(f.forward, -f.backward) - f.margin();
 }
 
-std::optional<DryContact::Stretch> DryContact::ends_within(const CollocationStep& step,
+std::optional<DryContact::SlipEnd> DryContact::ends_within(const CollocationStep& step,
                                                            const ZeroOrderHold& held,
                                                            double end_s) const {
   const std::vector<double> end = step.end();
@@ -70,10 +70,10 @@ std::optional<DryContact::Stretch> DryContact::ends_within(const CollocationStep
   const Lanes inside = beyond(times_s, held, step.stages().data());
   double low_s = step.start_s();
   for (int i = 0; i < Lanes::count; ++i) {
-    if (inside[i] > 0.0) return Stretch{low_s, times_s[i]};
+    if (inside[i] > 0.0) return SlipEnd{low_s, times_s[i]};
     low_s = times_s[i];
   }
-  if (beyond(end_s, held, at_end.data())[0] > 0.0) return Stretch{low_s, end_s};
+  if (beyond(end_s, held, at_end.data())[0] > 0.0) return SlipEnd{low_s, end_s};
   return std::nullopt;
 }
 

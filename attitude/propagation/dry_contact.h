@@ -23,24 +23,24 @@ class DryContact {
   // `dynamics` must outlive it.
   explicit DryContact(const Dynamics& dynamics);
 
-  // Whether there is any: otherwise nothing else may be asked.
+  // Whether the model has dry contact. Other functions require it.
   bool exists() const { return exists_; }
-  // Of the state: the rate about the axis.
+  // Component of the state: the rate about the axis.
   size_t component() const { return component_; }
 
-  // Of a platform at rest; `held` but for its slip.
+  // The slip of a platform at rest; that of `held` is ignored.
   Slip at_rest(double time_s, const ZeroOrderHold& held, std::span<const double> y) const;
-  // The limits where the contact is known to slip.
+  // The slip after the static friction is exceeded.
   Slip released(double time_s, const ZeroOrderHold& held, std::span<const double> y) const;
 
-  // Positive where the slip that is held has ended: the rate has changed its sign, or the other
-  // torques exceed the static friction.
+  // Positive if the state of `held` has ended: the rate has changed its sign, or the other torques
+  // exceed the static friction.
   Lanes beyond(const Lanes& time_s, const ZeroOrderHold& held, const Lanes* y) const;
-  // The first two of the step's start, stages and end between which it ends.
-  struct Stretch {
+  // The first interval, between start, stages and end of a step, in which the slip ends.
+  struct SlipEnd {
     double low_s, high_s;
   };
-  std::optional<Stretch> ends_within(const CollocationStep& step, const ZeroOrderHold& held,
+  std::optional<SlipEnd> ends_within(const CollocationStep& step, const ZeroOrderHold& held,
                                      double end_s) const;
   // Whether the stages of an attempted step resolve the change of the torques on a sticking body.
   bool resolves(const CollocationStep& step, const ZeroOrderHold& held) const;
@@ -52,7 +52,7 @@ class DryContact {
  private:
   struct Accelerations {
     Lanes forward, backward;
-    // A margin on them, so that rounding decides nothing.
+    // A margin for rounding errors.
     Lanes margin() const { return 1e-9 * (backward - forward); }
   };
   Accelerations accelerations(const Lanes& time_s, ZeroOrderHold held, const Lanes* y) const;

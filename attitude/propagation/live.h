@@ -22,7 +22,8 @@ struct LiveRow {
   Quat lab_from_body_seen = Quat::Identity();  // by the camera, with its noise and latency
   Vec3 gyro_rad_s = Vec3::Zero();
   double yaw_rad = 0.0;  // of the encoder
-  // Of the interval that ends here; not rows of the recording, which know the command that follows.
+  // Values of the interval that ends at this tick. Rows of the recording have those of the next
+  // one.
   double battery_current_A = 0.0;
   double array_power_W = 0.0;
   Vec3 command_body_N_m = Vec3::Zero();

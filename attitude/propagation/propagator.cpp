@@ -332,7 +332,7 @@ bool Propagator::ends_slip(double& stop_s, int& corrections) {
     const EventFunction beyond = {.name = "", .value = [&](const Lanes& time_s, const Lanes* y) {
                                     return contact_.beyond(time_s, held_, y);
                                   }};
-    const std::optional<DryContact::Stretch> within =
+    const std::optional<DryContact::SlipEnd> within =
         contact_.ends_within(step_, held_, step_.start_s() + step_.length_s());
     if (!within) return false;
     slip_ends_ = true;

@@ -46,8 +46,8 @@ double camera_delay_s(const Dynamics& dynamics, const PlatformState& state) {
 }
 
 // Reads the instruments at a tick and calls the commander of the run.
-Propagator::Commander live_commander(const PropagationRun& run, const Propagator& propagator,
-                                     LiveInstruments& instruments, const PowerHistory* beside) {
+Propagator::Commander commander_at_ticks(const PropagationRun& run, const Propagator& propagator,
+                                         LiveInstruments& instruments, const PowerHistory* beside) {
   return [&run, &propagator, &instruments, beside](double time_s, std::span<const double> y) {
     std::optional<PowerState> power;
     if (beside != nullptr) power = beside->at(std::min(time_s, beside->known_until_s()));
@@ -55,8 +55,8 @@ Propagator::Commander live_commander(const PropagationRun& run, const Propagator
   };
 }
 
-// Every how many rows of the recording the history has one, so that with the last row, which it
-// always has, it is no longer than `history_rows` (2 at least).
+// Number of recorded rows per row of the history. The history, which always contains the last row,
+// then has at most `history_rows` rows (at least 2).
 size_t thinning(size_t rows, size_t history_rows) {
   if (rows <= history_rows) return 1;
   return (rows - 1 + history_rows - 2) / (history_rows - 1);
@@ -99,7 +99,7 @@ RecordedRun::RecordedRun(const PropagationRun& run, std::function<void(double)> 
           [this](const Samples& samples) { take_in(samples); }) {
   if (!run.commander) return;
   instruments_.emplace(dynamics_, run.initial, run.output_rate_Hz, delay_s_, run.sensors, run.seed);
-  propagator_.follow_commander(live_commander(run, propagator_, *instruments_, beside));
+  propagator_.follow_commander(commander_at_ticks(run, propagator_, *instruments_, beside));
 }
 
 void RecordedRun::record() {

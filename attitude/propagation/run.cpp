@@ -9,6 +9,7 @@
 #include "attitude/recordings/apm.h"
 #include "attitude/recordings/oem.h"
 #include "core/settings/typed_keys.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 #include "core/transform.h"
 
@@ -246,7 +247,7 @@ Quat read_initial_attitude(const Settings& settings, const std::optional<Attitud
   const Quat attitude(q[0], q[1], q[2], q[3]);
   if (!(std::abs(attitude.norm() - 1.0) < 1e-3)) {
     throw settings.error(propagate_key::initial_attitude,
-                         "a quaternion of norm " + std::to_string(attitude.norm()),
+                         printed("a quaternion of norm %g", attitude.norm()),
                          "a quaternion of unit norm");
   }
   return attitude.normalized();

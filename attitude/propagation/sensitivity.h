@@ -15,7 +15,7 @@ namespace photorque {
 
 // Something to differentiate with respect to.
 struct Variable {
-  // Of the initial state, in the order of Tangent below; −1: a parameter.
+  // Component of the initial state, in the order of Tangent below; −1: a parameter.
   int initial = -1;
   // Parameter `parameter` of disturbance `disturbance` of the model.
   size_t disturbance = 0;
@@ -73,9 +73,9 @@ class Sensitivity {
   std::vector<ParameterBlock> parameter_blocks_;
   std::vector<double> start_;
   std::vector<Lanes> increments_, accepted_increments_;  // as in CollocationStep
-  // Of each variable, the largest component that any step began with, and the largest in units of
-  // the scales. What has died away to next to nothing of these need not be followed to its last
-  // bits: a derivative of a platform that rubs and stands still.
+  // For each variable, the largest component at the start of any step, and the largest in units of
+  // the scales. Derivatives that have decayed far below these, as of a platform at rest with dry
+  // friction, need no full precision.
   std::vector<double> largest_, largest_scaled_;
   static constexpr double next_to_nothing = 1e-10;
   double h_s_ = 0.0, accepted_h_s_ = 0.0;

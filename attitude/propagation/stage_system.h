@@ -36,15 +36,15 @@ struct RateWorkspace {
   std::vector<RateDerivative> jacobian;
 };
 
-// Those derivatives that are not zero at every stage; they stand in `room`.
+// Derivatives that are not zero at every stage; stored in `room`.
 const std::vector<RateDerivative>& rate_derivatives(const Dynamics& dynamics,
                                                     std::span<const Dynamics::Block> blocks,
                                                     const Lanes& times_s, const ZeroOrderHold& held,
                                                     const Lanes* stages, RateWorkspace& room);
 
-// How fast small deviations change, at most [1/s]: the largest row sum of |∂f/∂y| with each
-// component in units of its scale. Fixed-point iteration with eight stages contracts by about a
-// tenth of (step length · this).
+// Upper limit for the rate of change of small deviations [1/s]: the largest row sum of |∂f/∂y| with
+// each component in units of its scale. Fixed-point iteration with eight stages contracts by about
+// a tenth of (step length · this).
 double stiffness_1_s(std::span<const RateDerivative> jacobian, std::span<const double> scales);
 
 class StageSystem {

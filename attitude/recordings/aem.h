@@ -44,7 +44,7 @@ struct AttitudeEphemeris {
     struct Sample {
       double time_s;  // since the first row
       Quat a_from_b;  // unit
-      // Of B with respect to A, in B's axes; of ANGVEL alone.
+      // Rate of B with respect to A, in axes of B; only with ANGVEL.
       std::optional<Vec3> rate_rad_s = {};
     };
     // The rows as attitudes. InputError when the type is another, an epoch is no calendar time, or

@@ -110,7 +110,7 @@ class ApmReader {
     return {is_from_body, lab.value};
   }
 
-  // Of a rotation from A to B, or back.
+  // The attitude for a rotation from A to B, or back.
   static Quat lab_from_body(const Quat& a_from_b, const Frames& between) {
     return between.is_from_body ? a_from_b.conjugate() : a_from_b;
   }
@@ -208,7 +208,7 @@ class ApmReader {
         }
         rate_rad_s = lab_from_body_now.conjugate() * rate_rad_s;
       }
-      // Of B with respect to A.
+      // The rate of B with respect to A.
       return between.is_from_body ? Vec3(-rate_rad_s) : rate_rad_s;
     }
     if (quaternion != nullptr && find(*quaternion, {"Q1_DOT"}) != nullptr) {

@@ -34,7 +34,7 @@ std::string formula_of(std::string_view sequence);
 // The readings of a motion: the channels in which recordings and models are compared.
 //
 // Channels 0 to 2 are the attitude about lab x, y and z, 3 to 5 the gyro about body x, y and z.
-// Those behind them are one number each, for recordings that hold less than an attitude or three
+// The channels after them are scalars, for recordings with less than an attitude or three
 // rates: each has a function that computes its reading from an attitude and a rate.
 
 inline constexpr int vector_channels = 6;
@@ -121,7 +121,7 @@ class MotionColumns {
   // The first column with information on the motion.
   std::string first_name() const;
 
-  // Of a row; not finite where it has none.
+  // Readings of a row; not finite if it has none.
   Quat attitude(size_t row) const;
   double rate_rad_s(size_t axis, size_t row) const;  // body axes
   Vec3 angles_rad(size_t row) const;                 // roll, pitch, yaw

@@ -97,7 +97,7 @@ struct OrbitEphemeris::Reader {
     return *time;
   }
 
-  // Of all segments alike.
+  // All segments must have equal frames.
   void read_frame(const KvnItem& meta) {
     const std::string centre = required(meta, "CENTER_NAME");
     if (upper(centre) != "EARTH") {

@@ -196,6 +196,10 @@ class RecordingReader {
       }
       ++recording_.report.preamble_lines;
     }
+    if (first_line.empty()) {
+      throw InputError({path_.string()}, "header", "an empty file",
+                       "a header with t_s [s] and the channels, and rows of numbers");
+    }
     throw InputError({path_.string(), 1}, "header",
                      "no line that names t_s (the first is " + in_quotes(first_line) + ")",
                      "a header with t_s [s] and the channels, or a table [recording.columns] with "
@@ -456,8 +460,8 @@ Schedule read_command_file(const std::filesystem::path& path) {
   const Recording recording = read_recording(path);
   const RecordingReport& report = recording.report;
   // A recording with an attitude may have faults of its clock, and is read as one.
-  const bool is_flight = recording.find("q_w") != nullptr;
-  if (!is_flight && report.backward_times + report.repeated_times > 0) {
+  const bool has_quaternion = recording.find("q_w") != nullptr;
+  if (!has_quaternion && report.backward_times + report.repeated_times > 0) {
     const int64_t line = report.backward_times == 0 ? report.first_repeated_line
                          : report.repeated_times == 0
                              ? report.first_backward_line
@@ -497,19 +501,19 @@ void write_recording(const std::filesystem::path& path, const Recording& recordi
 std::string RecordingReport::text() const {
   std::ostringstream out;
   out << rows_read << " rows read, " << rows_kept << " kept, every " << median_interval_s << " s";
-  const auto say = [&](int64_t count, const char* what) {
+  const auto note = [&](int64_t count, const char* what) {
     if (count > 0) out << "\n" << count << " " << what;
   };
   if (jitter_s > 1e-3 * median_interval_s) out << " with a jitter of " << jitter_s << " s";
-  say(malformed_rows, "rows with a wrong number of cells left out");
-  say(rows_without_time, "rows without a time left out");
-  say(repeated_times, "rows that repeat a time left out");
-  say(backward_times, "rows out of order left out");
-  say(static_cast<int64_t>(gaps.size()), "gaps");
-  say(empty_cells, "empty cells");
-  say(unreadable_cells, "cells that hold no number");
-  say(bad_quaternions, "quaternions that are not of unit norm left out");
-  say(flipped_quaternions, "sign flips of the quaternion undone");
+  note(malformed_rows, "rows with a wrong number of cells left out");
+  note(rows_without_time, "rows without a time left out");
+  note(repeated_times, "rows that repeat a time left out");
+  note(backward_times, "rows out of order left out");
+  note(static_cast<int64_t>(gaps.size()), "gaps");
+  note(empty_cells, "empty cells");
+  note(unreadable_cells, "cells that hold no number");
+  note(bad_quaternions, "quaternions that are not of unit norm left out");
+  note(flipped_quaternions, "sign flips of the quaternion undone");
   for (const auto& [channel, count] : outliers) {
     out << "\n" << count << " outliers in " << channel << " left out";
   }

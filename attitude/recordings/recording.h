@@ -113,7 +113,7 @@ void write_recording(const std::filesystem::path& path, const Recording& recordi
 // a step of the propagation.
 class LampCurrent {
  public:
-  // Of `led_current_A`; null: the recording has none.
+  // `channel`: `led_current_A`; null if the recording has none.
   explicit LampCurrent(const Channel* channel);
 
   // Before the first reading as at it. Does nothing where no lamp shines.

@@ -38,9 +38,9 @@ struct BalanceResult {
   Vec3 sigma_m = Vec3::Zero();
   BalanceCommand command;     // of the masses, and the offset that their steps leave
   double resolution_m = 0.0;  // of the coarsest axis, half a step (eq. 1)
-  // Of the fit with the noise of the instruments alone, and by how many standard errors it exceeds
-  // one. Beyond `noticed_sigma` something acts that the model lacks: it pulls the offset as well,
-  // by an unknown amount.
+  // χ² per sample of the fit with the noise of the instruments, and its excess over one in standard
+  // errors. Above `noticed_sigma`, the model lacks an effect, which also biases the offset by an
+  // unknown amount.
   double chi2_per_sample = 0.0, excess_sigma = 0.0;
   static constexpr double noticed_sigma = 6.0;
   bool exceeds_noise() const { return excess_sigma > noticed_sigma; }

@@ -28,9 +28,9 @@ double dipole_pattern_e(double tilt_rad);
 // the cosine by which the outline shrinks, at most 1.
 double element_capture(double pattern, double tilt_rad);
 
-// Of a plane that takes `taken_W` of a beam along its axis and mirrors `mirrored_W`: the force
-// along the beam and the torque on a body whose centre is `height_m` below the plane's, along its
-// normal.
+// Radiation pressure on a plane that absorbs `taken_W` of a beam and mirrors `mirrored_W`: the
+// force along the beam and the torque on a body whose centre is `height_m` below the plane's, along
+// its normal.
 struct BeamPressure {
   double force_N = 0.0;     // along the beam
   double torque_N_m = 0.0;  // positive: tilts further

@@ -76,7 +76,7 @@ double year_of_dipole(double field_T) {
 }
 
 // The cylinders laid down as in eq. 22 has them, from the axis outwards.
-std::vector<AirPart> rails_at_the_axis(std::vector<AirPart> rails) {
+std::vector<AirPart> cylinders_from_axis(std::vector<AirPart> rails) {
   for (AirPart& rail : rails) {
     rail.shape = AirShape::radial_cylinder;
     rail.inner_m = 0.0;
@@ -128,7 +128,7 @@ void add_air(std::vector<PaperFigure>& all, const PaperInputs& in) {
                  "plates are not dimensioned; torque goes with the fourth power of their size"});
   all.push_back(
       {"cylinder_drag_at_1_rpm_N_m", "II.B.2", 2.80e-11, torque_N_m(parts.rails),
-       torque_N_m(rails_at_the_axis(parts.rails)),
+       torque_N_m(cylinders_from_axis(parts.rails)),
        "eq. 22 is for a cylinder that points away from the axis; upright at their distance "
        "the rails feel more, and even from the axis outwards (ours_as_published) their "
        "length gives more than printed"});
@@ -373,7 +373,7 @@ Plot elastic_plot() {
 
 Table figures_table(const std::vector<PaperFigure>& figures) {
   Table table =
-      Table::of("paper_figures", "Published figures compared with ours",
+      Table::of("paper_figures", "Published figures compared with photorque",
                 {"quantity", "section", "why", "published", "ours", "ratio", "ours_as_published"});
   for (const PaperFigure& f : figures) {
     table.row()

@@ -72,7 +72,7 @@ struct PaperFigure {
 };
 std::vector<PaperFigure> paper_figures(const PaperInputs& inputs = {});
 
-// How one figure depends on one assumed input: figure ∝ input^exponent nearby.
+// Sensitivity of one figure to one assumed input: locally, figure ∝ input^exponent.
 struct PaperSensitivity {
   std::string quantity;
   std::string input;

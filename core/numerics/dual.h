@@ -73,7 +73,7 @@ struct DualLanes {
   friend bool operator==(const DualLanes& a, const DualLanes& b) { return a.value == b.value; }
 };
 
-// Of plain values, which have no derivatives: so that one formula serves both types.
+// For plain values without derivatives, so that one formula is valid for both types.
 inline Lanes chain(const Lanes& /*x*/, const Lanes& f, const Lanes& /*slope*/) {
   return f;
 }

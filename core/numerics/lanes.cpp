@@ -77,7 +77,7 @@ Quad atan_kernel(const Quad& x) {
   return x + x * z * (p / q);
 }
 
-// Of the smaller over the larger size, then mirrored into the octant.
+// Arc tangent of the smaller over the larger absolute value, then mirrored into the octant.
 Quad quad_atan2(const Quad& y, const Quad& x) {
   constexpr double tan_eighth_turn = 0.41421356237309503;  // tan π/8
   constexpr double quarter_pi = 0x1.921fb54442d18p-1, quarter_pi_rest = 0x1.1a62633145c07p-55;

@@ -18,7 +18,7 @@
 namespace photorque {
 
 using Quad = double __attribute__((vector_size(32)));
-// Of comparisons: all bits set where true.
+// Results of comparisons: all bits set where true.
 using QuadBits = int64_t __attribute__((vector_size(32)));
 using QuadWords = uint64_t __attribute__((vector_size(32)));
 

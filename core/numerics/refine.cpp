@@ -1,4 +1,4 @@
-// How a RotationTable comes about: trying the symmetry, then refining, then checking.
+// Construction of a RotationTable: test of the symmetry, refinement, check.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -132,7 +132,7 @@ class RotationTableBuilder {
   static constexpr uint64_t pilots = 4;
 
   void find_symmetry() {
-    say("looking for symmetry");
+    report_progress("looking for symmetry");
     constexpr double by[] = {1.0, 2.4};  // turns without a common measure
     std::vector<Quat> attitudes;
     for (uint64_t i = 0; i < pilots; ++i) {
@@ -191,7 +191,7 @@ class RotationTableBuilder {
   // As many values of ψ as the pilots need.
   void find_twists() {
     for (size_t count = 4; count <= max_twists; count *= 2) {
-      say("refining over the yaw");
+      report_progress("refining over the yaw");
       bool good = true;
       for (uint64_t i = 0; i < pilots && good; ++i) {
         RotationPoint point = random_point(i);
@@ -232,7 +232,7 @@ class RotationTableBuilder {
     return {cell.half, cell.x + i * step, cell.y + j * step, turn};
   }
 
-  void want_nodes(const Cell& cell, std::set<Key>& wanted) const {
+  void request_nodes(const Cell& cell, std::set<Key>& wanted) const {
     for (size_t node = 0; node < RotationTable::nodes; ++node) {
       for (size_t t = 0; t < table_.twists_; ++t) wanted.insert(node_key(cell, node, t));
     }
@@ -334,9 +334,9 @@ class RotationTableBuilder {
       box.width = 2.0 * table_.half_width_;
       table_.boxes_.push_back(box);
       leaves_.push_back(cell);
-      want_nodes(cell, wanted);
+      request_nodes(cell, wanted);
     }
-    say("tracing light");
+    report_progress("tracing light");
     sample(wanted);
     for (const Cell& cell : leaves_) fill(cell);
     pending_ = leaves_;
@@ -372,7 +372,7 @@ class RotationTableBuilder {
     std::vector<Cell> parts;
     for (const Cell& cell : cells) {
       for (const Cell& part : cut(cell)) {
-        want_nodes(part, wanted);
+        request_nodes(part, wanted);
         parts.push_back(part);
       }
     }
@@ -395,7 +395,7 @@ class RotationTableBuilder {
       for (const Cell& cell : pending_) {
         for (const Key& key : test_keys(cell)) wanted.insert(key);
       }
-      say("refining");
+      report_progress("refining");
       sample(wanted);
       std::vector<std::pair<double, Cell>> failing;
       for (const Cell& cell : pending_) {
@@ -435,7 +435,7 @@ class RotationTableBuilder {
     constexpr int rounds = 4;
     uint64_t next = 1000;
     for (int round = 0; round < rounds; ++round) {
-      say("checking");
+      report_progress("checking");
       std::vector<RotationPoint> points;
       std::vector<Quat> attitudes;
       while (points.size() < options_.check_points) {
@@ -488,7 +488,7 @@ class RotationTableBuilder {
     error.points = attitudes.size();
   }
 
-  void say(const std::string& what) const {
+  void report_progress(const std::string& what) const {
     if (progress_) progress_(evaluated_, what);
   }
 

@@ -11,8 +11,8 @@
 //
 // Over p a quadtree's leaves hold a polynomial of degree 4 in each coordinate through 5 × 5 values;
 // over the twist ψ there is a trigonometric polynomial through equidistant values in one period.
-// How often the function repeats itself in a turn is found by trying, as is whether it depends on ψ
-// at all. Between leaves of different size the interpolant jumps by less than its error.
+// Samples of the function show its number of periods in a turn, and whether it depends on ψ.
+// Between leaves of different size, the interpolant jumps by less than its error.
 #pragma once
 
 #include <array>
@@ -36,9 +36,9 @@ struct RotationPoint {
 // ∂(x, y, twist)/∂(w, x, y, z) of the quaternion, row by row.
 using RotationSlopes = std::array<std::array<double, 4>, 3>;
 
-// Of an attitude whose fixed direction is the outer frame's z (multiply lab_from_body from the left
-// to bring another one there). The quaternion may have any length but zero; q and −q are the same.
-// `slopes`, if not null, receives the derivatives.
+// The table coordinates of an attitude. The fixed direction is z of the outer frame (multiply
+// lab_from_body from the left to rotate another direction there). The quaternion may have any
+// length but zero; q and −q are the same. `slopes`, if not null, receives the derivatives.
 RotationPoint point_of(const Quat& q, RotationSlopes* slopes = nullptr);
 
 // The attitude at a point; the inverse of point_of().
@@ -68,7 +68,7 @@ struct RotationTableOptions {
   size_t check_points = 24;  // fresh ones, at least
 };
 
-// How well a table interpolates, at attitudes that it was not made from.
+// Interpolation error of a table at independent attitudes.
 struct RotationTableError {
   std::vector<double> scale;  // per group: the largest size of any of its channels
   std::vector<double> rms;    // per group, of the deviations, in the unit of the channels
@@ -119,7 +119,7 @@ class RotationTable {
   // Without padding, so that equal tables are equal bytes.
   struct Box {
     double x = 0.0, y = 0.0, width = 0.0;  // lower corner
-    // Of the polynomial that holds here: its own corner and width, and its values.
+    // The polynomial that is valid here: its corner and width, and its values.
     double node_x = 0.0, node_y = 0.0, node_width = 0.0;
     std::array<uint32_t, nodes> sample{};
     int32_t children = -1;  // the first of four, −1 for a leaf

@@ -45,6 +45,7 @@ struct Key {
     std::string name;
     std::string what = {};
     std::vector<Key> keys = {};
+    std::string note = {};  // sentences that only documents print
   };
 
   std::string name;  // with the unit that documents show: "pitch_m"

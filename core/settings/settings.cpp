@@ -23,8 +23,8 @@ size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-// " (is LIKE in line N meant?)" for the most similar key that was not requested yet, if there is
-// one.
+// " (is LIKE in line N meant?)", or without a line on the command line, for the most similar key
+// that was not requested yet, if there is one.
 std::string misspelled(std::string_view key, const SettingsNode::Table& table,
                        const std::set<std::string>& asked) {
   std::set<std::string> unasked;
@@ -33,8 +33,9 @@ std::string misspelled(std::string_view key, const SettingsNode::Table& table,
   }
   const std::string likest = nearest(key, unasked);
   if (likest.empty()) return "";
-  return " (is \"" + likest + "\" in line " +
-         std::to_string(table.find(likest)->second.where.line) + " meant?)";
+  const int line = table.find(likest)->second.where.line;
+  return " (is \"" + likest + "\"" + (line > 0 ? " in line " + std::to_string(line) : "") +
+         " meant?)";
 }
 
 }  // namespace

@@ -5,8 +5,10 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <span>
 
 #include "core/files.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -178,7 +180,16 @@ NumberColumns read_number_columns(const std::filesystem::path& path,
   for (const std::string& name : names) {
     const auto found = std::find(result.header.begin(), result.header.end(), name);
     if (found == result.header.end()) {
-      throw InputError(lines.where(), "", "no column " + name, "a column " + name);
+      constexpr size_t most = 12;
+      const std::span<const std::string> shown(result.header.data(),
+                                               std::min(most, result.header.size()));
+      throw InputError(
+          lines.where(), "header",
+          "the columns " +
+              joined_text(shown, ", ",
+                          [](const std::string& column) { return in_quotes(column); }) +
+              (result.header.size() > most ? ", …" : ""),
+          "also a column " + name);
     }
     places.push_back(static_cast<size_t>(found - result.header.begin()));
   }

@@ -1,5 +1,5 @@
-// Text taken apart: lines, cells and words, which are views into the text that was given; numbers
-// and columns; checks of JSON texts and URIs before they are read.
+// Parsing of text: lines, cells and words (views of the given text), numbers and columns; checks of
+// JSON texts and URIs before they are read.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +13,21 @@
 
 namespace photorque {
 
-// Without blanks at both ends: space, tab, CR, LF, vertical tab, form feed and the end-of-file
-// byte 0x1a that old programs leave.
+// The text without blanks at both ends: space, tab, CR, LF, vertical tab, form feed and the
+// end-of-file byte 0x1a that old programs leave.
 std::string_view trimmed(std::string_view text);
 
-// Without blanks and double quotes at both ends, as cells of a table may have them.
+// The text without blanks and double quotes at both ends.
 std::string_view unquoted(std::string_view text);
 
-// With small letters for A to Z.
+// The text with lower-case letters for A to Z.
 std::string lower_case(std::string_view text);
 
 // Lines without their ends (LF, CR LF or CR).
 std::vector<std::string_view> lines_of(std::string_view text);
 
-// The cells between separators, each unquoted(); one more than there are separators. A separator
-// inside quotes separates all the same. Where blanks separate, any number of them does.
+// The cells between separators, each unquoted(); one more than there are separators. Separators
+// inside quotes also count. If blanks separate, any number of them is one separator.
 std::vector<std::string_view> cells_of(std::string_view line, char separator = ',');
 // Splits a line into `cells`, for readers of millions of lines.
 void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells);
@@ -39,8 +39,8 @@ std::vector<std::string_view> words_of(std::string_view line,
 // "text" in quotes for a message, cut after 40 bytes.
 std::string in_quotes(std::string_view text);
 
-// Throws InputError when the beginning of a text file is UTF-16 or no text at all: readers of lines
-// would find no column in it and report a misleading error.
+// Throws InputError if a file begins with UTF-16 or is not text. Otherwise readers of lines would
+// report a missing column.
 void require_text(std::string_view begin, const InputLocation& where);
 
 // The lines of a text that are neither blank nor a comment from # on.
@@ -49,9 +49,9 @@ class DataLines {
   // `text` must outlive the reader; `file` is the name in messages. See require_text().
   DataLines(std::string_view text, const std::string& file);
 
-  // The next such line, trimmed; false at the end.
+  // The next line, trimmed; false at the end.
   bool next(std::string_view& line);
-  // Of the line that next() gave last, or of the last line of all.
+  // Location of the line that next() returned last, or of the last line of the file.
   const InputLocation& where() const { return where_; }
 
  private:
@@ -77,8 +77,8 @@ std::string shortest(double value);
 // Numbers from a comma-separated file with a header.
 struct NumberColumns {
   std::vector<std::string> header;           // all columns of the file
-  std::vector<std::vector<double>> columns;  // those asked for, in that order
-  std::vector<int> lines;                    // of the file, for each row
+  std::vector<std::vector<double>> columns;  // the requested ones, in the order of the request
+  std::vector<int> lines;                    // line in the file, for each row
 };
 
 // Reads the columns with these names, in any order among others; empty lines and lines that start
@@ -87,22 +87,23 @@ struct NumberColumns {
 NumberColumns read_number_columns(const std::filesystem::path& path,
                                   const std::vector<std::string>& names);
 
-// The header of such a file alone.
+// Reads only the header of such a file.
 std::vector<std::string> read_column_names(const std::filesystem::path& path);
 
-// How much a JSON text asks of who reads it, found before anything is built from it.
+// Size of a JSON text, determined before it is parsed.
 struct JsonExtent {
-  uint64_t values = 0;  // at most: each but the first follows one of [ { , : outside a string
-  int depth = 0;        // of brackets within each other; libraries recurse once per level
+  uint64_t values =
+      0;          // upper limit: every value but the first follows one of [ { , : outside a string
+  int depth = 0;  // of brackets within each other; libraries recurse once per level
 };
 
 JsonExtent extent_of_json(std::string_view text);
 
-// Deeper than anything that programs write for each other.
+// Exceeds the depth of any file that programs write.
 inline constexpr int deepest_json = 256;
 
-// Escapes of URIs: "a%20b" is "a b" (RFC 3986 section 2.1). A plus sign stays one: that it means a
-// space holds in web forms, not in URIs. Nothing when an escape is malformed.
+// Escapes of URIs: "a%20b" is "a b" (RFC 3986 section 2.1). A plus sign remains one
+// (only in web forms it means a space). Empty if an escape is malformed.
 std::optional<std::string> percent_decoded(std::string_view text);
 
 }  // namespace photorque

@@ -53,7 +53,7 @@ std::optional<double> simpler_by(const Trial& first, const Trial& second, const 
 
 namespace {
 
-// Of names that are indistinguishable from the chosen ones, keeps the simplest (simpler_by()).
+// Keeps the simplest (simpler_by()) of the names that are indistinguishable from the chosen ones.
 void prefer_simpler(const Thresholds& limits, Answer& a) {
   if (a.decision.finding != inference::Finding::named) return;
   const double alike = a.chosen().log_evidence - limits.search.min_log_evidence_gain;
@@ -119,7 +119,7 @@ double held_chi2_per_sample(const Trial& trial, const RecordedData& data,
 // Rejects a law that fits the recordings but predicts the held-out data worse than the nominal
 // model. It is replaced by the most likely explanation that predicts better than the nominal model
 // or, if there is none, by the nominal model.
-void keep_what_predicts(const RecordedData& data, const Thresholds& limits, Answer& a) {
+void keep_predictive_explanation(const RecordedData& data, const Thresholds& limits, Answer& a) {
   if (data.held.empty()) return;
   const double nominal = held_chi2_per_sample(a.trials.front(), data, limits);
   size_t kept = 0;
@@ -145,7 +145,7 @@ Answer at_noise_of_readings(const NominalModel& nominal, RecordedData& data,
   Answer a = searched(nominal, nominal_fit, data, options, Among::all, near);
   const bool is_named = a.decision.finding == inference::Finding::named;
   if (!data.noise_is_open && !is_named) return a;
-  if (!settle_again(a.chosen().fit, options.limits, data)) return a;
+  if (!estimate_noise_again(a.chosen().fit, options.limits, data)) return a;
   tell(options, "again, with the noise that was found");
   nominal_fit = fit(nominal_fit.best, data.train);
   const Trial named = a.chosen();
@@ -166,7 +166,7 @@ void describe(const RecordedData& data, const DiagnoseOptions& options, Answer& 
   if (a.decision.finding != inference::Finding::unknown) return;
   Trial& chosen = a.trials[a.decision.chosen];
   chosen = refined_in_time(chosen, a.all, data.train);
-  keep_what_predicts(data, options.limits, a);
+  keep_predictive_explanation(data, options.limits, a);
   const Trial& now = a.chosen();
   std::erase_if(a.decision.beside_law, [&](size_t c) {
     const auto at = std::ranges::find(now.candidates, c) - now.candidates.begin();

@@ -16,21 +16,21 @@ namespace photorque {
 struct Answer {
   Candidates all;
   std::vector<Trial> trials;
-  // Computed before the held-out runs are weighed: in a diverged run all explanations differ by
-  // chance.
+  // Computed before the held-out runs are used, because all explanations of a diverged run differ
+  // by chance.
   std::vector<Where::Dependence> depends_on;
   inference::Decision decision;
   // Whether the decision treated the unexplained residual as noise.
   bool rest_is_noise = false;
   // Set if so and if effects are named: gains in prediction for the names of the chosen trial.
   // `sigma`: standard errors by which a name improves the prediction of segments.
-  struct BesideTheRest {
+  struct WithDiscrepancy {
     size_t segments = 0;
     std::vector<double> sigma;                     // for each candidate of the chosen trial
     std::vector<std::vector<std::string>> rivals;  // for each: indistinguishable names
     std::vector<std::string> tied;                 // sets of names that predict as well
   };
-  std::optional<BesideTheRest> beside = {};
+  std::optional<WithDiscrepancy> beside = {};
 
   const Trial& chosen() const { return trials[decision.chosen]; }
 };
@@ -44,9 +44,9 @@ struct Answer {
 Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOptions& options,
                Fit& nominal_fit);
 
-// Compares two explanations that differ in one name: how much simpler the name of the first is
-// (negative: the second). If both brake, by the power of the speed (braking_power()); if both push
-// steadily, by the number of parameters (a spring without stiffness is a slope); otherwise nothing.
+// Compares two explanations that differ in one name. A positive result means that the name of the
+// first is simpler. Two kinds of drag are compared by the power of the speed (braking_power()), two
+// steady forces by the number of parameters (a spring without stiffness is a slope); others give 0.
 // The more complex name is kept only if the simpler one fits worse (marginality: J. A. Nelder, J.
 // R. Statist. Soc. A 140 (1977) 48).
 std::optional<double> simpler_by(const Trial& first, const Trial& second, const Answer& answer);

@@ -25,8 +25,8 @@ namespace {
 
 // Location of the differences; empty if the nominal model cannot be propagated, as they then differ
 // from the start.
-Where where_they_part(const Fit& nominal_fit, const RecordedData& data,
-                      const Thresholds::Location& limits) {
+Where locate_differences(const Fit& nominal_fit, const RecordedData& data,
+                         const Thresholds::Location& limits) {
   try {
     return locate(residuals_of(nominal_fit, data.train), data.train, limits);
   } catch (const NumericalError&) {
@@ -34,7 +34,7 @@ Where where_they_part(const Fit& nominal_fit, const RecordedData& data,
   }
 }
 
-void say_what_was_found(const Answer& answer, const Fit& nominal_fit, const RecordedData& data,
+void report_explanation(const Answer& answer, const Fit& nominal_fit, const RecordedData& data,
                         const DiagnoseOptions& options, Diagnosis& d) {
   const Candidates& all = answer.all;
   const std::vector<Trial>& trials = answer.trials;
@@ -43,7 +43,7 @@ void say_what_was_found(const Answer& answer, const Fit& nominal_fit, const Reco
   const Trial& chosen = answer.chosen();
   d.verdict = verdict_of(decision.finding);
   d.confidence = decision.confidence;
-  d.where = where_they_part(nominal_fit, data, all.limits.location);
+  d.where = locate_differences(nominal_fit, data, all.limits.location);
   if (d.verdict == Verdict::missing_physics) {
     d.where.depends_on = depends_on;
     d.effects = found_effects(decision, trials, all);
@@ -72,8 +72,8 @@ void say_what_was_found(const Answer& answer, const Fit& nominal_fit, const Reco
 }
 
 // Statistics and curves of the nominal and the chosen model, for fitted and held-out data.
-void say_how_well(const Fit& before, const Answer& answer, const RecordedData& data,
-                  const Thresholds& limits, Diagnosis& d) {
+void report_fit_quality(const Fit& before, const Answer& answer, const RecordedData& data,
+                        const Thresholds& limits, Diagnosis& d) {
   const Trial& chosen = answer.chosen();
   // If the residual counted as noise, χ² is recomputed with the noise of the readings.
   const Fit after =
@@ -131,7 +131,7 @@ void report_gains_over_segments(const Answer& answer, Diagnosis& d) {
 }
 
 // Adds a warning if held-out data do not test the names or scatter less than the noise.
-void say_limits_of_held_out(Diagnosis& d) {
+void warn_of_weak_holdout(Diagnosis& d) {
   constexpr double as_well = 0.9, too_quiet_sigma = -5.0;
   const double before = d.holdout->chi2_per_sample_before, after = d.holdout->chi2_per_sample_after;
   if (!d.effects.empty() && after > as_well * before) {
@@ -173,7 +173,7 @@ NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
   NominalModel nominal = stated;
   const bool is_seen = std::any_of(
       data.train.begin(), data.train.end(),
-      [&](const Observation& seen) { return seen.feels_attitude(stated.model.platform); });
+      [&](const Observation& seen) { return seen.measures_attitude(stated.model.platform); });
   const Platform& platform = nominal.model.platform;
   // A twisted line or a weight exerts a restoring torque, from which rates alone determine an
   // angle.
@@ -241,14 +241,14 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
     chosen = within_physics(chosen, answer.all, data.train);
   }
   Diagnosis d;
-  say_what_was_found(answer, nominal_fit, data, options, d);
+  report_explanation(answer, nominal_fit, data, options, d);
   if (nominal.uncertain_inertia && is_an_inertia(answer.chosen(), *nominal.uncertain_inertia)) {
     d.unnamed.push_back(as_fitted(answer.chosen(), *nominal.uncertain_inertia));
   }
-  say_how_well(nominal_fit, answer, data, options.limits, d);
+  report_fit_quality(nominal_fit, answer, data, options.limits, d);
   d.warnings = warnings_of(data, answer.decision);
   report_gains_over_segments(answer, d);
-  say_limits_of_held_out(d);
+  warn_of_weak_holdout(d);
   for (const std::string& text : contradicted_priors(answer.chosen(), options.limits.decision)) {
     d.warnings.push_back(text);
   }

@@ -216,7 +216,7 @@ std::string of_drag(const EmpiricalShape& shape, const Numbers& numbers) {
   return text.empty() ? "" : text + ")";
 }
 
-std::string likeness_to_yaw(const MotionFunction& f) {
+std::string similar_yaw_effect(const MotionFunction& f) {
   switch (f.orders.front()) {
     case 1:
       return "a fixed direction in the room: a draught from one side, a magnet or iron beside the "
@@ -241,7 +241,7 @@ std::string similar_effects(const EmpiricalShape& shape, const Numbers& numbers)
   }
   switch (f.of) {
     case MotionVariable::yaw:
-      return likeness_to_yaw(f);
+      return similar_yaw_effect(f);
     case MotionVariable::tilt:
       if (f.form == FunctionForm::table) {
         return "a stop, seal or cable that is reached at a certain tilt";

@@ -22,7 +22,7 @@ std::string known_together(const Vec3& value, const Mat3& covariance);
 std::vector<FoundEffect> found_effects(const inference::Decision& decision,
                                        const std::vector<Trial>& trials, const Candidates& all);
 
-// Those effects that are certain although an empirical law describes the residual.
+// Effects that are certain although an empirical law describes the residual.
 std::vector<FoundEffect> effects_beside_law(const inference::Decision& decision,
                                             const std::vector<Trial>& trials,
                                             const Candidates& all);

@@ -195,7 +195,7 @@ std::vector<InstrumentFinding> clock_findings(const Platform& platform, const Re
   std::map<std::string, std::vector<Observation>> pieces;
   for (const auto* runs : {&data.train, &data.held}) {
     for (const Observation& seen : *runs) {
-      if (seen.sees_some_attitude()) return {};
+      if (seen.has_some_attitude()) return {};
       pieces[seen.name].push_back(seen.averaged(most_rows));
     }
   }

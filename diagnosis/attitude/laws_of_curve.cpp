@@ -46,7 +46,7 @@ size_t reach_of(const AxisReadings& read, double middle) {
 
 Curve curve_of(const Observation& seen, const Vec3& axis) {
   constexpr size_t fewest = 20, most_instants = 4000;
-  const bool sees_angle = seen.sees_some_attitude();
+  const bool sees_angle = seen.has_some_attitude();
   const AxisReadings read = sees_angle ? angles_about(seen, axis, 0, seen.blocks())
                                        : rates_about(seen, axis, 0, seen.blocks());
   Curve curve;

@@ -41,7 +41,7 @@ void turn_a_quarter(PlatformState& state) {
   state.lab_from_body = Quat(Eigen::AngleAxisd(0.5 * pi, Vec3::UnitZ())) * state.lab_from_body;
 }
 
-void lean_further(PlatformState& state) {
+void increase_tilt(PlatformState& state) {
   const Vec3 up_body = state.lab_from_body.conjugate() * Vec3::UnitZ();
   const Vec3 across = up_body.cross(Vec3::UnitZ());  // away from the vertical
   const Vec3 axis = across.norm() > 1e-6 ? Vec3(across.normalized()) : Vec3::UnitX();
@@ -60,7 +60,7 @@ std::vector<StartManoeuvre> start_manoeuvres() {
        "it, those fixed to the room do not",
        turn_a_quarter},
       {"start the run at 0.2 rad more tilt: righting torques deviate from the sine differently",
-       lean_further},
+       increase_tilt},
   };
 }
 
@@ -69,14 +69,14 @@ constexpr const char* longer = "record longer, at larger tilt and over a wider r
 // Whether only the battery current distinguishes two kinds: effects of its charge do not depend on
 // the initial state.
 bool is_separated_by_charge(const std::string& kind, const std::string& rival) {
-  const auto says = [](const std::string& one, const std::string& other) {
+  const auto lists = [](const std::string& one, const std::string& other) {
     const DisturbanceKind* known = find_kind(one);
     return known != nullptr &&
            std::ranges::any_of(known->screening.confusable_kinds, [&](const ConfusableKind& l) {
              return l.kind == other && l.distinguished_by == Requirement::charge;
            });
   };
-  return says(kind, rival) || says(rival, kind);
+  return lists(kind, rival) || lists(rival, kind);
 }
 
 // Synthetic noise-free readings of the first run from another initial state, propagated by the
@@ -157,8 +157,8 @@ Manoeuvre best_start(Manoeuvre m, const Trial& truth, const Trial& rival, const 
 }
 
 // The best trial with `rival` in place of `kind`.
-const Trial* stand_in(const std::string& kind, const std::string& rival, const Trial& chosen,
-                      const std::vector<Trial>& trials, const Candidates& all) {
+const Trial* best_with_rival(const std::string& kind, const std::string& rival, const Trial& chosen,
+                             const std::vector<Trial>& trials, const Candidates& all) {
   const auto labels_of = [&](const Trial& t) {
     std::multiset<std::string> kinds;
     for (const size_t c : t.candidates) kinds.insert(all[c].label);
@@ -188,7 +188,7 @@ std::vector<Manoeuvre> manoeuvres(const std::vector<FoundEffect>& effects,
   for (const FoundEffect& effect : effects) {
     for (const std::string& rival : effect.indistinguishable_from) {
       Manoeuvre m{{effect.kind, rival}, longer, 0.0};
-      const Trial* other = stand_in(effect.kind, rival, chosen, trials, all);
+      const Trial* other = best_with_rival(effect.kind, rival, chosen, trials, all);
       if (is_separated_by_charge(effect.kind, rival)) {
         m.text =
             "record through a change of the battery current: only the effect of the discharge "

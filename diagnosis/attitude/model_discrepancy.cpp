@@ -78,7 +78,7 @@ std::vector<size_t> likely_of(const Answer& answer) {
                 [&](size_t i) { return !answer.trials[i].holdout_chi2_per_sample.has_value(); });
   std::ranges::stable_sort(by_held, {},
                            [&](size_t i) { return *answer.trials[i].holdout_chi2_per_sample; });
-  order.resize(std::min(order.size(), limits.max_likeliest));
+  order.resize(std::min(order.size(), limits.max_probable));
   by_held.resize(std::min(by_held.size(), limits.max_predicting));
   for (const size_t i : by_held) {
     if (std::ranges::find(order, i) == order.end()) order.push_back(i);
@@ -173,7 +173,7 @@ class Contest {
 
   // Motion about three axes is flexible enough to fit anything. There a further name must halve the
   // residuals of the held-out data.
-  bool tells_enough(const Contender& without, const Contender& with) const {
+  bool improves_enough(const Contender& without, const Contender& with) const {
     const Platform& platform = answer_.trials.front().fit.best.model.platform;
     return platform.turns_about_one_axis() || platform.slides() ||
            without.trial.candidates.empty() || halves_held_out(without, with);
@@ -232,7 +232,7 @@ class Contest {
       return missed(without, with);
     });
     return without_least(std::move(best), [&](const Contender& without, const Contender& with) {
-      return tells_enough(without, with) ? missed(without, with) : 0.0;
+      return improves_enough(without, with) ? missed(without, with) : 0.0;
     });
   }
 
@@ -299,11 +299,11 @@ Trial refit_with_discrepancy(const Trial& named, const Candidates& all, const No
 
 // Replaces the chosen trial by the winner.
 void choose(const Contender& won, const Contest& contest, Answer& a) {
-  const auto twin = std::ranges::find_if(a.trials, [&](const Trial& t) {
+  const auto equal = std::ranges::find_if(a.trials, [&](const Trial& t) {
     return inference::same_candidates(t.candidates, won.trial.candidates);
   });
-  a.decision.chosen = static_cast<size_t>(twin - a.trials.begin());
-  if (twin == a.trials.end()) {
+  a.decision.chosen = static_cast<size_t>(equal - a.trials.begin());
+  if (equal == a.trials.end()) {
     a.trials.push_back(won.trial);
     a.trials.back().log_evidence = a.trials.front().log_evidence;
     a.decision.probability.push_back(0.0);
@@ -381,7 +381,7 @@ Among among_with_discrepancy(const NominalModel& nominal, const RecordedData& da
   const bool sees_both = std::ranges::all_of(data.train, [&](const Observation& seen) {
     const bool has_rate = std::ranges::any_of(
         seen.gyro_rows, [&](const Vec3& rows) { return rows.dot(axis.cwiseAbs()) > 0.0; });
-    return seen.sees_some_attitude() && has_rate;
+    return seen.has_some_attitude() && has_rate;
   });
   return nominal.model.platform.turns_about_one_axis() && sees_both ? Among::catalogue
                                                                     : Among::torques;

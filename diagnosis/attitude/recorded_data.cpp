@@ -24,18 +24,19 @@ namespace {
 constexpr size_t min_segment_blocks = 12;
 
 // Warns of rows that are omitted where a file is cut into segments.
-void say_cuts(const std::string& name, const Segments& segments,
-              std::vector<std::string>& warnings) {
-  const auto say = [&](int64_t count, const char* what) {
+void warn_of_omitted_rows(const std::string& name, const Segments& segments,
+                          std::vector<std::string>& warnings) {
+  const auto note = [&](int64_t count, const char* what) {
     if (count > 0) warnings.push_back(name + ": " + std::to_string(count) + what);
   };
-  say(segments.events, " rows with an event are left out; a new segment starts after each of them");
-  say(segments.kinks,
-      " rows where the rate jumps without a recorded event are left out; a new segment starts "
-      "after each of them");
-  say(segments.long_gaps, " long gaps: a new segment starts after each of them");
-  say(segments.too_short,
-      " segments with too few readings for their initial conditions are left out");
+  note(segments.events,
+       " rows with an event are left out; a new segment starts after each of them");
+  note(segments.kinks,
+       " rows where the rate jumps without a recorded event are left out; a new segment starts "
+       "after each of them");
+  note(segments.long_gaps, " long gaps: a new segment starts after each of them");
+  note(segments.too_short,
+       " segments with too few readings for their initial conditions are left out");
   for (const std::string& note : segments.notes) warnings.push_back(name + ": " + note);
   for (const std::string& why : segments.exclusions) {
     warnings.push_back(name + ": " + why + ", which is left out");
@@ -50,8 +51,9 @@ bool is_declared(const Sensors& sensors, int scalar) {
   return measures != Measures::field || sensors.magnetometer.has_value();
 }
 
-void say_unused(const NamedRecording& r, const NominalModel& nominal,
-                const std::set<std::string>& read_elsewhere, std::vector<std::string>& warnings) {
+void report_unused_columns(const NamedRecording& r, const NominalModel& nominal,
+                           const std::set<std::string>& read_elsewhere,
+                           std::vector<std::string>& warnings) {
   const Platform& platform = nominal.model.platform;
   std::string names, undeclared;
   const MotionColumns motion(r.recording, platform, r.name);
@@ -73,8 +75,8 @@ void say_unused(const NamedRecording& r, const NominalModel& nominal,
 }
 
 // Warns of an assumed sequence of angles, which only rates could test.
-void say_assumed_sequence(const NamedRecording& r, const Platform& platform,
-                          std::vector<std::string>& warnings) {
+void warn_of_assumed_sequence(const NamedRecording& r, const Platform& platform,
+                              std::vector<std::string>& warnings) {
   const MotionColumns columns(r.recording, platform, r.name);
   if (!columns.has_angles() || columns.has_gyro() || !r.recording.angle_sequence.empty()) return;
   warnings.push_back(r.name + ": roll, pitch and yaw are taken in the sequence zyx, " +
@@ -167,7 +169,7 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
   for (const NamedRecording& r : recordings) {
     refuse_jump_of_clock(r.recording, r.name);
     Segments segments = observe_segments(r.recording, r.name, platform, options.max_blocks);
-    say_cuts(r.name, segments, warnings);
+    warn_of_omitted_rows(r.name, segments, warnings);
     if (r.recording.report.has_decimal_commas) {
       warnings.push_back(r.name + ": its numbers have decimal commas, read as points");
     }
@@ -176,8 +178,8 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
                          ": its column heading is read as yaw, the azimuth of body x: "
                          "name it yaw_rad, or yaw_deg");
     }
-    say_unused(r, nominal, options.read_elsewhere, warnings);
-    say_assumed_sequence(r, platform, warnings);
+    report_unused_columns(r, nominal, options.read_elsewhere, warnings);
+    warn_of_assumed_sequence(r, platform, warnings);
     if (MotionColumns(r.recording, platform, r.name).has_scalar(Scalar::tilt)) {
       warnings.push_back(
           r.name +
@@ -416,7 +418,7 @@ bool find_and_use_noise(const Fit& near, const Thresholds& limits, RecordedData&
 }  // namespace
 
 Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data) {
-  take_out_bias_drift(data);
+  subtract_bias_drift(data);
   Fit fitted = fit_nominal(nominal, data.train, limits);
   // A model that cannot be propagated along the recording has no residuals.
   if (!std::isfinite(fitted.chi2)) return fitted;
@@ -434,7 +436,7 @@ Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& 
   return fitted;
 }
 
-bool settle_again(const Fit& explained, const Thresholds& limits, RecordedData& data) {
+bool estimate_noise_again(const Fit& explained, const Thresholds& limits, RecordedData& data) {
   if (!(explained.chi2_per_sample() < limits.diverged_chi2_per_sample)) return false;
   if (data.noise_is_open) {
     const bool changed = find_and_use_noise(explained, limits, data);
@@ -464,7 +466,7 @@ bool settle_again(const Fit& explained, const Thresholds& limits, RecordedData& 
 namespace {
 
 // Reports the largest deviation of the bias from its mean for each axis.
-void say_drift(const BiasHistory& history, std::vector<InstrumentFinding>& findings) {
+void report_bias_drift(const BiasHistory& history, std::vector<InstrumentFinding>& findings) {
   const std::string name = std::filesystem::path(history.recording).filename().string();
   for (int axis = 0; axis < 3; ++axis) {
     size_t at = 0;
@@ -482,7 +484,7 @@ void say_drift(const BiasHistory& history, std::vector<InstrumentFinding>& findi
 
 }  // namespace
 
-void take_out_bias_drift(RecordedData& data) {
+void subtract_bias_drift(RecordedData& data) {
   std::vector<const Observation*> pieces;
   for (const auto* runs : {&data.train, &data.held}) {
     for (const Observation& seen : *runs) pieces.push_back(&seen);
@@ -496,7 +498,7 @@ void take_out_bias_drift(RecordedData& data) {
         }
       }
     }
-    say_drift(history, data.instruments);
+    report_bias_drift(history, data.instruments);
   }
 }
 

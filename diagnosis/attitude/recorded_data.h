@@ -40,7 +40,7 @@ DataQuality quality_of(const std::vector<NamedRecording>& recordings,
 
 // Fits the nominal model and drops outliers. Unless the experiment requires the stated noise, the
 // noise of `data` is estimated from the readings (attitude/observation/noise_search.h) after
-// removal of a gyro drift (take_out_bias_drift()). Both are reported in data.instruments. A model
+// removal of a gyro drift (subtract_bias_drift()). Both are reported in data.instruments. A model
 // that cannot be propagated has infinite χ², and the noise remains as stated.
 Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data);
 
@@ -48,12 +48,12 @@ Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& 
 // noise that was estimated about the nominal model may contain effects that it lacks: it is
 // replaced if the readings are quieter or less correlated about the explanation. Returns whether it
 // changed.
-bool settle_again(const Fit& explained, const Thresholds& limits, RecordedData& data);
+bool estimate_noise_again(const Fit& explained, const Thresholds& limits, RecordedData& data);
 
 // Gyro bias that drifts within a recording.
 
 // Removes the drift from the gyro readings, keeps their mean, and reports it among the instruments.
 // Does nothing if a constant bias per recording suffices.
-void take_out_bias_drift(RecordedData& data);
+void subtract_bias_drift(RecordedData& data);
 
 }  // namespace photorque

@@ -132,7 +132,7 @@ std::optional<Trial> fit_growing(const Trial& nominal, const inference::Members<
   Trial found = nominal;
   // With rates alone, a piece does not determine its initial angle; the whole recording does.
   const bool sees_angle = std::ranges::all_of(
-      data.train, [](const Observation& seen) { return seen.sees_some_attitude(); });
+      data.train, [](const Observation& seen) { return seen.has_some_attitude(); });
   if (sees_angle) {
     const auto [pieces, parted] = near_short_pieces(domain, nominal, data.train, all.limits);
     const Trial all_laws =

@@ -183,7 +183,8 @@ FileHead head_of(const std::filesystem::path& path) {
                          file + " > with_time.csv for ten a second (write what they are)");
   }
   throw InputError({path.string()}, "header",
-                   "no rows of numbers between commas, semicolons, tabs or blanks",
+                   lines.empty() ? "an empty file"
+                                 : "no rows of numbers between commas, semicolons, tabs or blanks",
                    "a table with a header that names its columns");
 }
 

@@ -15,8 +15,9 @@ struct FileHead {
   size_t names_above = 0;            // cells of the line above the first row
 };
 
-// Of a CSV file, or one with other separators between cells. Throws InputError with the remedy for
-// a file without a header that has as many cells as the rows, with decimal commas, or in UTF-16.
+// The header and first rows of a CSV file, also with other separators. Throws InputError with the
+// remedy for a file without a header that has as many cells as the rows, with decimal commas, or in
+// UTF-16.
 FileHead head_of(const std::filesystem::path& path);
 
 // The unit of a clock by its steps: "s", "ms" or "us".

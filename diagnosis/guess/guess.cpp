@@ -125,7 +125,7 @@ std::string guess_experiment(const std::vector<std::filesystem::path>& recording
                      "motion, or current over voltage: a scan or a run needs its scene, which "
                      "photorque new --scene MODEL begins");
   }
-  // Of a current density the area is a guess.
+  // A current density requires an assumed area.
   const GuessedCurve curve = guess_curve(recordings.front());
   guess_module(document, recordings, folder, curve.because.empty() ? GuessedCurve{} : curve);
   return document.text();

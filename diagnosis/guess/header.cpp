@@ -154,7 +154,7 @@ bool is_turn(const std::string& word) {
   return !spelled(word, table).empty();
 }
 
-// Of "rad", "s": radians per second.
+// The unit "above per below": radians per second for "rad" and "s".
 std::optional<HeaderUnit> ratio(const std::string& above, const std::string& below) {
   const std::string time = time_unit(below), angle = angle_unit(above);
   if (time.empty()) return std::nullopt;

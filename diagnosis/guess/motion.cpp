@@ -183,8 +183,8 @@ void add_noise(TomlDocument& document, const std::vector<Observation>& runs,
                "by which neighbouring readings scatter");
 }
 
-// How what drives a swing back follows from the readings.
-std::string why_it_swings(RestoringLaw law, const std::string& seen) {
+// Reason for the restoring law of an oscillation, from the readings.
+std::string restoring_law_text(RestoringLaw law, const std::string& seen) {
   return law == RestoringLaw::spring
              ? seen +
                    ", driven back in proportion to the angle and not to its sine: a torsion "
@@ -206,13 +206,13 @@ RestoringLaw law_of_swing(const std::vector<Observation>& runs, const Vec3& axis
 
 // A swing that the rates about body axis `k` show. A weight acts about a level axis, a spring about
 // any: rates about another body axis are read as those about the axis of the platform.
-bool see_swing_by_rates(Machine& m, int k, const std::string& seen) {
+bool infer_oscillation_from_rates(Machine& m, int k, const std::string& seen) {
   const Vec3 axis = Vec3::Unit(k);
   const bool swings = std::ranges::any_of(
       m.runs, [&](const Observation& run) { return !angles_of_swing(run, axis).row.empty(); });
   if (!swings) return false;
   const RestoringLaw law = law_of_swing(m.runs, axis);
-  m.why = why_it_swings(law, seen);
+  m.why = restoring_law_text(law, seen);
   const bool is_spring = law == RestoringLaw::spring;
   if (is_spring == (k == 2)) return true;
   m.rate_from = k;
@@ -221,12 +221,12 @@ bool see_swing_by_rates(Machine& m, int k, const std::string& seen) {
 }
 
 // Selects the axis of rotation, and whether weight may act as a restoring torque.
-void see_one_axis(Machine& m) {
+void infer_one_axis(Machine& m) {
   const char* const letters[] = {"x", "y", "z"};
   for (int k = 0; k < 3; ++k) {
     if (!m.has((std::string("gyro_") + letters[k] + "_rad_s").c_str())) continue;
     m.observe_as(Topology::one_axis, Vec3::Unit(k));
-    if (see_swing_by_rates(m, k, "one rate that passes zero again and again")) return;
+    if (infer_oscillation_from_rates(m, k, "one rate that passes zero again and again")) return;
     m.why = std::string("the one gyro axis is ") + letters[k] + ", so it turns about that alone.";
     return;
   }
@@ -235,7 +235,8 @@ void see_one_axis(Machine& m) {
           " alone, so it turns about one axis: a wheel, a turntable, one angle of a spacecraft.";
   m.observe_as(Topology::one_axis);
   if (!has_angle) {
-    if (see_swing_by_rates(m, 2, "one rate that passes zero again and again") && m.rate_from) {
+    if (infer_oscillation_from_rates(m, 2, "one rate that passes zero again and again") &&
+        m.rate_from) {
       m.rate_from.reset();
       m.observe_as(Topology::one_axis, m.platform.axis);
     }
@@ -243,7 +244,7 @@ void see_one_axis(Machine& m) {
   }
   if (!swings(m.runs, Vec3::UnitZ())) return;
   const RestoringLaw law = law_of_swing(m.runs, Vec3::UnitZ());
-  m.why = why_it_swings(law, "one angle that swings about its mean");
+  m.why = restoring_law_text(law, "one angle that swings about its mean");
   if (law != RestoringLaw::spring) m.observe_as(Topology::one_axis, Vec3::UnitX());
 }
 
@@ -283,7 +284,7 @@ std::optional<int> only_axis(const std::vector<Observation>& runs) {
 
 // An angle relative to the vertical, or the magnitude of a rate, belongs to a body that turns about
 // more than one axis.
-bool see_by_scalars(Machine& m) {
+bool infer_from_scalars(Machine& m) {
   if (m.sees_attitude() || m.has_three_rates()) return false;
   if (m.has("rate_magnitude_rad_s")) {
     m.why =
@@ -300,7 +301,7 @@ bool see_by_scalars(Machine& m) {
   return true;
 }
 
-void see_machine(Machine& m) {
+void infer_machine(Machine& m) {
   const bool has_x = m.has("x_m"), has_y = m.has("y_m");
   if (has_x && has_y) {
     m.why =
@@ -319,8 +320,8 @@ void see_machine(Machine& m) {
             "9.80665 m/s² across it; the weight of what hangs is part of the spring's pull.";
     return m.observe_as(Topology::planar);
   }
-  if (see_by_scalars(m)) return;
-  if (!m.sees_attitude() && !m.has_three_rates()) return see_one_axis(m);
+  if (infer_from_scalars(m)) return;
+  if (!m.sees_attitude() && !m.has_three_rates()) return infer_one_axis(m);
   m.why =
       "three rates and no attitude: thrown, in orbit, or on gimbals, nothing carries it. On a "
       "bearing or with a weight off the centre it is \"tabletop\".";
@@ -328,9 +329,10 @@ void see_machine(Machine& m) {
     m.observe_as(Topology::free);
     if (const std::optional<int> swung = axis_of_swing(m.runs)) {
       m.observe_as(Topology::one_axis, Vec3::Unit(*swung));
-      if (see_swing_by_rates(m, *swung,
-                             std::string("three rates along one line, that about ") +
-                                 "xyz"[*swung] + " the largest, which pass zero again and again")) {
+      if (infer_oscillation_from_rates(m, *swung,
+                                       std::string("three rates along one line, that about ") +
+                                           "xyz"[*swung] +
+                                           " the largest, which pass zero again and again")) {
         return;
       }
       m.observe_as(Topology::free);
@@ -556,7 +558,7 @@ void guess_motion(TomlDocument& document, const std::vector<fs::path>& recording
   read_all();
   circle = circle_of(m.recordings.front());
   if (circle) read_all();
-  see_machine(m);
+  infer_machine(m);
   if (m.rate_from) {
     columns = with_rate_from(std::move(columns), *m.rate_from);
     read_all();
@@ -577,7 +579,7 @@ void guess_motion(TomlDocument& document, const std::vector<fs::path>& recording
   if (m.platform.topology == Topology::free) add_inertia(document, platform, m.runs);
   if (m.platform.turns_about_one_axis() && !m.platform.slides()) add_drag(document, m);
   const char *const rate_noise = "gyro.noise_rad_s", *const angle_noise = "angle.noise_arcsec";
-  const bool has_gyro = m.runs.front().has_gyro, has_angle = m.runs.front().sees_some_attitude();
+  const bool has_gyro = m.runs.front().has_gyro, has_angle = m.runs.front().has_some_attitude();
   if (has_gyro) add_noise(document, m.runs, {3, 4, 5}, rate_noise, 1.0);
   if (has_angle && m.platform.turns_about_one_axis()) {
     add_noise(document, m.runs, {0, 1, 2}, angle_noise, arcsecond_rad);

@@ -30,7 +30,7 @@ bool is_one_of(const std::string& word, std::initializer_list<const char*> of) {
 struct Words {
   std::vector<std::string> all;
 
-  bool any_begins(std::initializer_list<const char*> with) const {
+  bool has_word_with_prefix(std::initializer_list<const char*> with) const {
     return std::ranges::any_of(all, [&](const std::string& word) { return begins(word, with); });
   }
   bool any_is(std::initializer_list<const char*> of) const {
@@ -87,14 +87,14 @@ bool is_of_another_kind(const Words& words) {
                        "cov",     "target", "setpoint",  "soll",   "cmd",         "command",
                        "desired", "ref",    "reference", "goal",   "consigne",    "fft",
                        "delta",   "ddot",   "lat",       "lon",    "fps"}) ||
-         words.any_begins({"sigma", "uncert", "unsicher", "incert", "sollw", "latitud", "longitud",
-                           "temper", "sampl", "frame", "spectr"}) ||
+         words.has_word_with_prefix({"sigma", "uncert", "unsicher", "incert", "sollw", "latitud",
+                                     "longitud", "temper", "sampl", "frame", "spectr"}) ||
          words.any_has({"moment", "torque", "impuls"});
 }
 
 bool is_rate(const Words& words) {
-  if (words.any_begins({"gyr", "omega", "rate", "speed", "veloc", "vitesse", "rpm", "rps", "dps",
-                        "spin", "angvel"}) ||
+  if (words.has_word_with_prefix({"gyr", "omega", "rate", "speed", "veloc", "vitesse", "rpm", "rps",
+                                  "dps", "spin", "angvel"}) ||
       words.any_is({"w", "wx", "wy", "wz", "vel", "giri", "giros", "tours", "thetadot", "phidot",
                     "dtheta", "dphi"}) ||
       words.any_has({"geschw", "drehzahl", "umdrehung", "kreisfreq", "drehfreq", "winkelfreq",
@@ -107,13 +107,13 @@ bool is_rate(const Words& words) {
   }
   // A derivative: "theta dot", "d phi / dt"; a frequency of rotation.
   if (words.any_is({"dot", "dt", "ableitung", "derivative"}) && words.all.size() > 1) return true;
-  return words.any_begins({"freq", "frec", "frequ"}) &&
-         words.any_begins({"rot", "spin", "giro", "angul"});
+  return words.has_word_with_prefix({"freq", "frec", "frequ"}) &&
+         words.has_word_with_prefix({"rot", "spin", "giro", "angul"});
 }
 
 bool is_angle(const Words& words) {
   return words.any_has({"angle", "angul", "angol", "winkel", "theta"}) ||
-         words.any_begins({"phi", "varphi", "encod"});
+         words.has_word_with_prefix({"phi", "varphi", "encod"});
 }
 
 // Possible meanings, the first the most likely, by words in English, German, French, Spanish,
@@ -123,41 +123,42 @@ std::vector<Meaning> meanings(const Words& words, const std::string& axis, const
   std::vector<Meaning> all;
   if (is_of_another_kind(words)) return all;
   const bool rate = is_rate(words), angle = is_angle(words);
-  if (words.any_has({"wheel", "schwungrad"}) || words.any_begins({"rotor"})) {
+  if (words.any_has({"wheel", "schwungrad"}) || words.has_word_with_prefix({"rotor"})) {
     if (!angle || rate) all.push_back({"wheel_" + (axis.empty() ? "z" : axis), "rad_s"});
   }
-  if (!rate && (words.any_begins({"time", "elapsed", "clock", "temps", "tiempo", "tempo"}) ||
-                words.any_has({"zeit", "timestamp"}) ||
-                words.any_is({"t", "sec", "secs", "second", "seconds", "millis", "micros"}))) {
+  if (!rate &&
+      (words.has_word_with_prefix({"time", "elapsed", "clock", "temps", "tiempo", "tempo"}) ||
+       words.any_has({"zeit", "timestamp"}) ||
+       words.any_is({"t", "sec", "secs", "second", "seconds", "millis", "micros"}))) {
     const bool alone = words.all.size() == 1 || !words.any_is({"t"}) || cell.unit;
-    if (alone || words.any_begins({"time", "zeit", "temps", "tiempo", "tempo"})) {
+    if (alone || words.has_word_with_prefix({"time", "zeit", "temps", "tiempo", "tempo"})) {
       all.push_back({"t", "s"});
     }
   }
   const bool magnitude =
       cell.is_between_bars ||
       words.any_is({"magnitude", "norm", "absolute", "abs", "betrag", "total", "resultant"}) ||
-      words.any_begins({"modul"});
+      words.has_word_with_prefix({"modul"});
   const bool has_rate_unit = cell.unit && cell.unit->dimension == "angular rate";
   if (magnitude && (rate || has_rate_unit)) all.push_back({"rate_magnitude", "rad_s"});
-  if (words.any_begins({"acc", "acel", "beschl"}) && !angle && !axis.empty()) {
+  if (words.has_word_with_prefix({"acc", "acel", "beschl"}) && !angle && !axis.empty()) {
     all.push_back({"accel_" + axis, "m_s2"});
   }
   if (!axis.empty() && !magnitude &&
-      (words.any_begins({"mag"}) || (words.all.size() <= 2 && words.any_is({"b"})))) {
+      (words.has_word_with_prefix({"mag"}) || (words.all.size() <= 2 && words.any_is({"b"})))) {
     all.push_back({"mag_" + axis, "T"});
   }
   // A coordinate: x, or "pos_x", "puck x".
   if (!rate && is_one_of(axis, {"x", "y"}) &&
       (words.all == std::vector<std::string>{axis} ||
-       words.any_begins({"pos", "coord", "koord", "place", "puck", "cent", "ort"}))) {
+       words.has_word_with_prefix({"pos", "coord", "koord", "place", "puck", "cent", "ort"}))) {
     all.push_back({axis, "m"});
   }
   // The one coordinate of a body on a line, and a speed along it.
   const bool is_long = !cell.unit || cell.unit->dimension == "length";
   if (!rate && !angle && axis.empty() && is_long &&
-      (words.any_begins({"posi", "displac", "distan", "abstand", "strecke", "auslenk", "elong",
-                         "deplac", "despl", "posic", "spost"}) ||
+      (words.has_word_with_prefix({"posi", "displac", "distan", "abstand", "strecke", "auslenk",
+                                   "elong", "deplac", "despl", "posic", "spost"}) ||
        words.any_is({"weg", "ort", "pos"}))) {
     all.push_back({"x", "m", "a coordinate without a name counts as x:"});
   }
@@ -172,11 +173,12 @@ std::vector<Meaning> meanings(const Words& words, const std::string& axis, const
       {words.any_is({"roll", "rollio", "roulis", "alabeo", "rolagem"}) ||
            words.any_has({"rollw", "rollr", "rollg"}),
        "roll", "x"},
-      {words.any_begins({"pitch", "nick", "tangage", "beccheggio", "cabeceo", "arfagem"}), "pitch",
-       "y"},
-      {words.any_begins({"yaw", "gier", "lacet", "imbardata", "guinada", "heading", "azimut"}),
+      {words.has_word_with_prefix({"pitch", "nick", "tangage", "beccheggio", "cabeceo", "arfagem"}),
+       "pitch", "y"},
+      {words.has_word_with_prefix(
+           {"yaw", "gier", "lacet", "imbardata", "guinada", "heading", "azimut"}),
        "yaw", "z"},
-      {words.any_begins({"tilt", "inclin", "neigung", "kipp"}), "tilt", ""}};
+      {words.has_word_with_prefix({"tilt", "inclin", "neigung", "kipp"}), "tilt", ""}};
   for (const auto& turn : turns) {
     if (!turn.is_there) continue;
     if (rate || has_rate_unit) {
@@ -204,10 +206,10 @@ std::vector<Meaning> meanings(const Words& words, const std::string& axis, const
   if (words.any_is({"n"}) && axis.empty() && may_be_revolutions) all.push_back({"rate", "rad_s"});
   if (rate) {
     const bool is_linear_elsewhere =
-        words.any_begins({"speed", "veloc", "vel", "vitesse"}) && !angle && !cell.unit;
+        words.has_word_with_prefix({"speed", "veloc", "vel", "vitesse"}) && !angle && !cell.unit;
     if (axis.empty()) {
       all.push_back({"rate", "rad_s"});
-    } else if (!is_linear_elsewhere || words.any_begins({"gyr", "omega", "ang"})) {
+    } else if (!is_linear_elsewhere || words.has_word_with_prefix({"gyr", "omega", "ang"})) {
       all.push_back({"gyro_" + axis, "rad_s"});
     }
   } else if (angle) {
@@ -252,7 +254,8 @@ std::string fitting_unit(const HeaderCell& cell, const std::string& dimension, c
   if (unit.dimension == "frequency") return unit.suffix;
   if (unit.dimension != "per second") return "";
   // 1/s is of radians for ω, of revolutions for n.
-  if (words.any_begins({"omega", "w", "gyr", "angul", "winkel"}) || words.any_has({"kreisfreq"})) {
+  if (words.has_word_with_prefix({"omega", "w", "gyr", "angul", "winkel"}) ||
+      words.any_has({"kreisfreq"})) {
     return "rad_s";
   }
   return words.any_has({"drehzahl", "umdreh", "drehfreq", "giri", "giros", "tours", "frequ"}) ||
@@ -374,7 +377,7 @@ bool is_taken(const std::vector<ReadColumn>& columns, const std::string& stem) {
 
 // Every channel occurs once: the first column with its name. A unit alone is a name if one column
 // has it and no other is named.
-void take_each_once(std::vector<ReadColumn>& columns) {
+void keep_first_of_each(std::vector<ReadColumn>& columns) {
   for (size_t i = 0; i < columns.size(); ++i) {
     std::string& channel = columns[i].guess.channel;
     if (channel.empty()) continue;
@@ -425,7 +428,7 @@ std::vector<ReadColumn> read_columns(const FileHead& head) {
   for (size_t place = 0; place < cells.size(); ++place) {
     columns.push_back(read_column(head, place, cells[place], words));
   }
-  take_each_once(columns);
+  keep_first_of_each(columns);
   read_lone_wheel(columns);
   return columns;
 }

@@ -109,9 +109,9 @@ LightCandidates light_candidates(const LightLab& lab, const NominalLight& nomina
   for (const LightEffectKind& kind : all_light_effect_kinds()) {
     if (!can_show(kind, runs)) continue;
     // A nominal tilt with a sigma is a nuisance parameter of every trial.
-    const bool is_believed = std::ranges::any_of(
+    const bool is_nominal = std::ranges::any_of(
         nominal.uncertain, [&](const LightPrior& p) { return p.key.starts_with(kind.name + "."); });
-    if (is_believed) continue;
+    if (is_nominal) continue;
     const size_t count = count_of(lab, kind.index);
     const bool bends = kind.index == LightEffectKind::Index::cell &&
                        std::ranges::any_of(runs, [](const FittedRun& r) {

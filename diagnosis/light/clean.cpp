@@ -59,7 +59,7 @@ std::vector<size_t> rows_without_outliers(const LightRun& run, const Eigen::Vect
                                           const Thresholds::Noise& limits) {
   const LightRecording& r = run.recording();
   const bool is_scan = r.kind == LightRecording::Kind::scan;
-  std::vector<bool> wild(r.rows(), false);
+  std::vector<bool> is_outlier(r.rows(), false);
   const size_t channels = run.channels().size();
   const auto residual = [&](size_t row, size_t channel) {
     return residuals[static_cast<Eigen::Index>(row * channels + channel)];
@@ -70,7 +70,7 @@ std::vector<size_t> rows_without_outliers(const LightRun& run, const Eigen::Vect
     for (size_t c = 0; c < channels && looks_usual; ++c) {
       looks_usual = std::abs(residual(row, c) - residual(row - 1, c)) < limits.outlier_sigma;
     }
-    if (looks_usual && !wild[row - 1]) continue;
+    if (looks_usual && !is_outlier[row - 1]) continue;
     const std::vector<size_t> near = is_scan ? nearest_in_place(r, row) : nearest_in_time(r, row);
     if (near.size() < 3) continue;
     for (size_t c = 0; c < channels; ++c) {
@@ -85,13 +85,13 @@ std::vector<size_t> rows_without_outliers(const LightRun& run, const Eigen::Vect
       }
       if (least > limits.outlier_sigma &&
           leaves_plane(at, value, residual(row, c), limits.outlier_sigma)) {
-        wild[row] = true;
+        is_outlier[row] = true;
       }
     }
   }
   std::vector<size_t> good;
   for (size_t row = 0; row < r.rows(); ++row) {
-    if (!wild[row]) good.push_back(row);
+    if (!is_outlier[row]) good.push_back(row);
   }
   return good;
 }

@@ -110,7 +110,7 @@ LightData read_light_data(const LightLab& lab, const NominalLight& nominal,
 
 // Removes outliers under a fit; returns whether any exist. In held-out data, and without an
 // explanation, only gross outliers are removed: a small shadow looks like a stray reading.
-bool drop_wild(const LightTrial& about, const LightCandidates& all, LightData& data) {
+bool drop_light_outliers(const LightTrial& about, const LightCandidates& all, LightData& data) {
   int64_t dropped = 0;
   for (std::vector<FittedRun>* runs : {&data.train, &data.held}) {
     for (FittedRun& run : *runs) {
@@ -140,7 +140,7 @@ LightAnswer explain_light(const LightLab& lab, const NominalLight& nominal, Ligh
   // Near a missing effect an outlier looks like a part of it. It stands out once the best
   // explanation is known, and the search continues from there.
   const LightTrial best = answer.trials[inference::by_evidence(answer.trials).front()];
-  if (drop_wild(best, answer.all, data)) {
+  if (drop_light_outliers(best, answer.all, data)) {
     const LightTrial base = nominal_light_trial(answer.all, data.train);
     const LightTrial from =
         domain.refit(best, data.train, {}, inference::until_convergence(domain.limits()));

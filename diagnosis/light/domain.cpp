@@ -99,9 +99,9 @@ LightTrial LightDomain::refit_near(const Trial& trial, const Trial& other, const
                                    const Effort& effort) const {
   std::vector<std::vector<double>> x = trial.x;
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
-    const auto twin = std::ranges::find(other.candidates, trial.candidates[i]);
-    if (twin == other.candidates.end()) continue;
-    x[i] = other.x[static_cast<size_t>(twin - other.candidates.begin())];
+    const auto equal = std::ranges::find(other.candidates, trial.candidates[i]);
+    if (equal == other.candidates.end()) continue;
+    x[i] = other.x[static_cast<size_t>(equal - other.candidates.begin())];
   }
   return fit_light(all_, trial.candidates, x, other.priors, runs, effort.max_iterations);
 }

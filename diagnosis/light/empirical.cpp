@@ -12,7 +12,7 @@
 namespace photorque {
 namespace {
 
-using Basis = std::function<double(const Circumstance&)>;
+using Basis = std::function<double(const SampleConditions&)>;
 
 LightCandidate light_law(const std::string& variable, const std::string& label,
                          std::vector<Basis> basis) {
@@ -23,7 +23,7 @@ LightCandidate light_law(const std::string& variable, const std::string& label,
   c.kind.parameters = {{.key = "strength", .count = basis.size(), .scale = 0.05}};
   c.kind.act = [basis = std::move(basis)](LightState& state, size_t, std::span<const double> x) {
     std::vector<double> strengths(x.begin(), x.end());
-    state.light_laws.emplace_back([basis, strengths](const Circumstance& at) {
+    state.light_laws.emplace_back([basis, strengths](const SampleConditions& at) {
       double factor = 1.0;
       for (size_t k = 0; k < basis.size(); ++k) {
         if (strengths[k] != 0.0) factor += strengths[k] * basis[k](at);
@@ -40,7 +40,7 @@ LightCandidate over_the_receiver(int most) {
   for (int i = 0; i <= most; ++i) {
     for (int j = 0; j <= most; ++j) {
       if (i + j == 0 || i + j > most) continue;
-      basis.emplace_back([i, j](const Circumstance& at) {
+      basis.emplace_back([i, j](const SampleConditions& at) {
         return std::cos(0.5 * pi * i * (at.u + 1.0)) * std::cos(0.5 * pi * j * (at.v + 1.0));
       });
     }
@@ -68,10 +68,11 @@ LightCandidate ripple() {
                         .step = 0.01}};
   c.kind.scan = LightEffectKind::Scan::wave;
   c.kind.act = [](LightState& state, size_t, std::span<const double> x) {
-    state.light_laws.emplace_back([a = x[0], b = x[1], u = x[2], v = x[3]](const Circumstance& at) {
-      const double phase = pi * (u * at.u + v * at.v);
-      return 1.0 + a * std::cos(phase) + b * std::sin(phase);
-    });
+    state.light_laws.emplace_back(
+        [a = x[0], b = x[1], u = x[2], v = x[3]](const SampleConditions& at) {
+          const double phase = pi * (u * at.u + v * at.v);
+          return 1.0 + a * std::cos(phase) + b * std::sin(phase);
+        });
   };
   return c;
 }
@@ -92,7 +93,7 @@ LightCandidate flicker(double longest_s) {
   }
   c.kind.act = [longest_s](LightState& state, size_t, std::span<const double> x) {
     state.light_laws.emplace_back(
-        [a = x[0], b = x[1], n = x[2], longest_s](const Circumstance& at) {
+        [a = x[0], b = x[1], n = x[2], longest_s](const SampleConditions& at) {
           const double phase = 2.0 * pi * n * at.time_s / longest_s;
           return 1.0 + a * std::cos(phase) + b * std::sin(phase);
         });
@@ -108,7 +109,7 @@ LightCandidate current_over_voltage() {
   c.kind.in_circuit = true;
   c.kind.act = [](LightState& state, size_t, std::span<const double> x) {
     state.current_laws.emplace_back(
-        [strength = std::vector<double>(x.begin(), x.end())](const Circumstance& at) {
+        [strength = std::vector<double>(x.begin(), x.end())](const SampleConditions& at) {
           double sum = 0.0;
           for (size_t k = 0; k < strength.size(); ++k) {
             sum += strength[k] * std::cos(pi * static_cast<double>(k) * at.voltage);
@@ -130,12 +131,13 @@ struct Extent {
 };
 
 // Powers of a variable, centred, up to `most`.
-std::vector<Basis> powers(double Circumstance::*variable, const Extent& e, int most) {
+std::vector<Basis> powers(double SampleConditions::*variable, const Extent& e, int most) {
   std::vector<Basis> basis;
   for (int k = 1; k <= most; ++k) {
-    basis.emplace_back([variable, middle = e.middle(), half = e.half(), k](const Circumstance& at) {
-      return std::pow((at.*variable - middle) / half, k);
-    });
+    basis.emplace_back(
+        [variable, middle = e.middle(), half = e.half(), k](const SampleConditions& at) {
+          return std::pow((at.*variable - middle) / half, k);
+        });
   }
   return basis;
 }
@@ -151,7 +153,7 @@ std::vector<LightCandidate> empirical_light_candidates(const std::vector<FittedR
     scan = scan || kind == LightRecording::Kind::scan;
     curves = curves || kind == LightRecording::Kind::sweep;
     moves = moves || kind == LightRecording::Kind::run;
-    for (const Circumstance& at : r.run->circumstances()) {
+    for (const SampleConditions& at : r.run->circumstances()) {
       tilt.add(at.tilt_rad);
       if (kind != LightRecording::Kind::scan) temperature.add(at.temperature_K);
       if (kind == LightRecording::Kind::run) time.add(at.time_s);
@@ -164,25 +166,26 @@ std::vector<LightCandidate> empirical_light_candidates(const std::vector<FittedR
   }
   if (irradiance.half() > 0.05) {
     all.push_back(light_law("irradiance", "unknown in irradiance",
-                            powers(&Circumstance::irradiance, irradiance, 2)));
+                            powers(&SampleConditions::irradiance, irradiance, 2)));
   }
   if (tilt.half() > 0.03) {
-    all.push_back(light_law("tilt", "unknown in tilt", powers(&Circumstance::tilt_rad, tilt, 2)));
+    all.push_back(
+        light_law("tilt", "unknown in tilt", powers(&SampleConditions::tilt_rad, tilt, 2)));
     all.push_back(
         light_law("heading", "unknown in heading",
-                  {[](const Circumstance& at) { return std::cos(at.heading_rad); },
-                   [](const Circumstance& at) { return std::sin(at.heading_rad); },
-                   [](const Circumstance& at) { return std::cos(2.0 * at.heading_rad); },
-                   [](const Circumstance& at) { return std::sin(2.0 * at.heading_rad); }}));
+                  {[](const SampleConditions& at) { return std::cos(at.heading_rad); },
+                   [](const SampleConditions& at) { return std::sin(at.heading_rad); },
+                   [](const SampleConditions& at) { return std::cos(2.0 * at.heading_rad); },
+                   [](const SampleConditions& at) { return std::sin(2.0 * at.heading_rad); }}));
   }
   if (temperature.half() > 1.0) {
     all.push_back(light_law("temperature", "unknown in temperature",
-                            powers(&Circumstance::temperature_K, temperature, 2)));
+                            powers(&SampleConditions::temperature_K, temperature, 2)));
   }
   if (moves && time.half() > 0.0) {
     std::vector<Basis> basis;
     for (int k = 1; k <= 6; ++k) {
-      basis.emplace_back([k, time](const Circumstance& at) {
+      basis.emplace_back([k, time](const SampleConditions& at) {
         return std::cos(pi * k * (at.time_s - time.low) / (time.high - time.low));
       });
     }
@@ -251,7 +254,7 @@ std::vector<LightStart> wave_starts(const LightCandidate& wave, const std::vecto
   for (const LeftOfRun& l : left) {
     if (l.run->recording().kind != LightRecording::Kind::scan) continue;
     for (size_t i = 0; i < l.signals.size(); ++i) {
-      const Circumstance& at = l.run->circumstances()[i];
+      const SampleConditions& at = l.run->circumstances()[i];
       add_place(at.u, at.v, -l.slopes.of_scan[i] * l.signals[i],
                 l.residuals[static_cast<Eigen::Index>(i)], sums);
     }

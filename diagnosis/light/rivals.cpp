@@ -13,9 +13,9 @@ namespace {
 
 // χ² of the effect of the first of `terms` at the numbers x that the strengths of each other term
 // cannot reproduce. The first entry is the χ² of the whole effect.
-Eigen::VectorXd unlike(const LightTrial& about, const LightCandidates& all,
-                       const std::vector<inference::Term<LightStart>>& terms,
-                       const std::vector<FittedRun>& runs, const std::vector<double>& x) {
+Eigen::VectorXd distinct_chi2(const LightTrial& about, const LightCandidates& all,
+                              const std::vector<inference::Term<LightStart>>& terms,
+                              const std::vector<FittedRun>& runs, const std::vector<double>& x) {
   Eigen::MatrixXd H;
   for (const FittedRun& run : runs) {
     const LightSlopes s = slopes_of(about, all, terms, run);
@@ -59,9 +59,10 @@ Eigen::VectorXd unlike(const LightTrial& about, const LightCandidates& all,
 
 // Equivalent for an effect without parameters whose fit is `own`: excess of χ² over that fit if
 // each of `others` replaces it.
-Eigen::VectorXd unlike_switched(const LightTrial& own, const LightTrial& without,
-                                const LightCandidates& all, const std::vector<size_t>& others,
-                                const std::vector<FittedRun>& runs) {
+Eigen::VectorXd distinct_chi2_of_switch(const LightTrial& own, const LightTrial& without,
+                                        const LightCandidates& all,
+                                        const std::vector<size_t>& others,
+                                        const std::vector<FittedRun>& runs) {
   const LightTrial bare = fit_light(all, without.candidates, without.x, without.priors, runs, 25);
   const std::vector<double> gains = LightDomain(all).gains(bare, others, runs);
   const double whole = bare.fit.chi2 - own.fit.chi2;
@@ -119,8 +120,8 @@ std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
     terms.push_back({i, {c.start()}});
   }
   const Eigen::VectorXd left = named.has_strength()
-                                   ? unlike(without, all, terms, runs, chosen.x[which])
-                                   : unlike_switched(own, without, all, others, runs);
+                                   ? distinct_chi2(without, all, terms, runs, chosen.x[which])
+                                   : distinct_chi2_of_switch(own, without, all, others, runs);
   std::set<std::string> rivals;
   for (size_t k = 0; k < others.size(); ++k) {
     const LightCandidate& c = all[others[k]];

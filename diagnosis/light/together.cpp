@@ -33,7 +33,7 @@ bool has_tilt(const AttitudeModel& model) {
                              [](const Disturbance& d) { return d.kind == of_motion; });
 }
 
-Diagnosis light_believing(const LightRecorded& light, const Tilt& tilt) {
+Diagnosis diagnose_light_with_prior(const LightRecorded& light, const Tilt& tilt) {
   NominalLight nominal = light.nominal;
   add_tilt_prior(light.lab, tilt.bias_rad, tilt.sigma_rad, nominal);
   return diagnose_light(light.lab, nominal, light.recordings, light.holdouts, light.how);
@@ -95,22 +95,22 @@ std::optional<Tilt> beside(const Tilt& both, const Tilt& light) {
 Diagnosis light_with_any_tilt(const LightRecorded& light) {
   constexpr double small_rad = 0.004;
   Tilt any{Vec2::Zero(), Vec2::Constant(any_tilt_rad)};
-  Diagnosis d = light_believing(light, any);
+  Diagnosis d = diagnose_light_with_prior(light, any);
   for (int round = 0; round < 2; ++round) {
     const std::optional<Tilt> seen = tilt_of_light(d);
     if (!seen || !((seen->bias_rad - any.bias_rad).norm() > small_rad)) break;
     if (!(seen->bias_rad.norm() < 3.0 * any_tilt_rad)) break;
     any.bias_rad = seen->bias_rad;
-    d = light_believing(light, any);
+    d = diagnose_light_with_prior(light, any);
   }
   return d;
 }
 
-bool knows_tilt(const std::optional<Tilt>& tilt) {
+bool measures_tilt(const std::optional<Tilt>& tilt) {
   return tilt && tilt->sigma_rad.maxCoeff() < known_tilt_rad;
 }
 
-Disturbance believed_tilt(const NominalModel& nominal, const Tilt& tilt) {
+Disturbance tilt_prior_disturbance(const NominalModel& nominal, const Tilt& tilt) {
   Disturbance d = make_disturbance_of(
       of_motion, {{tilt_key, {-tilt.bias_rad.x(), -tilt.bias_rad.y()}}}, nominal.context());
   for (size_t k = 0; k < d.parameters.size(); ++k) {
@@ -252,8 +252,9 @@ Diagnosis diagnose_together(MotionRecorded motion, LightRecorded light) {
   }
   Diagnosis of_light_alone = light_with_any_tilt(light);
   std::optional<Tilt> seen = tilt_of_light(of_light_alone);
-  if (of_light_alone.verdict == Verdict::unexplained || !knows_tilt(seen)) seen.reset();
-  if (seen) motion.nominal.model.disturbances.push_back(believed_tilt(motion.nominal, *seen));
+  if (of_light_alone.verdict == Verdict::unexplained || !measures_tilt(seen)) seen.reset();
+  if (seen)
+    motion.nominal.model.disturbances.push_back(tilt_prior_disturbance(motion.nominal, *seen));
   const Diagnosis of_both = seen ? moved() : of_motion_first;
   // If the motion names a tilt in addition to the prior from the light, the two disagree.
   const bool disagree = seen && names_tilt(of_both);
@@ -261,8 +262,9 @@ Diagnosis diagnose_together(MotionRecorded motion, LightRecorded light) {
   if (!tilt) tilt = seen;
   std::optional<Tilt> of_motion_alone = tilt;
   if (tilt && seen) of_motion_alone = beside(*tilt, *seen);
-  return joined(of_both,
-                of_motion_alone ? light_believing(light, *of_motion_alone) : of_light_alone, tilt);
+  return joined(
+      of_both,
+      of_motion_alone ? diagnose_light_with_prior(light, *of_motion_alone) : of_light_alone, tilt);
 }
 
 Diagnosis joined(const Diagnosis& motion, const Diagnosis& light, const std::optional<Tilt>& tilt) {

@@ -10,7 +10,7 @@ namespace photorque {
 struct LightTrial : inference::Explanation {
   inference::Fit fit;
   std::vector<double> priors;          // shifts of uncertain values, in sigmas
-  std::vector<std::vector<double>> x;  // all numbers of each candidate
+  std::vector<std::vector<double>> x;  // parameters of each candidate
 };
 
 // Start of a candidate's fit.
@@ -41,8 +41,8 @@ LightTrial predict_light(const LightTrial& trial, const LightCandidates& all,
 Eigen::VectorXd residuals_of(const LightTrial& trial, const LightCandidates& all,
                              const FittedRun& run);
 
-// Residuals of one recording and ∂(predicted/noise) with respect to the priors, the fitted numbers
-// of the trial's candidates, and the strengths of further terms at zero strength.
+// Residuals of one recording, and derivatives of predicted/noise with respect to the priors, the
+// fitted parameters of the candidates, and the strengths of further terms at zero strength.
 struct LightSlopes {
   Eigen::VectorXd residuals;
   Eigen::MatrixXd slopes;

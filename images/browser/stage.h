@@ -81,7 +81,7 @@ struct StageAxis {
   std::string unit;
   std::vector<double> values;  // rising
   bool plays = false;          // a time: states between two are turned evenly, and it can be played
-  // Of each value, shown instead of the number; empty: the numbers are.
+  // Text for each value, shown instead of the number; empty: numbers are shown.
   std::vector<std::string> names = {};
 };
 

@@ -75,7 +75,7 @@ Ticks ticks_for(const AxisRange& range, bool log, int at_most) {
              : linear_ticks(range.low, range.high, at_most);
 }
 
-// Of angles over more than 60 deg: multiples of 15, 30, 45 or 90 deg; nothing for other axes.
+// Ticks of angles over more than 60 deg: multiples of 15, 30, 45 or 90 deg. Empty for other axes.
 std::optional<Ticks> turn_ticks(const AxisRange& range, const std::string& label, int at_most) {
   const double span = range.high - range.low;
   if (!label.ends_with("[deg]") || !(span > 60.0) || span > 720.0) return std::nullopt;

@@ -41,7 +41,7 @@ struct PageBox {
   PagePoint centre() const { return {x + 0.5 * width, y + 0.5 * height}; }
 };
 
-// Of text, frames and axes.
+// Colour of text, frames and axes.
 inline constexpr Rgb ink = {0.13, 0.13, 0.13};
 
 struct Stroke {
@@ -73,7 +73,7 @@ struct PdfText {
   std::string title, subject, program;
 };
 
-// Everything drawn outside of the page is cut off. NumericalError if cairo fails (out of memory).
+// Drawing outside the page is clipped. NumericalError if cairo fails (out of memory).
 class Canvas {
  public:
   // A white page of pixels, `scale` pixels per point.

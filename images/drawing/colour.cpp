@@ -134,7 +134,7 @@ ColourMap cool_warm() {
 }
 
 ColourScale colour_scale(double smallest, double largest, bool signed_values) {
-  // Of one sign and far from zero, only their differences are to be seen.
+  // If all values have one sign and are far from zero, the colours show only their differences.
   const bool one_sided = smallest > 0.5 * largest || largest < 0.5 * smallest;
   if (signed_values && !one_sided) {
     const double extent = std::max(std::abs(smallest), std::abs(largest));

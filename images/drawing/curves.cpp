@@ -114,8 +114,8 @@ double half_width_of(const Plot::Curve& curve) {
 
 // The bar over the i-th point; nothing for values that cannot be shown.
 std::optional<PageBox> bar_of(const ChartPanel& panel, const Plot::Curve& curve, size_t i) {
-  const double from = hangs(curve) ? curve.y[0] : panel.y.log ? panel.y.range.low : 0.0;
-  if (hangs(curve)) i = 1;
+  const double from = is_vertical_bar(curve) ? curve.y[0] : panel.y.log ? panel.y.range.low : 0.0;
+  if (is_vertical_bar(curve)) i = 1;
   const double half = half_width_of(curve);
   const PagePoint top = panel.at(curve.x[i] - half, curve.y[i]);
   const PagePoint foot = panel.at(curve.x[i] + half, from);
@@ -157,7 +157,7 @@ void draw_bar_numbers(Canvas& canvas, const ChartPanel& panel) {
   TextStyle style = tick_style;
   style.align = TextAlign::centre;
   for (const Plot::Curve& curve : panel.curves) {
-    if (!hangs(curve)) continue;
+    if (!is_vertical_bar(curve)) continue;
     const auto bar = bar_of(panel, curve, 1);
     if (!bar) continue;
     double size = curve.y[1] - curve.y[0];
@@ -293,17 +293,17 @@ void draw_curves(Canvas& canvas, const ChartPanel& panel) {
   });
 }
 
-bool hangs(const Plot::Curve& curve) {
+bool is_vertical_bar(const Plot::Curve& curve) {
   return curve.bars && curve.x.size() == 2 && curve.x[0] == curve.x[1];
 }
 
-bool names_stand_under_bars(const std::vector<Plot::Curve>& curves) {
-  return !curves.empty() && std::ranges::all_of(curves, hangs);
+bool has_names_under_bars(const std::vector<Plot::Curve>& curves) {
+  return !curves.empty() && std::ranges::all_of(curves, is_vertical_bar);
 }
 
 Legend legend_of(const std::vector<Plot::Curve>& curves, double widest) {
   Legend legend;
-  if (names_stand_under_bars(curves)) return legend;
+  if (has_names_under_bars(curves)) return legend;
   for (size_t i = 0; i < curves.size(); ++i) {
     if (curves[i].label.empty() || curves[i].x.empty()) continue;
     legend.curves.push_back(i);

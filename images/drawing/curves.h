@@ -41,10 +41,10 @@ void draw_curves(Canvas& canvas, const ChartPanel& panel);
 
 // Whether a bar goes from one value to another instead of from zero: two points at one x. It shows
 // its number.
-bool hangs(const Plot::Curve& curve);
+bool is_vertical_bar(const Plot::Curve& curve);
 
 // Whether all curves are such bars: then their labels stand under them, and no legend is needed.
-bool names_stand_under_bars(const std::vector<Plot::Curve>& curves);
+bool has_names_under_bars(const std::vector<Plot::Curve>& curves);
 
 // The box of a legend. Empty when no curve has a label.
 struct Legend {

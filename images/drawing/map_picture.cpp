@@ -103,7 +103,7 @@ void draw_cell_numbers(Canvas& canvas, const Map& map, const ColourScale& scale,
   }
 }
 
-// Of the finite values.
+// Root mean square of the finite values.
 double root_mean_square(const std::vector<double>& values) {
   double squares = 0.0;
   size_t count = 0;

@@ -23,7 +23,7 @@ std::vector<std::string> words_of(const std::string& text) {
 }
 
 // The longest beginning of `text`, at least one character, that is not wider than `width`.
-std::string beginning_that_fits(const std::string& text, double width, const TextStyle& style) {
+std::string longest_fitting_prefix(const std::string& text, double width, const TextStyle& style) {
   std::string beginning;
   std::string_view rest = text;
   while (!rest.empty()) {
@@ -47,7 +47,7 @@ std::vector<std::string> broken_lines(const std::string& text, double width,
     }
     if (!line.empty()) lines.push_back(line);
     while (text_width(word, style) > width) {  // a word wider than a line, such as a path
-      lines.push_back(beginning_that_fits(word, width, style));
+      lines.push_back(longest_fitting_prefix(word, width, style));
       word.erase(0, lines.back().size());
     }
     line = word;
@@ -58,7 +58,7 @@ std::vector<std::string> broken_lines(const std::string& text, double width,
 
 std::string ended_by_ellipsis(std::string line, double width, const TextStyle& style) {
   const double room = width - text_width("…", style);
-  if (text_width(line, style) > room) line = beginning_that_fits(line, room, style);
+  if (text_width(line, style) > room) line = longest_fitting_prefix(line, room, style);
   return line + "…";
 }
 

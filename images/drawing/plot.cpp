@@ -61,7 +61,7 @@ AxisRange x_range(const std::vector<Plot::Panel>& panels, bool log) {
   return padded(extent, log, markers ? 0.03 : 0.0);
 }
 
-// Of the shown values: all of them, or the central 99.6 % where the panel requires that.
+// Range of all shown values, or of the central 99.6 % if the panel requires it.
 Extent curves_extent(const Plot::Panel& panel) {
   std::vector<double> values;
   for (const Plot::Curve& curve : panel.curves) {
@@ -86,13 +86,13 @@ AxisRange y_range(const Plot::Panel& panel) {
   Extent extent = curves_extent(panel);
   for (const double level : panel.levels) extent.include(level, log);
   // Over bars that hang their sizes are written.
-  AxisRange range = padded(extent, log, names_stand_under_bars(panel.curves) ? 0.1 : 0.06);
+  AxisRange range = padded(extent, log, has_names_under_bars(panel.curves) ? 0.1 : 0.06);
   // A quantity that starts at zero stands on the axis.
   if (extent.low == 0.0 && extent.high > 0.0) range.low = 0.0;
   return range;
 }
 
-// Of every panel: room for the tallest legend, and less of it the more panels there are.
+// Height of every panel, with space for the tallest legend. It decreases with the number of panels.
 double usual_height(const std::vector<Plot::Panel>& panels, double scale) {
   constexpr std::array<double, 4> usual = {330.0, 200.0, 150.0, 120.0};
   double height = scale * usual[std::min(panels.size(), usual.size()) - 1];
@@ -119,7 +119,7 @@ std::optional<TextStyle> style_of_words(const std::vector<Plot::Curve>& curves, 
 
 // The names under bars, each in the room of its bar; upright where words are wider than that.
 std::vector<TextBlock> names_of(const ChartPanel& panel) {
-  if (!names_stand_under_bars(panel.curves)) return {};
+  if (!has_names_under_bars(panel.curves)) return {};
   TextStyle style = tick_style;
   const double room = panel.frame.width / (panel.x.range.high - panel.x.range.low) - 6.0;
   const std::optional<TextStyle> of_words = style_of_words(panel.curves, room, style);
@@ -313,7 +313,7 @@ PlotLayout plot_layout(const Plot& plot, const PlotRoom& room) {
     const double length =
         room.right - legend_width - (room.left + layout.axis_width) - gap_right_of_frame;
     Axis x_axis = horizontal_axis(range, plot.x_log, plot.x_label, length);
-    if (names_stand_under_bars(panels.front().curves)) x_axis.ticks = {};
+    if (has_names_under_bars(panels.front().curves)) x_axis.ticks = {};
     place_frames(layout, room, x_axis, legend_width);
   };
   place(0.0);

@@ -45,7 +45,7 @@ std::optional<double> largest_irradiance_W_m2(const SceneView& view) {
   return largest;
 }
 
-// Those that point away from the viewer are drawn first, so that nearer ones cover them.
+// Axes that point away from the viewer are drawn first, so that nearer ones cover them.
 void draw_triad(Canvas& canvas, const PagePoint& origin, const std::array<Vec3, 3>& axes_camera) {
   const std::array<Rgb, 3> colours = {rgb_from_hex(0xD55E00), rgb_from_hex(0x009E73),
                                       rgb_from_hex(0x0072B2)};

@@ -35,7 +35,7 @@ struct SceneView {
   int sample_rows() const { return height * oversampling; }
 };
 
-// How strongly each sample lies on a drawn edge, 0 to 1: outlines against the background, jumps of
+// Strength of the drawn edge at each sample, 0 to 1: outlines against the background, jumps of
 // depth, borders of parts, creases of more than 25 deg. Lines are about one pixel wide.
 std::vector<float> edge_strength(const SceneView& view);
 

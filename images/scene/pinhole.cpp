@@ -11,8 +11,8 @@ constexpr Rgb lamp_back = rgb_from_hex(0x4A4E55);
 constexpr float ray_opacity = 0.42F;
 constexpr double room_around = 1.10;
 
-// Of a point in front of the camera: where it falls, in samples of the view, and how far along the
-// axis of the view it lies.
+// The projection of a point in front of the camera: its position in samples of the view, and its
+// distance along the optical axis.
 struct Projected {
   double column, row, along_m;
 };

@@ -8,7 +8,8 @@ constexpr float border_strength = 0.7F;
 constexpr float crease_strength = 0.5F;
 constexpr double edge_darkening = 0.62;
 constexpr Rgb edge_colour = {0.12, 0.12, 0.14};
-// Of the range of depths in view: a larger second difference is a step, not a curved surface.
+// As a fraction of the range of depths in view. A larger second difference is a step, not a curved
+// surface.
 constexpr float depth_step = 0.01F;
 
 bool hit(const SceneView& view, size_t sample) {
@@ -42,8 +43,8 @@ StepLimits step_limits(const SceneView& view) {
   return {depth_step * (farthest - nearest), depth_step * (1.0F / nearest - 1.0F / farthest)};
 }
 
-// Of three samples in a row, whether the depth jumps. On a plane the depth is linear in a parallel
-// view and its inverse in a perspective one, so a jump must show in both.
+// Whether the depth jumps between three samples in a row. On a plane the depth is linear in a
+// parallel view and its inverse in a perspective one, so a jump must show in both.
 bool depth_jumps(const SceneView& view, size_t before, size_t here, size_t after,
                  const StepLimits& limits) {
   const float a = view.depth_m[before];

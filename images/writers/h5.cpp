@@ -1,4 +1,4 @@
-// Everything of a run as one HDF5 file, run.h5, for h5py, MATLAB's h5read and others:
+// All results of a run as one HDF5 file, run.h5, for h5py, MATLAB's h5read and others:
 //
 //   /figures/NAME          value, standard error
 //   /maps/NAME/value       row by row, y and x rising; /maps/NAME/standard_error; attributes title,

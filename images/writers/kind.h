@@ -1,4 +1,4 @@
-// How products become files, and which formats there are.
+// Formats of result files, and their writers.
 #pragma once
 
 #include <filesystem>

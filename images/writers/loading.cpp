@@ -25,8 +25,8 @@ constexpr const char* file_name = "photorque_pictures.so";
                        PHOTORQUE_MODULE_FOLDER + " from there");
 }
 
-// Beside the program, or where it was installed to; nowhere else, also with other variables of the
-// environment.
+// The module is beside the program or in its installation folder; nowhere else, also with other
+// variables of the environment.
 fs::path module_path() {
   const fs::path program = own_file().parent_path();
   for (const fs::path& place : {program, program / PHOTORQUE_MODULE_FOLDER}) {

@@ -106,7 +106,7 @@ StagedFiles::StagedFiles(const fs::path& folder)
     made_ = p;
   }
   make_folders(folder);
-  // Of this run alone: a folder that is there already, or a link, is another's.
+  // The folder must not exist yet: an existing folder or link belongs to another run.
   if (!fs::create_directory(path_, failure)) {
     throw InputError({folder.string()}, "", failure ? failure.message() : "a folder of that name",
                      "a writable folder");

@@ -70,9 +70,9 @@ Eigen::VectorXd step_within_bounds(const SumsOfRuns& sums, const Parameters& par
 }
 
 // Extrapolates the fall of χ²: whether it can reach the useful limit, and whether it stalls.
-class Outlook {
+class ConvergenceForecast {
  public:
-  Outlook(double worth_chi2, double creep, int max_iterations)
+  ConvergenceForecast(double worth_chi2, double creep, int max_iterations)
       : worth_chi2_(worth_chi2), creep_(creep), max_iterations_(max_iterations) {}
 
   // Call after each step, accepted or not. The logarithm of χ² is assumed to fall at most twice as
@@ -177,8 +177,8 @@ class Fitter {
     const int most = is_brief ? std::min(options_.max_iterations, iterations_of_first_windows)
                               : options_.max_iterations;
     const double least_gain = is_brief ? gain_in_first_windows : options_.min_gain;
-    Outlook outlook(is_whole ? options_.worth_chi2 : infinity, is_whole ? options_.creep : 0.0,
-                    most);
+    ConvergenceForecast outlook(is_whole ? options_.worth_chi2 : infinity,
+                                is_whole ? options_.creep : 0.0, most);
     // After a step that gains as predicted, the next one is likely to be accepted. Its derivatives,
     // which include χ², are then requested at once.
     bool is_on_course = false, was_refused = false;

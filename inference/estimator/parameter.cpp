@@ -10,9 +10,9 @@ namespace {
 
 enum class Place { free, on_lowest, on_highest };
 
-class CheapestWay {
+class BoundedStep {
  public:
-  CheapestWay(const ArrowMatrix& information, const Parameters& at)
+  BoundedStep(const ArrowMatrix& information, const Parameters& at)
       : information_(information),
         at_(at),
         scale_(information.diagonal().cwiseSqrt().unaryExpr(
@@ -101,7 +101,7 @@ class CheapestWay {
 }  // namespace
 
 Eigen::VectorXd step_to_bounds(const ArrowMatrix& information, const Parameters& at) {
-  return CheapestWay(information, at).run();
+  return BoundedStep(information, at).run();
 }
 
 }  // namespace photorque::inference

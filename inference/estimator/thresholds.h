@@ -224,7 +224,7 @@ struct Thresholds {
     double max_held_growth = 1.1;
     // Explanations that are compared on the segments: the most likely, and the best predictors of
     // the held-out data.
-    size_t max_likeliest = 4, max_predicting = 3;
+    size_t max_probable = 4, max_predicting = 3;
     // Ratio of χ² per sample of an empirical law to that of known physics, below which the law is
     // the better description, however significant known physics is.
     double max_fraction_of_law = 0.25;

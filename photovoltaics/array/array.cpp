@@ -30,7 +30,7 @@ struct LightBins {
   std::vector<double> entry_W;  // may be empty
 };
 
-// Everything that does not depend on the light.
+// Properties that do not depend on the light.
 struct PreparedArray {
   const ArrayDesign& design;
   std::vector<double> responsivity_A_W;  // per band

@@ -174,7 +174,10 @@ class WiringReader {
     if (index == nullptr || *index < 0 || *index >= count) {
       fail(node, "the number of a cell, 0 to " + std::to_string(count - 1));
     }
-    if (used_[static_cast<size_t>(*index)]) fail(node, "each cell at most once");
+    if (used_[static_cast<size_t>(*index)]) {
+      throw InputError(node.where, array_.name() + ".wiring",
+                       "cell " + std::to_string(*index) + " twice", "each cell at most once");
+    }
     used_[static_cast<size_t>(*index)] = true;
     return static_cast<int>(*index);
   }
@@ -302,7 +305,8 @@ std::vector<CellOverride> read_overrides(const Settings& array, const ArrayDesig
     CellOverride one;
     one.index = static_cast<int>(s.get(cell_key::index.within(0, design.cells() - 1)));
     if (!known.insert(one.index).second) {
-      throw s.error(cell_key::index, std::to_string(one.index), "each cell at most once");
+      throw s.error(cell_key::index, std::to_string(one.index) + " a second time",
+                    "each cell at most once");
     }
     one.photocurrent_factor = s.get(cell_key::photocurrent_factor);
     const bool own_area = s.has(cell_key::reference_area);

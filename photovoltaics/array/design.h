@@ -13,8 +13,8 @@
 
 namespace photorque {
 
-// Of one cell or diode: far beyond what any current gets through, and so near that power keeps its
-// digits.
+// Range for one cell or diode. The upper limit exceeds every real resistance and keeps rounding
+// errors of the power small.
 inline constexpr Range series_ohm_range{0.0, 1e6, false, false};
 
 // A cell that is not like the others.

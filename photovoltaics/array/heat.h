@@ -1,4 +1,4 @@
-// How warm the cells of an array are: a plate that takes up light, delivers electric power, and
+// Temperature of the cells of an array: a plate that absorbs light, delivers electric power, and
 // gives off heat by convection and radiation.
 #pragma once
 

@@ -1,4 +1,4 @@
-// How much of the light on cells their front lets in, from the directions of the rays.
+// Fraction of the light on cells that enters their front, from the directions of the rays.
 #pragma once
 
 #include <functional>

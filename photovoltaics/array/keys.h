@@ -24,7 +24,7 @@ inline constexpr NumberKey series("series_ohm", usual.series_ohm, series_ohm_ran
                                   "series resistance of a junction");
 }  // namespace diode_key
 
-// Of the cells, in place of what they have; of all, and of one.
+// Parameters that replace those of all cells, or of one cell.
 namespace cell_key {
 inline constexpr NumberKey reference_area(
     "reference_area_m2", Range::positive(),

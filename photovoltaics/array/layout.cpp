@@ -137,11 +137,11 @@ class Search {
                          Visit&& visit) {
     if (next == cells_.size()) return visit(filled);
     for (size_t s = 0; s < filled.size(); ++s) {
-      if (string_empty(filled, s) && twin_string_before(filled, s)) continue;
+      if (string_empty(filled, s) && has_equal_string_before(filled, s)) continue;
       for (size_t b = 0; b < filled[s].size(); ++b) {
         const size_t room = shape_.strings[s].substrings[b].rows.size();
         if (filled[s][b].size() == room) continue;
-        if (filled[s][b].empty() && twin_substring_before(filled, s, b, room)) continue;
+        if (filled[s][b].empty() && has_equal_substring_before(filled, s, b, room)) continue;
         filled[s][b].push_back(cells_[next]);
         const bool go_on = visit_assignments(filled, next + 1, visit);
         filled[s][b].pop_back();
@@ -166,13 +166,13 @@ class Search {
     return std::ranges::equal(
         x, y, [](const auto& p, const auto& q) { return p.rows.size() == q.rows.size(); });
   }
-  bool twin_string_before(const Filled& filled, size_t s) const {
+  bool has_equal_string_before(const Filled& filled, size_t s) const {
     for (size_t t = 0; t < s; ++t) {
       if (same_shape(s, t) && string_empty(filled, t)) return true;
     }
     return false;
   }
-  bool twin_substring_before(const Filled& filled, size_t s, size_t b, size_t room) const {
+  bool has_equal_substring_before(const Filled& filled, size_t s, size_t b, size_t room) const {
     for (size_t c = 0; c < b; ++c) {
       if (filled[s][c].empty() && shape_.strings[s].substrings[c].rows.size() == room) return true;
     }

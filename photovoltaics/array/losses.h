@@ -35,7 +35,7 @@ std::vector<LossStage> loss_waterfall(const ArrayResult& array, const LossInputs
 // Table "losses", the plot "loss_waterfall" and one quantity per stage.
 Product loss_product(const std::vector<LossStage>& stages);
 
-// How even the irradiance on some cells is.
+// Uniformity of the irradiance on some cells.
 struct Uniformity {
   double mean_W_m2 = 0.0;
   double minimum_over_mean = 0.0;

@@ -115,7 +115,7 @@ class PowerSupply {
   // the last ratio to the light holds.
   void step(double time_s, double step_s, const Light& light, bool judge = true);
 
-  // Of the last step, means over it where they change.
+  // State after the last step; changing values are means over it.
   struct State {
     double array_W = 0.0;    // delivered
     double best_W = 0.0;     // at the best point of the array

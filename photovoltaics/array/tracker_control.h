@@ -1,4 +1,4 @@
-// How a maximum power point tracker decides, one measurement after the other.
+// Decisions of a maximum power point tracker, one measurement after the other.
 #pragma once
 
 #include <algorithm>

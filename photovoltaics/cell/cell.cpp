@@ -9,6 +9,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/root.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -30,9 +31,9 @@ void check(const CellParameters& p) {
   not_negative("saturation_2_A", p.saturation_2_A);
   if (!(p.saturation_1_A + p.saturation_2_A > 0)) {
     // The saturation currents of very cold cells are below the smallest double.
-    throw InputError({}, "saturation_1_A",
-                     "no saturation current at " + std::to_string(p.temperature_K) + " K",
-                     "one > 0 in one of the diodes");
+    throw InputError(
+        {}, "saturation_1_A", printed("zero saturation currents at %.3g K", p.temperature_K),
+        "saturation_1_A or saturation_2_A > 0, or a higher temperature_K of the cells");
   }
   positive("ideality_1", p.ideality_1);
   positive("ideality_2", p.ideality_2);

@@ -36,7 +36,7 @@ struct CellParameters {
   // The photocurrent at which the shunt is R_sh, where the shunt changes with the light
   // (in_light()); 0: R_sh in any light.
   double shunt_light_A = 0.0;
-  // Of such a shunt: R_sh in the dark, ∞ for one that is inversely proportional to the light.
+  // R_sh in the dark of such a shunt; ∞ if it is inversely proportional to the light.
   double shunt_dark_ohm = std::numeric_limits<double>::infinity();
   double shunt_exponent = 5.5;
 };

@@ -74,7 +74,7 @@ void read_front_table(const Settings& cover, CellFront& front) {
                       std::to_string(front.transmittance.size()) + " numbers",
                       std::to_string(front.angle_rad.size()) + ", one per angle");
   }
-  // Everything is relative to normal incidence.
+  // The transmittance is relative to normal incidence.
   constexpr double least = 1e-3;
   if (front.transmittance[0] < least) {
     throw cover.error(cover_key::transmittance,

@@ -28,12 +28,12 @@ struct QuantumEfficiency {
 inline constexpr double silicon_peak = 0.95;
 QuantumEfficiency silicon_quantum_efficiency(double peak = silicon_peak);
 
-// Of the cell of that name among known_cells(): silicon's, or for "gallium_arsenide" and
-// "cadmium_telluride" a plateau between the blue loss and the absorption edge. Its height, unless
-// `peak` states it, gives the published current density in AM1.5G sunlight of 1000 W/m²: 29.78 and
-// 30.25 mA/cm² (M. A. Green et al., Solar cell efficiency tables (version 54), Progress in
-// Photovoltaics 27, 565 (2019)). The edges are those of alloys as published for such cells: half
-// height at 874 nm, and at 883 nm by selenium in the absorber.
+// Quantum efficiency of the cell of that name among known_cells(): that of silicon, or for
+// "gallium_arsenide" and "cadmium_telluride" a plateau between the blue loss and the absorption
+// edge. Its height, unless `peak` states it, gives the published current density in AM1.5G sunlight
+// of 1000 W/m²: 29.78 and 30.25 mA/cm² (M. A. Green et al., Solar cell efficiency tables (version
+// 54), Progress in Photovoltaics 27, 565 (2019)). The edges are those of alloys as published for
+// such cells: half height at 874 nm, and at 883 nm by selenium in the absorber.
 QuantumEfficiency quantum_efficiency_of(std::string_view cell, std::optional<double> peak = {});
 
 // Ampere per watt at one wavelength: EQE λ q/(h c).

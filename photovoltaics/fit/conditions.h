@@ -54,11 +54,11 @@ struct ConditionsFit {
 // or the brightest, where it is twice as bright. Where the residuals are three times the noise,
 // they are weighed as an error of the model that is one fraction of each photocurrent.
 //
-// Of four curves and more, those are omitted that one diode does not describe (a shadow on a part
-// of the device, a cloud), as long as they are at most a third: their own best diode leaves more
-// than 1 % of the photocurrent, or 0.5 % beyond the noise, each 2.5 times the median of all, or has
-// an ideality 2.5 times off that median. Errors of single readings are independent of each
-// other. Outliers are left out as by fit_sweeps(). Throws InputError as fit_sweeps() does.
+// Up to a third of four or more curves is omitted if one diode does not describe them (a shadow on
+// a part of the device, a cloud). The residual of the best diode of a curve exceeds 1 % of the
+// photocurrent, or 0.5 % beyond the noise, and 2.5 times the median of all curves; or its ideality
+// differs from the median by a factor of 2.5. Errors of readings are independent. Outliers are
+// omitted as by fit_sweeps(). Throws InputError as fit_sweeps() does.
 ConditionsFit fit_conditions(std::span<const CurveAt> curves, const SweepNoise& noise,
                              std::optional<ShuntLaw> shunt_law = {});
 

@@ -20,8 +20,8 @@ namespace photorque {
 // One current–voltage sweep in the order in which it was measured.
 struct IvSweep {
   std::vector<double> voltage_V, current_A;  // of equal length, at least 6 points
-  // Of each reading, or empty: the irradiance over its mean, and the rate of the voltage, in V/s if
-  // `is_timed`, else in V per reading.
+  // For each reading, or empty: irradiance over its mean, and rate of the voltage, in V/s if
+  // `is_timed`, otherwise in V per reading.
   std::vector<double> light = {}, rate_V_s = {};
   bool is_timed = false;
 
@@ -115,13 +115,13 @@ struct RatedPoint {
   double maximum_V = 0.0;
 };
 
-// How short-circuit current and open-circuit voltage change with temperature, as datasheets say.
+// Temperature slopes of short-circuit current and open-circuit voltage, as in datasheets.
 struct TemperatureSlopes {
   double short_circuit_1_K = 0.0;  // fraction per kelvin
   double open_circuit_1_K = -3e-3;
 };
 
-// How well the figures of a datasheet are known, one independently of the other: rounded to a step,
+// Independent errors of the figures of a datasheet: rounded to a step,
 // which is a standard deviation of step/√12, and off by a fraction of themselves (one sigma).
 struct RatedTolerance {
   double step_A = 0.0, step_V = 0.0;
@@ -132,7 +132,7 @@ struct RatedTolerance {
 // since figures of one kind are printed alike (22.0 may be printed as 22).
 RatedTolerance written_steps(std::span<const RatedPoint> points);
 
-// How the shunt resistance changes with the light.
+// Dependence of the shunt resistance on the light.
 enum class ShuntLaw {
   constant,
   inverse,      // R_sh ∝ 1/irradiance: De Soto, CEC; see in_light()

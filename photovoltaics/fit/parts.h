@@ -90,7 +90,7 @@ std::vector<BoundReached> bounds_reached(const inference::Fit& best,
 bool take_outliers(std::span<IvSweep* const> sweeps, const std::vector<std::vector<double>>& off,
                    std::vector<OutlierReading>& taken);
 
-// Those of the two resistances, as every fit here has them.
+// Bounds of the two resistances in every fit.
 std::vector<NamedBound> resistance_bounds(Eigen::Index series, Eigen::Index shunt);
 
 }  // namespace photorque

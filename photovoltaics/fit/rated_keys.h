@@ -11,7 +11,7 @@ namespace photorque {
 // One [[datasheet]], and the keys of it.
 RatedPoint read_rated_point(const Settings& point);
 std::vector<Key> rated_point_keys();
-// How its figures change with the temperature, and the keys of that beside it.
+// Temperature slopes of the figures, and their keys.
 TemperatureSlopes read_rated_slopes(const Settings& settings);
 std::vector<Key> rated_slope_keys();
 

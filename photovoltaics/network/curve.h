@@ -80,9 +80,9 @@ class ArrayCurve {
   SlopedPoint nearest(const ArrayPoint& reading, const ArrayPoint& error,
                       const std::vector<ArrayPoint>& trace = {}) const;
 
-  // How much the current at a fixed voltage moves with the photocurrent of each cell.
+  // Derivative of the current at fixed voltage with respect to the photocurrent of each cell.
   std::vector<double> current_by_photocurrent(const ArrayPoint& at) const;
-  // How a maximum moves with the photocurrent of each cell.
+  // Derivatives of a maximum with respect to the photocurrent of each cell.
   struct MaximumMotion {
     std::vector<double> voltage_ohm, current;  // ∂V/∂I_k, ∂I/∂I_k
   };

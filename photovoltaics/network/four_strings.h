@@ -46,7 +46,7 @@ class FourStrings {
              State& state, std::span<StringState> states) const;
   // From a solution at a voltage not far away, without cells.
   bool advance(double voltage_V, State& state) const;
-  // Of all members.
+  // Sum of the currents of all members.
   double sum_A(const State& state) const;
 
  private:

@@ -192,7 +192,7 @@ class ArrayCurve::Search {
     for (size_t k = 0; k < states_.size(); ++k) curve_.fours_[k].write(states_[k], at.strings);
   }
 
-  // Of all strings; in `at` the states of fours are old ones.
+  // Sum of the currents of all strings. The states of groups of four in `at` are not updated.
   double currents_at(double x, const Piece& piece, Node& at) {
     double sum_A = 0.0;
     const auto add_alone = [&](size_t s) {

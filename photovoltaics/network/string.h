@@ -59,7 +59,8 @@ struct StringRegime {
   bool operator==(const StringRegime&) const = default;
 };
 
-// How V, and its slope dV/dI, move with the photocurrent of a cell at fixed current.
+// Derivatives of V and of its slope dV/dI with respect to the photocurrent of a cell, at fixed
+// current.
 struct VoltageMotion {
   size_t cell = 0;  // of the wiring
   double voltage_ohm = 0.0, slope_V_A2 = 0.0;
@@ -106,8 +107,8 @@ class StringCurve {
   void at_voltage(double voltage_V, const StringRegime& regime, double low_A, double high_A,
                   double tolerance, StringState& state) const;
 
-  // Of each cell whose substring is not clamped, from a state whose cells were evaluated within a
-  // small tolerance.
+  // Change of the voltage with each cell whose substring is not clamped. The cells of `state` must
+  // have been evaluated within a small tolerance.
   std::vector<VoltageMotion> voltage_motions(const StringState& state,
                                              const StringRegime& regime) const;
 
@@ -181,7 +182,7 @@ class StringCurve {
                                                StringState& state) const;
   ElementPoint tied_nested_at(uint32_t index, double current_A, const StringRegime* regime,
                               StringState& state) const;
-  // Of all cells and parts in a part at a voltage but one.
+  // Current of all cells and parts in a part at a voltage, except those of `but`.
   double tied_A(uint32_t index, double voltage_V, const StringRegime* regime, uint32_t but,
                 Slopes* slopes, StringState& state) const;
   // The part in parallel whose diodes hold the voltage of all; `nothing` where none does.
@@ -207,7 +208,7 @@ class StringCurve {
   double inside_A(uint32_t index, double drop_V, StringState& state) const;
   SlopeRange part_range(uint32_t index, const StringState& low_i, const StringState& high_i,
                         const StringRegime& regime) const;
-  // How a part moves with the photocurrents of its cells, and its slopes.
+  // Derivatives of a part with respect to the photocurrents of its cells, and its slopes.
   struct PartMotion {
     std::vector<VoltageMotion> moved;  // cells of this string
     double slope_ohm = 0.0, curvature_V_A2 = 0.0;

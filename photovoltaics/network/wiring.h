@@ -1,4 +1,4 @@
-// How the cells of an array are joined.
+// Wiring of the cells of an array.
 #pragma once
 
 #include <utility>

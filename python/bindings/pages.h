@@ -14,7 +14,7 @@ namespace photorque::python {
 
 namespace py = pybind11;
 
-// Of the command `verb`, which gives the same.
+// Head of the page of the command `verb`.
 inline PageHead head_of(const RunOptions& options, const std::string& verb) {
   const std::string name = options.experiment.filename().string();
   std::string function = verb;

@@ -60,7 +60,7 @@ void bind_platform(py::module_& module) {
           [](const BalanceOutcome& self) { return copy_of(self.balance.sigma_m); },
           "Infinite along an axis that the recording does not determine.");
   module.def("balance", &balance_of, py::arg("experiment"), py::arg("recording"),
-             "The centre of mass from a recording, and the balancing masses' moves.");
+             "The centre of mass from a recording, and the displacements of the balancing masses.");
 }
 
 }  // namespace photorque::python

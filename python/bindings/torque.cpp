@@ -118,7 +118,8 @@ class OwnTorque final : public TorqueLaw<OwnTorque> {
   }
 
  private:
-  // Of seconds, of a quaternion, of rad/s: near the cube root of the rounding of a double.
+  // Step in seconds, in quaternion components and in rad/s: about the cube root of the rounding
+  // error.
   static constexpr double step = 1e-5;
 
   template <class T>

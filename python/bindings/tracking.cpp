@@ -62,7 +62,7 @@ py::dict series_of(const std::vector<AttitudeEstimate>& estimates) {
 const Estimation& chosen_of(const EstimateRun& run, size_t recording) {
   if (recording >= run.estimated.size()) throw py::index_error("no recording of this number");
   const EstimateResult& result = run.estimated[recording].result;
-  return result.ways[result.chosen].estimation;
+  return result.methods[result.chosen].estimation;
 }
 
 }  // namespace

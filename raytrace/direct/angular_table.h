@@ -1,4 +1,4 @@
-// How the light of a beam spreads over angles, tabulated: intensity and encircled flux.
+// Table of a beam over angles: intensity and encircled flux.
 #pragma once
 
 #include <algorithm>

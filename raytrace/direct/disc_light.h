@@ -95,8 +95,8 @@ class DiscLight {
   // about the axis touches the rim of an edge's light; rising, in (0, 1). With them places that lie
   // likewise to angles at which the beam has fallen a little, by half, and almost altogether.
   std::vector<double> kinks_along(const Vec3& from_m, const Vec3& to_m) const;
-  // Of the lines corner + t · across + [0, 1] · along: the t in (0, 1) at which two kinks meet;
-  // rising.
+  // The t in (0, 1), rising, of the lines corner + t · across + [0, 1] · along at which two kinks
+  // meet.
   std::vector<double> tangent_lines(const Vec3& corner_m, const Vec3& along_m,
                                     const Vec3& across_m) const;
 

@@ -22,13 +22,12 @@ template <int Count>
 class FactorTable {
  public:
   using Factors = Eigen::Array<double, Count, 1>;
-  // Of a distance from the axis and a height [m].
+  // Arguments: distance from the axis and height [m].
   using Function = std::function<Factors(double, double)>;
 
-  // Of `factors`, which are those of `light`, for heights in [low_m, high_m], low_m > 0. Nothing
-  // where no such table agrees with them to `tolerance` of the largest everywhere that is looked
-  // at: kinks that cross each other within these heights, or light all the way to the side. The
-  // same bits at any `threads`.
+  // A table of the `factors` of `light` for heights in [low_m, high_m], low_m > 0. Empty if no
+  // table agrees with them to `tolerance` of the largest at all test points, because kinks cross
+  // within these heights or light reaches the side. Equal bits with any `threads`.
   static std::optional<FactorTable> make(const DiscLight& light, const Function& factors,
                                          double low_m, double high_m, int threads);
   static constexpr double tolerance = Count == 2 ? 1e-7 : 1e-6;

@@ -1,4 +1,4 @@
-// How a surface scatters light: its bidirectional scattering distribution function.
+// Scattering of light by a surface: its bidirectional scattering distribution function (BSDF).
 //
 // An AlbedoLaw divides the power between components, a Lobe between directions. Both see a hit in
 // its own frame: z is the normal on the lit side and x lies in the plane of incidence, so that
@@ -61,7 +61,7 @@ struct Draw {
   }
 };
 
-// How light meets a surface, as far as a lobe is concerned.
+// Incidence of light on a surface, as input of a lobe.
 struct Arrival {
   // NOLINTNEXTLINE(google-explicit-constructor): a cosine is all that most lobes use
   Arrival(double incidence_cosine, double cosine_of_axis = 1.0, double sine_of_axis = 0.0)
@@ -94,8 +94,8 @@ struct PowerFractions {
   double of(Component component) const;
 };
 
-// How a surface's fractions depend on the angle of incidence. Immutable; called from many threads
-// at once.
+// Dependence of the fractions of a surface on the angle of incidence. Immutable; called from many
+// threads at once.
 class AlbedoLaw {
  public:
   virtual ~AlbedoLaw() = default;
@@ -122,7 +122,7 @@ struct Bsdf {
   Vec3 axis = Vec3::Zero();
 };
 
-// How light meets a surface, in any right-handed frame.
+// Incidence of light on a surface, in any right-handed frame.
 struct Incidence {
   // `direction` of the light, `normal` on the lit side, both of unit length.
   Incidence(const Vec3& direction, const Vec3& normal);

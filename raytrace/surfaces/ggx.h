@@ -30,9 +30,9 @@ struct Ggx {
   // D G2/(4 cos θ_i): the density of o after one reflection, times the reflectance of the facets.
   double once_reflected_1_sr(const Vec3& towards_light, const Vec3& out) const;
 
-  // Of light from `cosine`, reflected once by facets that reflect `of_facet`(cosine at the facet):
-  // the power that leaves, and its sum of o_x over sin θ_i and of o_z. By quadrature, to 1e-4; the
-  // cosine is below 1.
+  // Moments of light from `cosine` (below 1), reflected once by facets with the reflectance
+  // `of_facet`(cosine at the facet): reflected power, mean of o_x over sin θ_i, mean of o_z, both
+  // weighted by power. By quadrature, to 1e-4.
   using Moments = std::array<double, 3>;
   Moments moments(double cosine, const std::function<double(double)>& of_facet) const;
 };

@@ -19,7 +19,7 @@ namespace photorque {
 // `alpha` ∈ [0.001, 1]: the square of glTF's roughness. Momenta to 1e-4 of the power over c.
 std::shared_ptr<const Lobe> rough_mirror(double alpha);
 
-// How the slopes of a surface with slope errors are distributed.
+// Distribution of the slopes of a surface with slope errors.
 enum class SlopeShape {
   gaussian,  // independent along two axes, with a standard deviation for each
   pillbox,   // even over an ellipse with two semi-axes

@@ -10,7 +10,7 @@
 
 namespace photorque {
 
-// How alike the rays of a packet are; wrong advice costs speed, never correctness.
+// Similarity of the rays of a packet. It affects only the speed.
 enum class Coherence { coherent, incoherent };
 
 namespace embree_seam {

@@ -63,7 +63,7 @@ struct LaunchBuffer {
   std::vector<uint16_t> key, start;
 };
 
-// How the rays of a beam are brought into an order that keeps neighbours together: its sequence is
+// Order of the rays of a beam that keeps neighbours together: its sequence is
 // cut into cells of neighbours, which are the batches, and each batch is sorted.
 struct LaunchPlan {
   SobolCells cells;

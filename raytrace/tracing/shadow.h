@@ -53,7 +53,7 @@ inline constexpr int shadow_batch = 256;
 void find_shadows(const TraceableScene& scene, std::span<const ShadowRay> rays,
                   std::span<uint8_t> lit);
 
-// How far above its surface a shadow ray must start, and a radius that holds the whole scene as
+// Ray offset of a shadow ray above its surface, and a radius that contains the whole scene as
 // seen from any point of it.
 double shadow_ray_offset_m(const TraceableScene& scene);
 double scene_diameter_m(const TraceableScene& scene);

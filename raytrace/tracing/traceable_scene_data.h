@@ -34,15 +34,15 @@ struct TraceableScene::Data {
   // Null where fractions are the same at every angle; empty if they are so everywhere.
   std::vector<const AlbedoLaw*> albedo_law;
   bool reemits = false;  // whether heat radiation leaves any surface
-  // Of a sphere that holds the scene. Embree's vertices and rays count from here in single
-  // precision, so that the distance of the scene from the body's origin costs none of it.
+  // Sphere that contains the scene. Embree's vertices and rays are relative to its centre, so that
+  // a distant scene does not lose single precision.
   Vec3 centre_m = Vec3::Zero();
   double radius_m = 0.0;
-  // How far a ray that leaves a surface starts above it: beyond single-precision rounding of any
-  // point of the scene, below any feature.
+  // Ray offset: distance from the surface at which a ray starts, beyond single-precision rounding
+  // of any point of the scene, below any feature.
   double ray_offset_m = 0.0;
 
-  // How far behind a face of an instance light starts that has passed through it.
+  // Ray offset behind a face of an instance for light that has passed through it.
   double behind_m(uint32_t instance) const {
     return ray_offset_m + scene.instances[instance].sheet_depth_m;
   }

@@ -31,7 +31,7 @@ struct BeamPlan {
   double watt_per_ray;
 };
 
-// Everything that one part of the work adds up.
+// Sums of one part of the work.
 struct TraceSums {
   PowerBalanceSums power_balance;
   std::vector<std::vector<double>> receivers;
@@ -248,7 +248,7 @@ class TracerPool {
     idle_.pop_back();
     return tracer;
   }
-  void give_back(std::unique_ptr<BatchTracer> tracer) {
+  void return_tracer(std::unique_ptr<BatchTracer> tracer) {
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(tracer));
   }
@@ -435,7 +435,7 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
     auto tracer = pool.take();
     sums.add(item, trace_part(*tracer, data.scene.instances.size(), plan, receivers, options.seed,
                               item, parts, batch_done));
-    pool.give_back(std::move(tracer));
+    pool.return_tracer(std::move(tracer));
   });
 
   TraceResult result;

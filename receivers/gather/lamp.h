@@ -76,7 +76,7 @@ class PlacedLamp {
 
   // Points, directions and normals of the emitter's frame from here on.
 
-  // How lines to places at this height are best sampled: by direction where the aperture is wide
+  // Sampling of lines to points at this height: by direction where the aperture is wide
   // against the beam, by the aperture's point elsewhere.
   bool sampled_by_direction(double height_m) const;
   // The irradiance that rays of this direction stand for, for an emitter that draws directions by

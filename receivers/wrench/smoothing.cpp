@@ -16,7 +16,7 @@ std::span<const double> once_around(const std::vector<double>& around_rad) {
 }
 
 // Both halves in twelve columns.
-Eigen::MatrixXd values_of(std::span<const TwofoldWrench> wrenches, size_t nodes) {
+Eigen::MatrixXd values_of(std::span<const WrenchPair> wrenches, size_t nodes) {
   Eigen::MatrixXd values(static_cast<Eigen::Index>(nodes), 2 * per_wrench);
   for (size_t n = 0; n < nodes; ++n) {
     const auto row = static_cast<Eigen::Index>(n);
@@ -62,7 +62,7 @@ Powers powers_of(const SphereSeries& halves, int degree, Eigen::Index from) {
 
 }  // namespace
 
-SmoothWrench smooth_over_sphere(const WrenchTable& table, std::span<const TwofoldWrench> wrenches) {
+SmoothWrench smooth_over_sphere(const WrenchTable& table, std::span<const WrenchPair> wrenches) {
   const auto azimuths = once_around(table.around_rad);
   const std::span<const double> elevations = table.polar_rad;
   constexpr size_t highest = 60;

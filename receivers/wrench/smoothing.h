@@ -17,7 +17,7 @@
 namespace photorque {
 
 // A wrench and the same from other rays.
-struct TwofoldWrench {
+struct WrenchPair {
   WrenchComponents first{}, second{};
 };
 
@@ -30,6 +30,6 @@ struct SmoothWrench {
 
 // Smooths the values at the nodes of a table with equally spaced azimuths over the whole circle
 // (the first may be repeated at the end) and elevations from pole to pole.
-SmoothWrench smooth_over_sphere(const WrenchTable& table, std::span<const TwofoldWrench> wrenches);
+SmoothWrench smooth_over_sphere(const WrenchTable& table, std::span<const WrenchPair> wrenches);
 
 }  // namespace photorque

@@ -63,15 +63,15 @@ class EarClipper {
     const Vec2 &a = flat_[left_[before(i)]], &b = flat_[left_[i]], &c = flat_[left_[after(i)]];
     for (const uint32_t other : left_) {
       const Vec2& p = flat_[other];
-      // Corners that touch are at the same place in polygons with a slit to a hole.
+      // In a polygon with a slit to a hole, two corners have the same position.
       if (p == a || p == b || p == c) continue;
       if (is_inside(a, b, c, p)) return false;
     }
     return true;
   }
 
-  // If no corner is an ear, the polygon intersects itself or is flat: then a convex corner is used,
-  // else the first.
+  // If no corner is an ear, the polygon intersects itself or is flat. A convex corner is then cut
+  // off or, without one, the first corner.
   size_t next_ear() const {
     for (size_t i = 0; i < left_.size(); ++i) {
       if (is_ear_[i]) return i;
@@ -95,7 +95,7 @@ class EarClipper {
 
   std::vector<Vec2> flat_;
   std::vector<uint32_t> left_;
-  std::vector<uint8_t> is_ear_;  // of each that is left
+  std::vector<uint8_t> is_ear_;  // for each remaining corner
   std::vector<std::array<uint32_t, 3>> triangles_;
 };
 

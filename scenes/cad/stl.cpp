@@ -58,7 +58,7 @@ std::vector<Part> read_binary(std::string_view bytes, const std::string& file,
     for (size_t corner = 0; corner < 3; ++corner) {
       Vec3 at;
       for (size_t k = 0; k < 3; ++k) {
-        // Behind the normal.
+        // The words after the normal.
         at[static_cast<Eigen::Index>(k)] =
             std::bit_cast<float>(little_endian_32(bytes, start + 12 + 12 * corner + 4 * k));
       }

@@ -16,7 +16,7 @@ namespace photorque {
 
 // A number, or several of one key. What is fitted is x, which is 0 where nothing acts.
 struct EffectParameter {
-  // How the value of the key follows from x, in SI.
+  // Value of the key from x, in SI.
   enum class Form {
     offset,      // neutral + x
     reciprocal,  // 1/x
@@ -52,7 +52,7 @@ struct LightEffectKind {
   bool in_circuit = false;
   // Whether a trace of the experiment shows it.
   bool is_traced = false;
-  // How starts of nonlinear parameters follow from the recordings.
+  // Initial values of nonlinear parameters from the recordings.
   enum class Scan { none, shadow, trapped, wave };
   Scan scan = Scan::none;
   // Writes x into the state; `x` holds all parameters' numbers in order.

@@ -211,8 +211,8 @@ LightState stated_effects(const Experiment& experiment, const LightParts& parts)
     }
     meant->act(state, index_of(effect, *meant, parts), x);
     // Further results of a diagnosis; reading them has no effect on a run.
-    for (const char* said : {"u_m", "v_m", "darkest"}) {
-      if (effect.has(said)) effect.raw(said);
+    for (const char* key : {"u_m", "v_m", "darkest"}) {
+      if (effect.has(key)) effect.raw(key);
     }
     effect.finish();
   }

@@ -8,6 +8,7 @@
 
 #include "core/constants.h"
 #include "core/files.h"
+#include "core/settings/files.h"
 #include "receivers/kind.h"
 #include "scenes/experiment/doubts.h"
 #include "scenes/experiment/keys.h"
@@ -184,8 +185,7 @@ void require_scene_file(const ExperimentFile& file) {
   std::error_code unreadable;
   if (std::filesystem::is_regular_file(*file.scene_file, unreadable)) return;
   const Settings scene = file.settings.get(scene_key::scene);
-  throw scene.error(scene_key::file, "\"" + scene.get(scene_key::file) + "\"",
-                    "an existing file, relative to the folder of the experiment");
+  require_plain_file(existing_file(scene, scene_key::file, file.path.parent_path()));
 }
 
 // The bytes of files whose names are relative to a file's folder.

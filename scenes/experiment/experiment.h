@@ -52,7 +52,8 @@ struct TraceEffort {
   // More rays until every bin above a tenth of its map's peak has this relative standard error,
   std::optional<double> target_error;
   std::optional<double> max_time_s;  // or until the next round would end later than this
-  // Of how many emitted rays those that arrive on each flux map become a file; nothing: no file.
+  // Number of emitted rays; those that arrive on each flux map are written to a file. Empty: no
+  // file.
   std::optional<uint64_t> arriving_rays;
 };
 
@@ -78,7 +79,7 @@ struct ExperimentFile {
   Settings settings{SettingsNode{}};
   std::vector<std::pair<std::string, std::string>> inputs;  // for Provenance: this file, overrides
 
-  // Of an optical run; empty when the file has no [scene].
+  // Model of an optical run; empty if the file has no [scene].
   std::optional<std::filesystem::path> scene_file;
   double metres_per_unit = 1.0;       // [scene] metres_per_unit: of lengths in the scene's file
   std::optional<CadConventions> cad;  // [scene] unit and up, where the file is no glTF
@@ -125,7 +126,7 @@ struct NamedReceiver : MadeReceiver {
   std::string kind;
 };
 
-// Everything that an optical run needs.
+// All inputs of an optical run.
 struct Experiment {
   ExperimentFile file;
   Scene scene;

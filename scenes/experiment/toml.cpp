@@ -186,6 +186,8 @@ SettingsNode& follow(SettingsNode& node, const Step& step, const std::string& ke
   if (step.index >= size) {
     throw InputError(command_line, key, "index " + std::to_string(step.index),
                      array == nullptr ? "no index: this is " + describe(node)
+                     : size == 0      ? "no index: the array is empty"
+                     : size == 1      ? "index 0, the only one"
                                       : "an index from 0 to " + std::to_string(size - 1));
   }
   return (*array)[step.index];

@@ -1,7 +1,7 @@
 // Numbers of an experiment that are known to within an error: { value = …, sigma = … }.
 //
-// Of lamps, array and attitude any number may be written so. A run takes the value; a diagnosis of
-// light also takes the error, as a Gaussian prior.
+// Any number of lamps, array and attitude may have this form. A run uses the value. A diagnosis of
+// light also uses the error as a Gaussian prior.
 #pragma once
 
 #include <filesystem>

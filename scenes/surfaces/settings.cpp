@@ -239,7 +239,9 @@ OpticalSurface read_measured(const Settings& table, int bands, const std::string
   }
   const std::string file = table.get(brdf_file);
   const std::optional<std::string> text = files ? files(file) : std::nullopt;
-  if (!text) throw table.error(brdf_file, "\"" + file + "\"", "a file that exists");
+  if (!text)
+    throw table.error(brdf_file, "\"" + file + "\"",
+                      "an existing file, relative to the folder of the experiment");
   BandValues scale{};
   std::fill_n(scale.begin(), bands, 1.0);
   if (table.has(brdf_scale)) {

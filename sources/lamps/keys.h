@@ -6,8 +6,8 @@
 
 namespace photorque {
 
-// Of what light leaves and how wide it spreads. No optics are smaller; far below, squares of them
-// are no numbers any more, or lie between the roundings of the distances.
+// Lower limits of apertures and beam widths, below those of real optics. Far below them, squares
+// underflow or are smaller than the rounding errors of distances.
 inline constexpr Range opening_diameter{1e-12, 1e308, false, false};
 inline constexpr Range beam_width{1e-12 * degree_rad, pi, false, true};
 inline constexpr Range beam_half_angle{1e-12 * degree_rad, 0.5 * pi, false, false};

@@ -1,4 +1,4 @@
-// How a `[[source]]` of an experiment becomes beams.
+// Conversion of `[[source]]` of an experiment into beams.
 #pragma once
 
 #include <filesystem>

@@ -35,7 +35,7 @@ std::array<double, 4> coordinates(const RaySet::Ray& ray) {
           ray.origin_m.y() - along * ray.direction.y()};
 }
 
-std::vector<uint32_t> neighbourly_order(const std::vector<RaySet::Ray>& rays) {
+std::vector<uint32_t> spatial_order(const std::vector<RaySet::Ray>& rays) {
   std::array<double, 4> low, high;
   low.fill(INFINITY);
   high.fill(-INFINITY);
@@ -69,7 +69,7 @@ std::vector<uint32_t> neighbourly_order(const std::vector<RaySet::Ray>& rays) {
 RayLamp::RayLamp(double power_W, const RaySet& set) : power_W_(power_W) {
   const double total = set.ray_flux();
   double before = 0.0;
-  for (const uint32_t index : neighbourly_order(set.rays)) {
+  for (const uint32_t index : spatial_order(set.rays)) {
     const RaySet::Ray& ray = set.rays[index];
     if (!(ray.flux > 0.0)) continue;
     const Vec3 d = ray.direction.normalized();

@@ -23,7 +23,7 @@ class RayLamp : public Emitter {
 
   double power_W() const override { return power_W_; }
   void emit(const SampleBlock& samples, RayBlock& rays) const override;
-  // Of steps that hold equally many rays.
+  // Intensity from steps of the angle with equal numbers of rays.
   double relative_intensity(double angle_rad) const override;
 
  private:

@@ -6,6 +6,7 @@
 #include "core/constants.h"
 #include "core/files.h"
 #include "core/provenance.h"
+#include "core/settings/files.h"
 #include "core/text/format.h"
 #include "sources/lamps/disc.h"
 #include "sources/lamps/keys.h"
@@ -107,7 +108,7 @@ std::string describe(const Vec3& v) {
 Vec3 read_direction_vector(const Settings& settings) {
   const Vec3 direction = settings.get(source_key::direction);
   if (!(direction.stableNorm() > 0.0)) {
-    throw settings.error(source_key::direction, describe(direction), "a vector of some length");
+    throw settings.error(source_key::direction, describe(direction), "a vector that is not zero");
   }
   return direction.stableNormalized();
 }
@@ -191,12 +192,7 @@ SourceFile read_source_file(const Settings& settings, const SourceContext& conte
       return {given.string(), *bytes};
     }
   }
-  const std::filesystem::path path = context.folder / given;
-  std::error_code unreadable;
-  if (!std::filesystem::is_regular_file(path, unreadable)) {
-    throw settings.error("file", "\"" + given.string() + "\"",
-                         "an existing file, relative to the folder of the experiment");
-  }
+  const std::filesystem::path path = existing_file(settings, "file", context.folder);
   SourceFile file{path.string(), read_file(path)};
   if (context.input) context.input(given.filename().string(), content_hash(file.bytes));
   return file;

@@ -42,7 +42,7 @@ constexpr NumbersKey limb_darkening(
     "[u1, u2]: radiance 1 − u1 (1 − μ) − u2 (1 − μ)², μ = √(1 − r²) at r radii from the "
     "middle; [0.47, 0.23] in visible light",
     {.usually = "none", .size = 2});
-// Of shapes that are integrated: the squares of smaller angles fade to zero.
+// Smallest angle of integrated shapes: squares of smaller angles underflow.
 constexpr double least_rad = 1e-9;
 constexpr NumberKey sigma("sun_shape_sigma_mrad", {least_rad, pi / 24.0},
                           "σ, the standard deviation of angles along each of two axes");

@@ -116,7 +116,7 @@ Opening read_opening(ValueLines& lines) {
   return opening;
 }
 
-// Those of `planes` with their `angles` that the file holds; intensities times `factor`.
+// The `planes` in the file with their `angles`; intensities are multiplied by `factor`.
 StoredPlanes read_planes(ValueLines& lines, const StoredRange& range, size_t planes, size_t angles,
                          double factor) {
   const std::vector<double> all_c_deg = lines.numbers("C angle", planes);

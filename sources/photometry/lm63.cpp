@@ -40,7 +40,7 @@ class NumberStream {
     return {file_, static_cast<int>(std::min(line_ + 1, lines_.size()))};
   }
 
-  // Of the line that follows the last number.
+  // Location of the line after the last number.
   InputLocation line_after() const {
     return {file_, static_cast<int>(std::min(line_ + 2, lines_.size()))};
   }
@@ -66,7 +66,7 @@ class NumberStream {
   // The next word if it is a number.
   std::optional<double> left_over() { return number_in(next_word()); }
 
-  // How many words are left.
+  // Number of remaining words.
   size_t left() const {
     NumberStream rest = *this;
     size_t words = 0;

@@ -30,7 +30,7 @@ enum Column : size_t {
   spectrum,
   column_kinds
 };
-// Of Stokes' parameters three, and the direction that they refer to.
+// Number of floats per column; Stokes' parameters have three and their reference direction.
 constexpr std::array<size_t, column_kinds> column_floats = {3, 3, 1, 1, 1, 6, 2, 1};
 
 struct Tm25Header {

@@ -1,4 +1,4 @@
-// How radiant intensity falls off from the axis of a beam: the profiles that a lamp can have, and
+// Radiant intensity over the angle from the axis of a beam: the profiles of lamps, and
 // directions sampled from one of them or from a core with a halo.
 #pragma once
 

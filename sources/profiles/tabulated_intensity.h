@@ -71,7 +71,7 @@ class TabulatedIntensity {
   void directions(const FractionBlock& polar, const FractionBlock& azimuth,
                   VectorBlock& direction) const;
 
-  // How much the reading between the angles of the table matters: the flux with straight lines
+  // Effect of the interpolation between the angles of the table: the flux with straight lines
   // between them, and with each value standing for the zone around it (the usual sum), each over
   // flux() minus one.
   struct Coarseness {

@@ -200,6 +200,7 @@ struct Phrase {
   std::vector<std::string> words;
   std::string instead;
   bool opens = false;                // the first words of a comment
+  bool names = false;                // a part of a name
   std::vector<std::string> outside;  // paths where it is not looked for
 };
 
@@ -228,22 +229,25 @@ std::vector<Phrase> phrases() {
   std::istringstream list(text_of(root / "tests/architecture/phrases.txt"));
   std::vector<Phrase> all;
   std::vector<std::string> outside;
-  bool opens = false;
+  bool opens = false, names = false;
   for (std::string line; std::getline(list, line);) {
     if (line.empty() || line.starts_with('#')) continue;
     if (line.starts_with('[')) {
       std::istringstream heading(line.substr(1, line.find(']') - 1));
       std::string kind;
       heading >> kind;
-      EXPECT_TRUE(kind == "everywhere" || kind == "outside" || kind == "openings") << line;
+      EXPECT_TRUE(kind == "everywhere" || kind == "outside" || kind == "openings" ||
+                  kind == "names")
+          << line;
       opens = kind == "openings";
+      names = kind == "names";
       if (!opens) outside.clear();
       for (std::string path; heading >> path;) outside.push_back(path);
       continue;
     }
     const size_t arrow = line.find(" => ");
     EXPECT_NE(arrow, std::string::npos) << line;
-    all.push_back({words_of(line.substr(0, arrow)), line.substr(arrow + 4), opens, outside});
+    all.push_back({words_of(line.substr(0, arrow)), line.substr(arrow + 4), opens, names, outside});
   }
   return all;
 }
@@ -281,7 +285,8 @@ std::vector<std::string> openings_of(const std::string& text, const std::string&
 }
 
 TEST(Words, TextsUseNoPhraseOfTheList) {
-  const std::vector<Phrase> all = phrases();
+  std::vector<Phrase> all = phrases();
+  std::erase_if(all, &Phrase::names);
   std::multimap<std::string, const Phrase*> by_first;
   for (const Phrase& phrase : all) {
     ASSERT_FALSE(phrase.words.empty());
@@ -312,7 +317,7 @@ TEST(Words, TextsUseNoPhraseOfTheList) {
           for (size_t k = i < 6 ? 0 : i - 6; k < std::min(words.size(), i + 8); ++k) {
             around += words[k] + " ";
           }
-          ADD_FAILURE() << path << " says \"" << around << "\"; instead: " << phrase.instead
+          ADD_FAILURE() << path << " contains \"" << around << "\"; instead: " << phrase.instead
                         << " (tests/architecture/phrases.txt)";
         }
       }
@@ -322,6 +327,37 @@ TEST(Words, TextsUseNoPhraseOfTheList) {
     for (const std::string& opening : openings_of(text, mark)) find(opening, true);
   }
   EXPECT_GT(files, 1000u);
+}
+
+// "likeliest_scale", "TellsApart": the words of a name, in small letters.
+std::set<std::string> words_of_names(const std::string& code) {
+  static const std::regex word("[A-Z]?[a-z]+");
+  std::set<std::string> words;
+  for (std::string found : matches(code, word, 0)) {
+    found.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(found.front())));
+    words.insert(std::move(found));
+  }
+  return words;
+}
+
+TEST(Words, NamesContainNoWordOfTheList) {
+  std::vector<Phrase> all = phrases();
+  std::erase_if(all, [](const Phrase& phrase) { return !phrase.names; });
+  ASSERT_GT(all.size(), 10u);
+  size_t files = 0;
+  for (const std::string& path : tree()) {
+    if (!is_source(path) || path.starts_with("tests/data/")) continue;
+    ++files;
+    const std::set<std::string> words = words_of_names(code_of(root / path));
+    for (const Phrase& phrase : all) {
+      EXPECT_FALSE(words.contains(phrase.words.front()))
+          << path << " has a name with \"" << phrase.words.front()
+          << "\"; instead: " << phrase.instead << " (tests/architecture/phrases.txt)";
+    }
+  }
+  EXPECT_GT(files, 1000u);
+  EXPECT_TRUE(words_of_names("int TellsApart = likeliest_scale;").contains("tells"));
+  EXPECT_TRUE(words_of_names("int TellsApart = likeliest_scale;").contains("likeliest"));
 }
 
 TEST(Words, PhrasesAreFoundInCommentsStringsAndDocuments) {

@@ -163,7 +163,7 @@ TEST(Rooms, IncludesNeverRunInACircle) {
   }
 }
 
-TEST(Rooms, HaveAtMost30FilesWhoseNamesDoNotRepeatTheRoom) {
+TEST(Rooms, HaveAtMost30FilesWithNamesThatDoNotRepeatTheFolder) {
   std::map<std::string, size_t> files;
   for (const std::string& folder : top_folders) {
     for (const fs::path& file : sources_of(folder)) {
@@ -209,7 +209,7 @@ TEST(Rooms, EveryLibraryHasOnePlace) {
   }
 }
 
-TEST(Rooms, OnlyTheSeamKnowsTheVersionOfEmbree) {
+TEST(Rooms, OnlyTheSeamDependsOnTheVersionOfEmbree) {
   for (const Include& include : includes_of("raytrace")) {
     if (!include.header.starts_with("embree")) continue;
     EXPECT_EQ(include.file.filename(), "embree_seam.h");

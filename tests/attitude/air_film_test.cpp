@@ -58,7 +58,7 @@ TEST(OrificeFilm, UnloadedFilmIsThickerThanTheSpringPredicts) {
   EXPECT_GT(film_m, 1.3 * spring_gap_m(rated_m, rated_N, stiffness_N_m, unloaded_N));
 }
 
-TEST(OrificeFilm, RefusesWhatCannotBeCarried) {
+TEST(OrificeFilm, RejectsUnsupportedData) {
   EXPECT_THROW(gap_under_load_m(fed_socket(), feed, room, 1e4), NumericalError);
   SphericalSocket no_recess = fed_socket();
   no_recess.recess_half_angle_rad = 0.0;

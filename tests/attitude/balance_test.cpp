@@ -96,7 +96,7 @@ TEST(Balance, ACameraAloneSuffices) {
 
 // A dipole that the experiment lacks biases the fit: the offset is wrong, with a warning. The
 // errors come near to holding the truth; by noise alone it would be fifty of them away.
-TEST(Balance, WhatTheModelLacksIsSaidAndWidensTheErrors) {
+TEST(Balance, AMissingEffectIsReportedAndIncreasesTheErrors) {
   BalanceRun run = unbalanced(true, 7);
   EXPECT_FALSE(balance(run).exceeds_noise());
   PropagationRun truth;

@@ -77,7 +77,7 @@ TEST(PaperFigures, OfLightAreThoseGiven) {
   EXPECT_EQ(ours.at("radiation_torque_traced_at_30_deg_N_m"), 2e-9);
 }
 
-TEST(PaperFigures, EveryFigureSaysWhyItDiffers) {
+TEST(PaperFigures, EveryFigureStatesTheReasonOfItsDifference) {
   std::set<std::string> names;
   for (const PaperFigure& f : paper_figures()) {
     EXPECT_TRUE(names.insert(f.quantity).second) << f.quantity;
@@ -183,19 +183,19 @@ SettingsNode with_disturbances(SettingsNode root, const std::vector<SettingsNode
 
 // m r a of the floor's acceleration along x, whose sine is zero at the state's time; it swings
 // about nothing.
-TEST(Budget, WhatShakesCountsWithItsAmplitude) {
+TEST(Budget, VibrationCountsWithItsAmplitude) {
   const SettingsNode floor = table({{"kind", node("floor_vibration")},
                                     {"acceleration_m_s2", numbers({2e-3, 0, 0})},
                                     {"frequency_Hz", node(8)}});
-  const BudgetEntry shaken = entry(
+  const BudgetEntry vibration = entry(
       read_budget(settings_of(with_disturbances(experiment({}), {floor}))), "floor_vibration");
-  EXPECT_NEAR(shaken.torque_body_N_m.norm(), 7 * 1e-7 * 2e-3, 7e-10 * 0.001);
-  EXPECT_LT(shaken.angle_after_minute_rad, 1e-10);
+  EXPECT_NEAR(vibration.torque_body_N_m.norm(), 7 * 1e-7 * 2e-3, 7e-10 * 0.001);
+  EXPECT_LT(vibration.angle_after_minute_rad, 1e-10);
 }
 
 // Gravity that leans by α about x: m r × (g' − g). A product of inertia δ_xz under a spin ω about
 // z: −ω × δI ω, along y.
-TEST(Budget, WhatChangesConditionsCountsByWhatItDoes) {
+TEST(Budget, ChangesOfConditionsCountByTheirEffect) {
   const double tilt_rad = 1e-3, delta_kg_m2 = 2e-3, rate_rad_s = 2 * pi / 60;
   const SettingsNode gravity =
       table({{"kind", node("gravity_tilt")}, {"tilt_rad", numbers({tilt_rad, 0})}});
@@ -267,7 +267,7 @@ TEST(Budget, ProductHoldsTheTablesAndPlots) {
 }
 
 // A disc of 0.2 m at 1 rpm: R²ω/ν = 278, far below its transition at 2.8e5.
-TEST(Budget, SaysWhetherTheLawsOfAirHoldForTheExperimentsOwnParts) {
+TEST(Budget, ReportsTheValidityOfTheAirLawsForEveryPart) {
   const SettingsNode friction =
       table({{"kind", node("air_friction")},
              {"part", list({table({{"shape", node("disc")}, {"radius_m", node(0.2)}})})}});

@@ -37,7 +37,7 @@ class TemporaryFile {
 
 // The words of a message, numbers by their value: what it says, whatever its spacing. Written apart
 // from the reader under test.
-std::vector<std::string> said(const std::filesystem::path& path) {
+std::vector<std::string> statements(const std::filesystem::path& path) {
   std::ifstream file(path);
   std::vector<std::string> words;
   for (std::string line; std::getline(file, line);) {
@@ -79,14 +79,14 @@ INSTANTIATE_TEST_SUITE_P(File, SharedMessage,
                            return std::filesystem::path(name.param).stem().string();
                          });
 
-TEST_P(SharedMessage, SaysTheSameWhenWrittenBack) {
+TEST_P(SharedMessage, IsUnchangedWhenWrittenBack) {
   PHOTORQUE_NEEDS_THIRD_PARTY("ccsds");
   const std::filesystem::path path = shared_message(GetParam());
   const TemporaryFile copy;
   const AttitudeEphemeris aem = read_aem(path);
   write_aem(copy.path(), aem);
   EXPECT_EQ(kvn_text(to_kvn(read_aem(copy.path()))), kvn_text(to_kvn(aem)));
-  EXPECT_EQ(said(copy.path()), said(path));
+  EXPECT_EQ(statements(copy.path()), statements(path));
 }
 
 // GMAT wrote the same attitude as quaternions (scalar last) and as Euler angles 321.
@@ -178,7 +178,7 @@ TEST(Aem, Version2HasQuaternionsAndEulerAnglesWithRates) {
 }
 
 // In XML the order of a quaternion's numbers is free.
-TEST(Aem, XmlSaysTheSameAsKeywords) {
+TEST(Aem, XmlAndKeywordsAgree) {
   const TemporaryFile xml(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<aem id=\"CCSDS_AEM_VERS\" version=\"1.0\">\n"
       "<header><CREATION_DATE>2020-01-01T00:00:00</CREATION_DATE>"
@@ -215,7 +215,7 @@ TEST(Aem, ScalarFirstAndDirectionAreHeeded) {
   EXPECT_EQ(read_aem(b2a.path()).segments.front().attitudes()[1].a_from_b.x(), -1.0);
 }
 
-TEST(Aem, AFlownPlatformComesBack) {
+TEST(Aem, APropagatedPlatformIsRecovered) {
   std::vector<PlatformState> states(3);
   for (size_t i = 0; i < states.size(); ++i) {
     states[i].time_s = 86399.5 * static_cast<double>(i);

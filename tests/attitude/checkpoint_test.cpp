@@ -191,7 +191,7 @@ TEST(Checkpoint, RunsInPiecesAreThoseInOne) {
   }
 }
 
-TEST(Checkpoint, RunsHoldWhatTheirTestsAreAbout) {
+TEST(Checkpoint, RunsContainTheirSubject) {
   const PropagationResult swings = propagate(run_of(pendulum));
   ASSERT_FALSE(swings.events.empty());
   EXPECT_EQ(swings.events.front().name, "battery_empty");

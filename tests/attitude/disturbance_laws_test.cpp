@@ -321,7 +321,7 @@ class EveryKindWithoutHeading : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Kind, EveryKindWithoutHeading, testing::ValuesIn(kinds_without_heading()),
                          [](const auto& kind) { return kind.param; });
 
-TEST_P(EveryKindWithoutHeading, DoesNotKnowWhereNorthIs) {
+TEST_P(EveryKindWithoutHeading, DoesNotDependOnNorth) {
   const AttitudeModel model = model_with(GetParam());
   std::mt19937_64 engine(5);
   for (const double angle : {0.7, 2.9, -1.3}) {
@@ -405,7 +405,7 @@ TEST_P(EveryPotential, TorqueIsMinusItsSlope) {
   }
 }
 
-TEST_P(EveryDisturbance, SaysWhatItIsInOneSentence) {
+TEST_P(EveryDisturbance, IsDescribedInOneSentence) {
   for (const DisturbanceKind& kind : all_disturbance_kinds()) {
     if (kind.name != GetParam()) continue;
     EXPECT_GT(kind.summary.size(), 15u);
@@ -413,7 +413,7 @@ TEST_P(EveryDisturbance, SaysWhatItIsInOneSentence) {
   }
 }
 
-TEST_P(EveryDisturbance, RefusesAKeyThatItDoesNotKnow) {
+TEST_P(EveryDisturbance, RejectsAnUnknownKey) {
   const auto all = examples();
   if (!all.contains(GetParam())) return;
   Entries entries = all.at(GetParam());

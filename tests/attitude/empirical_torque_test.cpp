@@ -264,7 +264,7 @@ TEST(EmpiricalTorque, TakesTheOldNameOfTheYaw) {
   EXPECT_EQ(torque_by("heading_orders"), torque_by("yaw_orders"));
 }
 
-TEST(EmpiricalTorque, SaysWhatIsWrongWithItsKeys) {
+TEST(EmpiricalTorque, ReportsMistakesInItsKeys) {
   using testing::HasSubstr;
   const std::pair<std::string, SettingsNode> about = {"axes", words({"vertical"})};
   const std::pair<std::string, SettingsNode> two = {"coefficients_N_m", numbers({1e-6, 2e-6})};

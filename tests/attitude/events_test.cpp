@@ -26,7 +26,7 @@ Trajectory propagate_model(const AttitudeModel& model, double end_s,
 }
 
 // From rest under a constant torque the tilt is ½ τ t²/I.
-TEST(TiltStop, IsReachedWhenTheParabolaSaysAndEndsTheRun) {
+TEST(TiltStop, IsReachedAtTheTimeOfTheParabolaAndEndsTheRun) {
   const double tilt_rad = 0.5, inertia = 0.12, torque = 3e-5;
   const double expected_s = std::sqrt(2 * tilt_rad * inertia / torque);
   const Trajectory t =
@@ -112,7 +112,7 @@ TEST(Propagation, FallsByTheToleranceAsked) {
   }
 }
 
-struct RunAway final : TorqueLaw<RunAway> {
+struct GrowingRate final : TorqueLaw<GrowingRate> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>&, const EvaluationContext<T>& now) const {
     return length(now.rate_body_rad_s) * now.rate_body_rad_s;
@@ -121,15 +121,15 @@ struct RunAway final : TorqueLaw<RunAway> {
 
 // ω' = ω² goes to infinity at t = 1/ω₀.
 // 10 s at 1e9 rad/s: more steps than anybody would wait for.
-TEST(Propagation, SaysSoonThatAMotionIsTooFastForItsDuration) {
+TEST(Propagation, ReportsEarlyThatAMotionIsTooFastForItsDuration) {
   const Dynamics dynamics(commanded(1.0, Vec3::Zero()));
   const PlatformState spinning = dynamics.initial_state({1e9, 3e8, 0.0});
   EXPECT_THROW(propagate(dynamics, spinning, std::vector<double>{10.0}), NumericalError);
 }
 
-TEST(Propagation, SaysWhenTheSolutionEnds) {
+TEST(Propagation, ReportsTheEndOfTheSolution) {
   AttitudeModel model = commanded(1.0, Vec3::Zero());
-  model.disturbances = {make_disturbance<RunAway>({})};
+  model.disturbances = {make_disturbance<GrowingRate>({})};
   const Dynamics dynamics(model);
   const PlatformState start = dynamics.initial_state({0, 0, 0.1});
   const PlatformState before = propagate(dynamics, start, std::vector<double>{9.0}).states.back();

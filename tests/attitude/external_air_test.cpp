@@ -45,7 +45,7 @@ TEST(ExternalAir, WithoutAirThereIsNoDrag) {
   }
 }
 
-TEST(ExternalAir, OneFaceOfADiscFeelsHalf) {
+TEST(ExternalAir, OneFaceOfADiscHasHalfTheTorque) {
   AirPart one_face = disc(0.25);
   one_face.faces = 1;
   EXPECT_DOUBLE_EQ(torque_N_m(one_face, 1.0), 0.5 * torque_N_m(disc(0.25), 1.0));

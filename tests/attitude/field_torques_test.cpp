@@ -168,7 +168,7 @@ TEST(EarthRotation, KeepsMomentumAmongTheStars) {
 }
 
 // A gyrocompass: with a rotor on board it is the sum of both momenta that is kept.
-TEST(EarthRotation, IsFeltByRotors) {
+TEST(EarthRotation, ActsOnRotors) {
   const Vec3 spin_body_N_m_s(0.05, -0.02, 0.03);
   const AttitudeModel model = with(
       with(bench_model(), "rotor_momentum", {{"momentum_N_m_s", numbers({0.05, -0.02, 0.03})}}),

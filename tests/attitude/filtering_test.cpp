@@ -109,7 +109,7 @@ TEST(WalkingRateFilter, GivesUpWhereTheMotionIsTooFastForTheGap) {
 
 // The smoother against all readings at once: angle and rate of one axis at N instants as one
 // Gaussian, whose information is that of the start, of every step and of every reading.
-TEST(Smoother, GivesWhatAllReadingsAtOnceGive) {
+TEST(Smoother, EqualsTheJointEstimate) {
   constexpr int count = 12;
   const double h = 0.05, q = 3e-4 * 3e-4, n = 6e-5, rate_sigma = 2e-3, wide = 0.05;
   Readings readings = at_rest(h, count, 1, false);
@@ -340,8 +340,8 @@ TEST(Estimates, FindTheScaleOfAGyroThatTurns) {
   const SimulatedRun simulated = simulate_run(run, 21);
   const EstimateStudy study = study_of(run, 0);
   const Readings readings = readings_of(simulated.recording, "run", run.model.platform, 0.0);
-  const EstimateResult result = estimate_ways(study, readings, simulated.truth);
-  const Estimation& e = result.ways[result.chosen].estimation;
+  const EstimateResult result = estimate_by_all_methods(study, readings, simulated.truth);
+  const Estimation& e = result.methods[result.chosen].estimation;
   ASSERT_EQ(e.parameter_names[0], "gyro_scale.scale[0]");
   for (int axis = 0; axis < 3; ++axis) {
     // As simulate_run() draws them: the seed, its stream, one number each.

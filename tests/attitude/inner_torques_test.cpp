@@ -82,7 +82,7 @@ TEST(FlexibleMode, FreeBodySwingsAtTheCoupledFrequency) {
 }
 
 // φ = φ₀ cos ωt + φ'₀/ω sin ωt, ω as above, on a body that turns at the start.
-TEST(FlexibleMode, BeginsAsItsKeysSay) {
+TEST(FlexibleMode, StartsAsItsKeysState) {
   const double I = 0.19, appendage = 0.05, f = 0.4, rate = 0.02;
   const AttitudeModel model = with(bench_model(), "flexible_mode",
                                    {{"axis", numbers({0, 0, 1})},

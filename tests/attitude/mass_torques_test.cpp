@@ -135,14 +135,14 @@ TEST(FloorVibration, IsGravityOfAnAcceleratedLab) {
   const AttitudeModel rigid =
       with(bench_model(), "static_unbalance", {{"offset_m", numbers({2e-6, -1e-6, -3e-5})}});
   // Frequency zero and a quarter turn of phase: a constant acceleration.
-  const AttitudeModel shaken = with(rigid, "floor_vibration",
-                                    {{"acceleration_m_s2", numbers({0.3, -0.2, 0.1})},
-                                     {"frequency_Hz", node(0)},
-                                     {"phase", node(pi / 2)}});
+  const AttitudeModel vibrating = with(rigid, "floor_vibration",
+                                       {{"acceleration_m_s2", numbers({0.3, -0.2, 0.1})},
+                                        {"frequency_Hz", node(0)},
+                                        {"phase", node(pi / 2)}});
   AttitudeModel heavier = rigid;
   heavier.environment.gravity_lab_m_s2 -= acceleration;
   const PlatformState state = state_of(rigid, turned(0.4, {1, 2, 3}));
-  const std::vector<Vec3> parts = disturbance_torques_body_N_m(shaken, state);
+  const std::vector<Vec3> parts = disturbance_torques_body_N_m(vibrating, state);
   const Vec3 expected = torque_body_N_m(heavier, state);
   EXPECT_LT((parts[0] + parts[1] - expected).norm(), 1e-15);
 }

@@ -202,7 +202,7 @@ TEST(EarthRotation, AgreesWithSofa) {
               1.754174971870091203, 1e-8);
 }
 
-TEST(OrbitMessage, WhatIsNotSupportedIsRefused) {
+TEST(OrbitMessage, UnsupportedFeaturesAreRejected) {
   const std::string good =
       oem_text(ellipse, 600.0, 60.0,
                {.interpolation = "INTERPOLATION = HERMITE\nINTERPOLATION_DEGREE = 7\n"});
@@ -347,7 +347,7 @@ std::string block(const std::string& name, const std::string& lines) {
   return name + "_START\n" + frames + lines + name + "_STOP\n";
 }
 
-TEST(AttitudeMessage, ThreeWaysOfOrekitAreOneState) {
+TEST(AttitudeMessage, ThreeFormatsOfOrekitGiveOneState) {
   const std::string angular =
       block("ANGVEL",
             "ANGVEL_FRAME = SC_BODY_1\nANGVEL_X = 0.0031504176144069016\n"
@@ -405,7 +405,7 @@ TEST(AttitudeMessage, XmlOfBothVersions) {
   EXPECT_LT(read_apm(euler.path()).lab_from_body.angularDistance(expected), 1e-14);
 }
 
-TEST(AttitudeMessage, WhatIsNotSupportedIsRefused) {
+TEST(AttitudeMessage, UnsupportedFeaturesAreRejected) {
   const MessageFile spin(head + block("SPIN", "SPIN_ALPHA = 24.8\nSPIN_DELTA = 33.7\n"));
   EXPECT_THROW(read_apm(spin.path()), InputError);
   const std::string good = head + block("QUAT", quaternion);

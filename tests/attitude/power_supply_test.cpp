@@ -198,7 +198,7 @@ TEST(CoilLink, EfficiencyIsKirchhoffsAndTheBestLoadIsBest) {
 
 // Both limits: an induced current that the field passes through, π σ ω² B² a⁵/15; and one in the
 // skin alone, ½ Rₛ ∮ H_t² with H_t = 3/2 H sin θ, that is 3π a² (B/μ₀)²/(σ δ).
-TEST(EddySphere, LosesAsItsLimitsSay) {
+TEST(EddySphere, LosesLightAtItsLimits) {
   constexpr double a_m = 0.03, S_m = 2.5e7, field_T = 1e-3;
   const double slow = 2.0 * pi * 0.1;
   EXPECT_NEAR(sphere_eddy_loss_W(a_m, S_m, slow, field_T) /

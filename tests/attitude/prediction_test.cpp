@@ -13,7 +13,7 @@ namespace {
 // instant; the prediction continues the motion backwards from the present with its acceleration,
 // which leaves a sixth of the third derivative times 0.2³: 2e-6 rad. The rate alone would leave
 // 2e-4 rad, five standard deviations of a camera.
-TEST(Prediction, OfALateCameraIsWhatWasSeenThen) {
+TEST(Prediction, OfALateCameraIsThePastAttitude) {
   PropagationRun run;
   run.model =
       with(with(bench_model(), "static_unbalance", {{"offset_m", numbers({0, 0, -1.5e-4})}}),

@@ -76,7 +76,7 @@ TEST(ReferenceBody, SymmetricTopFollowsItsClosedForm) {
 }
 
 // Tudat, Phobos: ω² = 3 μ/a³ (I_2 − I_1)/I_3, here about the direction of Mars held still.
-TEST(ReferenceBody, PhobosLibratesAsTudatSays) {
+TEST(ReferenceBody, PhobosLibratesAsInTudat) {
   AttitudeModel model = body({0.3615, 0.4265, 0.5024});
   const double gradient_1_s2 = 4.282837e13 / std::pow(9376e3, 3);
   model.environment.up_lab = Vec3::UnitX();

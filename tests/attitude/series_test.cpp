@@ -144,7 +144,7 @@ TEST(Vibration, SeedDecidesThePhasesAlone) {
   EXPECT_EQ(a[3].amplitude_lab_m_s2, c[3].amplitude_lab_m_s2);
 }
 
-TEST(Vibration, RefusesWhatIsNoSpectrum) {
+TEST(Vibration, RejectsAnInvalidSpectrum) {
   EXPECT_THROW(tones_of_spectrum(std::vector<SpectrumPoint>{{1.0, Vec3::Ones()}}, 4, 1),
                NumericalError);
   EXPECT_THROW(
@@ -215,7 +215,7 @@ TEST(TorqueSurface, AgreesWithTheBilinearTable) {
   }
 }
 
-TEST(WrenchTableFile, ReadsWhatTheProgramWrites) {
+TEST(WrenchTableFile, ReadsFilesOfTheProgram) {
   const SeriesFile file(
       "wrench.csv",
       "# photorque\nheading_deg,tilt_deg,force_x_N,torque_x_N_m,torque_y_N_m,torque_z_N_m\n"

@@ -58,7 +58,7 @@ TEST(Sliding, ForceCommandedInTheLaboratoryAcceleratesIt) {
   EXPECT_NEAR(end.y, -0.2 + 0.4 * 5 - 0.5 * 0.2 / 2.0 * 16, 1e-10);
 }
 
-// Of a platform that turns evenly by ω t the acceleration f/m turns with it: two integrations of
+// The acceleration f/m turns with a platform that turns evenly by ω t: two integrations of
 // (cos ω t, sin ω t) from rest at t = 0 give (1 − cos ω t, ω t − sin ω t)/ω².
 TEST(Sliding, ForceFixedInTheBodyTurnsWithIt) {
   const double turn_rad = 0.5 * 5, a_m_s2 = 0.6 / 2.0;
@@ -140,7 +140,7 @@ TEST(Sliding, TurnsMeanwhile) {
   EXPECT_NEAR(result.recording.find("x_m")->values.back(), 1.6, 1e-10);
 }
 
-TEST(Sliding, SaysWhatIsWrong) {
+TEST(Sliding, ReportsTheMistake) {
   EXPECT_THROW(run_of(puck + "initial_charge_Ah = 0\n[[disturbance]]\nkind = \"table_slope\"\n"
                              "slope_rad = [1, 2, 3]\n"),
                InputError);

@@ -305,7 +305,7 @@ TEST(PoseOfMarkers, TakesOverATurnedBoard) {
 
 // Rows exposed one after the other: with the rate known the pose is exact, without it the board's
 // height in the image turns into an error of the rate times the time between its rows.
-TEST(PoseOfMarkers, KnowsThatARollingShutterIsLate) {
+TEST(PoseOfMarkers, IncludesTheDelayOfARollingShutter) {
   TrackingCamera camera = cross_camera();
   camera.line_time_s = 1e-5;
   Pose truth = leaning_by(5, 20);
@@ -387,7 +387,7 @@ TEST(CameraWithGeometry, MakesTheNoiseOfARecording) {
   EXPECT_NEAR(chi2, 1.0, 4.0 * std::sqrt(2.0 / (3.0 * rows)));
 }
 
-TEST(CameraSettings, RefuseWhatCannotBe) {
+TEST(CameraSettings, RejectImpossibleValues) {
   const auto camera = [](const std::vector<std::pair<std::string, SettingsNode>>& changed) {
     std::vector<std::pair<std::string, SettingsNode>> entries = {
         {"markers_m", list({numbers({0, 0, 0.03}), numbers({0.1, 0, 0.03}), numbers({0, 0.1, 0.03}),

@@ -48,7 +48,7 @@ TEST_F(FilesInAFolder, DevicesPipesAndFoldersAreRefusedAtOnce) {
   EXPECT_THAT(refusal(folder_ / "pipe"), testing::HasSubstr("found a pipe"));
 }
 
-TEST_F(FilesInAFolder, WhatTheKernelMakesUpIsReadToItsEnd) {
+TEST_F(FilesInAFolder, FilesOfTheKernelAreReadToTheirEnd) {
   EXPECT_THAT(read_file("/proc/self/status"), testing::HasSubstr("VmPeak"));
 }
 
@@ -77,7 +77,7 @@ pid_t dead_process() {
   return child;
 }
 
-TEST_F(FilesInAFolder, LeftoversOfTheDeadGoAndThoseOfTheLivingStay) {
+TEST_F(FilesInAFolder, FilesOfEndedProcessesAreRemovedAndThoseOfRunningOnesStay) {
   const fs::path own = temporary_beside(folder_ / "map.csv");
   std::string name = own.filename().string();
   const std::string mine = std::to_string(::getpid());
@@ -104,7 +104,7 @@ TEST_F(FilesInAFolder, TemporariesAreNewAndOfNamesThatCannotBeForeseen) {
   EXPECT_EQ(read_file(file), "new");
 }
 
-TEST_F(FilesInAFolder, FoldersAreMadeWithThoseAboveThemOrNameWhatIsInTheWay) {
+TEST_F(FilesInAFolder, FoldersAreMadeWithTheirParentsOrNameTheObstacle) {
   make_folders(folder_ / "a" / "b" / "");
   EXPECT_TRUE(fs::is_directory(folder_ / "a" / "b"));
   make_folders(folder_ / "a");

@@ -8,7 +8,7 @@ namespace {
 
 // Cases of M. Kuhn's UTF-8 decoder stress test: stray continuation, truncated sequence, overlong
 // forms, surrogate, beyond U+10FFFF, impossible byte.
-TEST(CleanText, ReplacesWhatIsNotUtf8) {
+TEST(CleanText, ReplacesInvalidUtf8) {
   EXPECT_EQ(clean_text("W/m² × 10⁻⁹ 𝛕"), "W/m² × 10⁻⁹ 𝛕");
   EXPECT_EQ(clean_text("a\x80z"), "a\uFFFDz");
   EXPECT_EQ(clean_text("a\xE2\x82"), "a\uFFFD\uFFFD");
@@ -47,7 +47,7 @@ TEST(ReadableNumber, WritesPowersForPeople) {
   EXPECT_EQ(power_of_ten(12), "10¹²");
 }
 
-TEST(ColumnName, IsWhatTheContractAsks) {
+TEST(ColumnName, FollowsTheContract) {
   EXPECT_EQ(column_name("x [m]"), "x_m");
   EXPECT_EQ(column_name("W/m²"), "W_m2");
   EXPECT_EQ(column_name("N·m"), "N_m");

@@ -62,7 +62,7 @@ TEST(Linear, EigenvaluesAscend) {
   EXPECT_NEAR(std::abs(eigen.vectors.col(1).sum()), std::sqrt(2.0), 1e-14);
 }
 
-TEST(Linear, EigenvaluesOfWhatIsNotFiniteAreNotFinite) {
+TEST(Linear, EigenvaluesOfANonFiniteMatrixAreNotFinite) {
   const MatrixXd A = MatrixXd::Constant(2, 2, std::nan(""));
   EXPECT_FALSE(symmetric_eigen(A).values.allFinite());
 }

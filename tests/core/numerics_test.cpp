@@ -137,7 +137,7 @@ TEST(Hermite, CubicsAreExact) {
   }
 }
 
-TEST(Bisect, EndsAtNeighbouringNumbersOrWhereItIsTold) {
+TEST(Bisect, EndsAtNeighbouringNumbersOrAtTheStatedTolerance) {
   const auto below = [](double x) { return x * x < 2.0; };
   const RootBracket exact = bisect(0.0, 2.0, below);
   EXPECT_EQ(std::nextafter(exact.low, 2.0), exact.high);

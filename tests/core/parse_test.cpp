@@ -39,7 +39,7 @@ TEST(Text, WordsAreNeverEmpty) {
   EXPECT_THAT(words_of(" "), ElementsAre());
 }
 
-TEST(Text, DataLinesSkipCommentsAndKnowWhereTheyAre) {
+TEST(Text, DataLinesSkipCommentsAndHaveLineNumbers) {
   DataLines lines("# one\n\n  a \r\n# four\nb", "f.csv");
   std::string_view line;
   ASSERT_TRUE(lines.next(line));
@@ -69,7 +69,7 @@ TEST(Text, NumbersAreWholeAndFinite) {
   }
 }
 
-TEST(Text, AWrongNumberSaysWhereWhatAndHowMuchOfIt) {
+TEST(Text, AWrongNumberIsReportedWithPlaceKeyAndRange) {
   try {
     require_number(std::string(60, 'x'), {"lamp.ies", 7}, "watts");
     FAIL();
@@ -103,14 +103,14 @@ TEST(Columns, AreFoundByNameAndWrongCellsByLine) {
     return std::string();
   };
   EXPECT_THAT(message("c"), HasSubstr("text_test.csv:3: c: found \"x\", expected a finite number"));
-  EXPECT_THAT(message("d"), HasSubstr("text_test.csv:2: found no column d"));
+  EXPECT_THAT(message("d"), HasSubstr("text_test.csv:2: header: found the columns "));
   // Decimal commas: once the numbers after them were read in the wrong columns.
   write_file_whole(path, std::string("a,c\n1,2\n0,5,7\n"));
   EXPECT_THAT(message("c"), HasSubstr("text_test.csv:3: found a row of 3 cells, expected 2"));
   std::filesystem::remove(path);
 }
 
-TEST(Text, SixteenBitTextAndBytesAreToldApart) {
+TEST(Text, SixteenBitTextAndBytesAreDistinguished) {
   const auto message = [](std::string_view begin) -> std::string {
     try {
       require_text(begin, {"r.csv", 1});

@@ -27,7 +27,7 @@ TEST(Table, GetsTheColumnsOfItsFirstRow) {
   EXPECT_EQ(table.column("power_W").values, (std::vector<double>{94.0, 95.0}));
 }
 
-TEST(Table, RefusesWhatWouldShiftItsRows) {
+TEST(Table, RejectsTextThatWouldShiftRows) {
   Table table = Table::of("t", "", {"a", "b"});
   EXPECT_THROW(table.row().set("c", 1.0), NumericalError);
   EXPECT_THROW(table.row().set("a", 1.0).set("a", 2.0), NumericalError);

@@ -119,7 +119,7 @@ TEST(Values, UncertainNumbersCarryTheirSigma) {
   settings.finish();
 }
 
-TEST(Values, WrongTypesSayWhatWasFound) {
+TEST(Values, WrongTypesStateTheValueFound) {
   const Settings settings = lab({{"kind", leaf(int64_t{3}, 2)},
                                  {"n", leaf(2.5, 3)},
                                  {"v", leaf(SettingsNode::Array{leaf(1.0, 4)}, 4)}});

@@ -44,7 +44,7 @@ Walk walked() {
           .meetings = {{"a friend", 1.5}, {"", -2.0}}};
 }
 
-TEST(Snapshot, GivesBackWhatItTook) {
+TEST(Snapshot, RestoresTheStoredState) {
   const std::string bytes = bytes_of(walked());
   Walk back{.name = "another", .path_m = {1, 2, 3}, .goal_m = {}, .meetings = {{"nobody", 0.0}}};
   Snapshot snapshot(bytes);
@@ -61,7 +61,7 @@ TEST(Snapshot, GivesBackWhatItTook) {
   EXPECT_EQ(back.meetings[1].when_s, -2.0);
 }
 
-TEST(Snapshot, SaysWhereBytesAreMissingOrLeft) {
+TEST(Snapshot, ReportsMissingAndSurplusBytes) {
   const std::string bytes = bytes_of(walked());
   for (size_t size = 0; size < bytes.size(); ++size) {
     const std::string part = bytes.substr(0, size);
@@ -94,7 +94,7 @@ TEST(Snapshot, TakesNoMemoryForLengthsBeyondItsBytes) {
   EXPECT_LE(meetings.size(), 1u);
 }
 
-TEST(Snapshot, RefusesWhatTheInputsDoNotFix) {
+TEST(Snapshot, RejectsUndeterminedQuantities) {
   Snapshot taken;
   size_t index = 5;
   taken.expect(3);

@@ -154,7 +154,7 @@ TEST(WrenchTable, AzimuthAndElevationOfTheAxes) {
   expect(Vec3(1, 1, -std::sqrt(2.0)) / 2, -45, 45);
 }
 
-TEST(WrenchTable, SingleValuedAveragesWhatIsOneAttitude) {
+TEST(WrenchTable, SingleValuedAveragesNodesOfOneAttitude) {
   WrenchTable table =
       filled(make_wrench_table(azimuth_elevation, degrees(-90, 90, 30), degrees(-180, 180, 30)),
              sphere_force);

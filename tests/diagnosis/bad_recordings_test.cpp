@@ -61,7 +61,7 @@ TEST(BadRecording, QuaternionsWithoutLengthAreNoAttitude) {
 
 // A clock that was set to another epoch while it recorded; a pause as long as what was recorded is
 // none.
-TEST(BadRecording, WhoseClockJumpsNamesTheInstants) {
+TEST(BadRecording, ClockJumpsAreReportedWithTheirTimes) {
   const auto with_pause = [](double pause_s) {
     Recording r = repeated_row("t_s,q_w,q_x,q_y,q_z", "1,0,0,0", 200);
     for (size_t row = 100; row < 200; ++row) r.time_s[row] += pause_s;

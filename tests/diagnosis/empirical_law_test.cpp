@@ -85,16 +85,16 @@ void expect_same_flight(const Fitted& f, const Diagnosis& d) {
   PropagationRun run = read_propagation(
       Settings(std::make_shared<const SettingsNode>(parse_toml(text, "improved.toml"))));
   run.options.tolerance = 1e-10;
-  const std::vector<PlatformState> flown = propagate(run).states;
+  const std::vector<PlatformState> propagated = propagate(run).states;
   const Dynamics dynamics(f.trial.fit.best.model_of(0, f.runs.front()));
   const std::vector<PlatformState> wanted =
       propagate(dynamics, f.trial.fit.best.runs.front().initial, f.runs.front().time_s,
                 {.tolerance = 1e-10})
           .states;
-  ASSERT_EQ(flown.size(), wanted.size());
-  for (size_t i = 0; i < flown.size(); ++i) {
-    EXPECT_NEAR(flown[i].time_s, wanted[i].time_s, 1e-9);
-    EXPECT_LT(flown[i].lab_from_body.angularDistance(wanted[i].lab_from_body), 1e-6) << i;
+  ASSERT_EQ(propagated.size(), wanted.size());
+  for (size_t i = 0; i < propagated.size(); ++i) {
+    EXPECT_NEAR(propagated[i].time_s, wanted[i].time_s, 1e-9);
+    EXPECT_LT(propagated[i].lab_from_body.angularDistance(wanted[i].lab_from_body), 1e-6) << i;
   }
 }
 
@@ -113,7 +113,7 @@ TEST(EmpiricalLaw, CoggingFliesAgainAndHasAFormula) {
   EXPECT_THAT(d.empirical[0].looks_like, HasSubstr("three pads"));
 }
 
-// Of a torque that fades with 25 s the time constant is found, by a grid that does not contain it.
+// A torque decays with 25 s. The fit finds the time constant on a grid that does not contain it.
 TEST(EmpiricalLaw, FadingFliesAgainWithItsTimeConstant) {
   const Vec3 torque_N_m(4e-5, -3e-5, 5e-5);
   const Fitted f = fitted(

@@ -65,7 +65,7 @@ TEST(Diagnose, NamesADipoleAndMeasuresIt) {
 
 // A dipole and a draught together: what the slopes at the nominal model predict is what the fit
 // gains.
-TEST(Score, PredictsWhatTwoEffectsGainTogether) {
+TEST(Score, PredictsTheGainOfTwoEffects) {
   const Vec3 dipole_A_m2(0.01, -0.02, 0.01), draught_lab_N_m(4e-7, -3e-7, 0.0);
   const NamedRecording seen = recorded(3, [&](const State& s) {
     const Quat body_from_lab = s.lab_from_body.conjugate();
@@ -198,7 +198,7 @@ TEST(Trial, AThirdOfTheInertiaIsNoExplanation) {
 // A cable that pushes by less than its error is one of no stiffness at all, and what was fitted
 // beside it becomes what it is alone; one that pushes beyond doubt is left as it is, for others to
 // object to.
-TEST(Trial, NumbersBeyondPhysicsAreFittedAnew) {
+TEST(Trial, NumbersBeyondPhysicsAreRefitted) {
   const auto trial_of = [](unsigned seed, double push_N_m_per_rad, bool with_cable) {
     const NamedRecording seen = recorded(seed, [&](const State& s) {
       const Eigen::AngleAxisd turn(s.lab_from_body);

@@ -135,7 +135,7 @@ TEST_F(Guess, MomentsHaveTheErrorsOfTheirScatter) {
   EXPECT_GT(squares.minCoeff(), 0.05) << squares.transpose();
 }
 
-TEST_F(Guess, RatesAboutOneAxisTellNoMoments) {
+TEST_F(Guess, RatesAboutOneAxisDetermineNoMoments) {
   const auto found =
       free_inertia({observe(thrown(board, {0.0, 0.0, 3.0}, 0.0, 1), "spin.csv", free_platform())});
   EXPECT_FALSE(found);
@@ -143,7 +143,7 @@ TEST_F(Guess, RatesAboutOneAxisTellNoMoments) {
 
 // Swapped, reversed or in degrees, the rates of a thrown body follow no inertia; where the stated
 // one is only a guess only the wheel distinguishes it from a mirror image.
-TEST_F(Guess, RatesThatFollowNoInertiaAreReadAnew) {
+TEST_F(Guess, RatesThatFollowNoInertiaAreReinterpreted) {
   const Recording recording = thrown(racquet, {4.0, 2.0, 3.0}, 0.003, 5, 2e-3, 900.0);
   const Mat3 guessed = Mat3::Identity();
   const auto repaired = [&](const std::function<void(Recording&)>& spoil) {
@@ -189,7 +189,7 @@ value = [[1, 0, 0], [0, 0.4, 0], [0, 0, 1.2]]
 sigma = [[0, 0.1, 0.1], [0.1, 0.2, 0.1], [0.1, 0.1, 0.2]]
 )";
 
-TEST_F(Guess, RecordingsOfTwoBodiesAreToldApart) {
+TEST_F(Guess, RecordingsOfTwoBodiesAreDistinguished) {
   const Diagnosis d =
       diagnose(model_of(free_toml),
                throws_of({{"one.csv", board}, {"two.csv", racquet}, {"three.csv", board}}), {});
@@ -213,7 +213,7 @@ TEST_F(Guess, RecordingsOfOneBodyAreNot) {
   for (const std::string& warning : d.warnings) EXPECT_THAT(warning, Not(HasSubstr("bodies")));
 }
 
-TEST_F(Guess, AClockThatContradictsTheRatesIsSaid) {
+TEST_F(Guess, AClockThatContradictsTheRatesIsReported) {
   std::vector<NamedRecording> runs = throws_of({{"one.csv", board}});
   for (const double factor : {1.0, 1.2}) {
     for (double& time_s : runs.front().recording.time_s) time_s *= factor;
@@ -228,7 +228,7 @@ TEST_F(Guess, AClockThatContradictsTheRatesIsSaid) {
   }
 }
 
-TEST_F(Guess, ASensorMountedOtherwiseIsSaid) {
+TEST_F(Guess, ASensorWithAnotherMountingIsReported) {
   const Mat3 turn = Eigen::AngleAxisd(0.5, Vec3::UnitX()).toRotationMatrix();
   const Diagnosis d =
       diagnose(model_of(free_toml),
@@ -323,7 +323,7 @@ std::string angles_text(const std::vector<double>& angle_rad, double interval_s)
   return text;
 }
 
-// Of small swings, and of large ones with 60 and with 12 readings a period.
+// Small oscillations, and large ones with 60 and with 12 readings per period.
 TEST_F(Guess, APendulumHangsFromAHorizontalAxis) {
   const Swing pendulum{10.0, 0.0, 0.05, 0.02};
   for (const auto& [angle_rad, interval_s] : {std::pair(0.2, 0.05), {1.5, 0.035}, {1.5, 0.18}}) {

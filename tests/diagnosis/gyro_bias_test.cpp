@@ -112,8 +112,8 @@ TEST(BiasHistory, IsSilentWhereNothingDrifts) {
   EXPECT_EQ(found, 0);
 }
 
-// Of a body that turns half a radian from row to row the motion between them is not known: without
-// regard to that a drift is found.
+// If a body turns half a radian from row to row, the motion between the rows is unknown. A
+// diagnosis that ignores this finds a drift.
 Vec3 as_if_lopsided(const State& s) {
   const Mat3 own = inertia_kg_m2(), lopsided = Vec3(0.136, 0.158, 0.197).asDiagonal();
   const Vec3& w = s.rate_rad_s;

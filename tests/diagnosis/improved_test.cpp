@@ -118,8 +118,8 @@ TEST(Improved, PutsFittedNominalValuesInTheirPlaces) {
   }
 }
 
-// Of the second disturbance, in another unit, over several lines, beside comments and brackets in
-// texts; values that the file states in another way appear in a comment.
+// Nominal values of the second disturbance, in another unit, over several lines, beside comments
+// and brackets in texts. Values in an unsupported form appear in a comment.
 TEST(Improved, FindsNominalValuesHoweverTheyAreWritten) {
   const std::string many = R"([platform]
 topology = "tabletop"
@@ -212,7 +212,7 @@ TEST(Improved, PropagatesTheFirstRecordingAgain) {
 }
 
 // An appendage that swings begins as it was fitted, but in a run of the user's.
-TEST(Improved, BeginsWithWhatSwingsBesideTheBody) {
+TEST(Improved, StartsWithTheAppendage) {
   Diagnosis d = sample_diagnosis();
   d.effects = {{"flexible_mode",
                 0.9,

@@ -11,7 +11,6 @@
 #include "attitude/studies/budget.h"
 #include "diagnosis/attitude/effects/trial.h"
 #include "tests/attitude/disturbance_bench.h"
-#include "tests/kinds/kind_table.h"
 
 namespace photorque {
 namespace {
@@ -107,19 +106,11 @@ std::string page() {
   return text.str();
 }
 
-// The table of the page is this very text; after a change copy it from the build folder.
-TEST(KindRegistry, ThePageHasTheRegistrysOwnTable) {
-  const std::string table = kind_table(disturbance_kinds());
-  std::ofstream(PHOTORQUE_BINARY_DIR "/kind_table.md") << table;
-  EXPECT_THAT(page(), testing::HasSubstr(table));
-}
-
-// Beside it each kind has rows of keys, with every key of a fit.
+// Each kind has rows of keys, with every key of a fit.
 TEST(KindRegistry, ThePageListsEveryKey) {
   const std::string text = page();
   for (const DisturbanceKind& kind : disturbance_kinds()) {
-    const size_t bold = text.find("| **`" + kind.name + "`**");
-    const size_t row = bold != std::string::npos ? bold : text.find("| `" + kind.name + "` | `");
+    const size_t row = text.find("| **`" + kind.name + "`**");
     ASSERT_NE(row, std::string::npos) << kind.name;
     const size_t end = std::min(text.find("| **`", row + 5), text.find("\n\n", row));
     for (const Parametrisation& p : kind.screening.parametrisations) {

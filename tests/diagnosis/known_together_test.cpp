@@ -14,7 +14,7 @@ Mat3 differences_alone() {
          2e-20 * other * other.transpose();
 }
 
-TEST(KnownTogether, SaysWhatIsKnownOfDifferences) {
+TEST(KnownTogether, StatesTheKnownDifferences) {
   // The error of x − y is √(2e-22 · 2) = 2.0e-11.
   EXPECT_EQ(known_together(Vec3(4.4e-10, 0, 2.2e-10), differences_alone()),
             "x − y = (4.40 ± 0.20)×10⁻¹⁰");

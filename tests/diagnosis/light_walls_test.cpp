@@ -114,9 +114,8 @@ TEST_F(LightWithWall, PlacesSeeAllOfTheWall) {
   EXPECT_LT(nearest, 0.04);
 }
 
-// Of fields whose shadows are known only those places are looked at again that either shadow
-// reaches.
-TEST_F(LightWithWall, LightBesideAKnownShadowIsThatFoundAfresh) {
+// If the shadows of fields are known, only points that either shadow reaches are recomputed.
+TEST_F(LightWithWall, LightBesideAKnownShadowEqualsARecomputation) {
   const LightRun run(lab_, read_light_recording(folder_ / "scan1.csv.gz", {}));
   LightState state = lab_.nominal();
   const LightFields open = run.fields(state, nullptr);
@@ -141,7 +140,7 @@ TEST_F(LightWithWall, LightBesideAKnownShadowIsThatFoundAfresh) {
 }
 
 // One reading far off among usual ones strays; a line of them is a thing.
-TEST_F(LightWithWall, ReadingsStrayAlone) {
+TEST_F(LightWithWall, SingleReadingsAreOutliers) {
   const LightRun run(lab_, read_light_recording(folder_ / "scan1.csv.gz", {}));
   const LightRecording& r = run.recording();
   std::mt19937 random(7);

@@ -183,7 +183,7 @@ offset_m = [0, 0, -0.2]
       });
 }
 
-TEST(Machines, ColumnsSayWhatTheyAre) {
+TEST(Machines, ColumnsStateTheirContent) {
   Platform wheel;
   wheel.topology = Topology::one_axis;
   const Recording one = recording_of(
@@ -277,7 +277,7 @@ Channel driven_then_coasting(double noise_rad_s) {
   return rate;
 }
 
-TEST(Machines, WhatADriveDidBeforeItLetGoIsLeftOut) {
+TEST(Machines, TheDrivenPartOfARunIsOmitted) {
   const NominalModel wheel = machine(wheel_toml);
   const Recording recording = recording_of(0.25, {driven_then_coasting(0.003)});
   const Segments cut = observe_segments(recording, "wheel.csv", wheel.model.platform);
@@ -293,7 +293,7 @@ TEST(Machines, WhatADriveDidBeforeItLetGoIsLeftOut) {
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("dry_friction", "air_pressure_drag"));
 }
 
-TEST(Machines, WhatFollowsOneLawIsNotCut) {
+TEST(Machines, MotionUnderOneLawIsNotCut) {
   Platform axle;
   axle.topology = Topology::one_axis;
   std::mt19937_64 random(17);
@@ -318,7 +318,7 @@ TEST(Machines, WhatFollowsOneLawIsNotCut) {
 }
 
 // A dry torque that differs from run to run, guessed so large that the wheel would stop half-way.
-TEST(Machines, WhatDiffersFromRunToRunDoesNotHideWhatTheyShare) {
+TEST(Machines, DifferencesBetweenRunsDoNotHideCommonEffects) {
   const NominalModel wheel = machine(std::string(wheel_toml) + R"(
 [[disturbance]]
 kind = "dry_friction"
@@ -437,7 +437,7 @@ TEST(Machines, ATwistedLineIsFoundByTheRateAlone) {
 }
 
 // The scatter of moving channels, not of resting ones, and no less than the step.
-TEST(Machines, AnEncoderAtRestSaysNothingOfItsNoise) {
+TEST(Machines, AnEncoderAtRestDoesNotDetermineItsNoise) {
   Platform axle;
   axle.topology = Topology::one_axis;
   constexpr int counts = 4096;
@@ -450,7 +450,7 @@ TEST(Machines, AnEncoderAtRestSaysNothingOfItsNoise) {
   EXPECT_LT(*reading_level(cut.all, 2), 2.0 * rounding);
 }
 
-TEST(Machines, ReadingsTellTheirOwnNoise) {
+TEST(Machines, ReadingsDetermineTheirNoise) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> noise(0.0, 0.02);
   Channel rate{"gyro_z_rad_s", {}}, steps{"gyro_y_rad_s", {}};
@@ -467,7 +467,7 @@ TEST(Machines, ReadingsTellTheirOwnNoise) {
 }
 
 // Motion that the rows follow coarsely, one row in three missing: twenty readings a period.
-TEST(Machines, ReadingsTellTheirNoiseThroughFastMotionAndMissingRows) {
+TEST(Machines, ReadingsDetermineTheirNoiseInFastMotionAndWithMissingRows) {
   std::mt19937_64 random(12);
   std::normal_distribution<double> noise(0.0, 0.003);
   Channel rate{"gyro_z_rad_s", {}};
@@ -487,7 +487,7 @@ TEST(Machines, ReadingsTellTheirNoiseThroughFastMotionAndMissingRows) {
   EXPECT_NEAR(*reading_level(runs, 5), 0.003, 1.2e-3);
 }
 
-TEST(Machines, WhatIsLeftCountsAsNoiseAsCorrelatedAsItIs) {
+TEST(Machines, ResidualsCountAsCorrelatedNoise) {
   // White noise of 1 and a process of 2 that is correlated over 5 s.
   constexpr double time_s = 5.0, interval_s = 0.1;
   std::mt19937_64 random(13);

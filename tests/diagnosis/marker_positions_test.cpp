@@ -114,7 +114,7 @@ TrackingCamera camera_of_equals() {
   return camera;
 }
 
-TEST(MarkerPositions, TurnThePoseAsTheLawSays) {
+TEST(MarkerPositions, RotateThePoseAsInTheLaw) {
   const Board errors = all_off_m(3);
   const TrackingCamera camera = camera_of_equals();
   for (const double tilt : tilts_rad) {
@@ -128,7 +128,7 @@ TEST(MarkerPositions, TurnThePoseAsTheLawSays) {
 
 // The camera's own pose (weighed by Fisher's information of every spot), about a known
 // centre and free.
-TEST(MarkerPositions, TurnTheCamerasOwnPoseAsTheLawSays) {
+TEST(MarkerPositions, RotateTheCamerasPoseAsInTheLaw) {
   for (const bool knows_centre : {true, false}) {
     TrackingCamera camera = bench_camera();
     camera.knows_centre = knows_centre;

@@ -260,9 +260,9 @@ TEST(ModuleCurve, FollowsPowersOfLightAndTemperature) {
   }
 }
 
-// Of an ideality that follows the light the open-circuit voltage at the reference stays, and at
-// other light it is n(S) times the logarithm: with n = 1.1 S^0.5 and no shunt, V = 12 n k T/q
-// (ln(I/I₀)/n · 1.1 + ln S).
+// With an ideality that depends on the light, the open-circuit voltage at the reference is
+// unchanged. At other light it is n(S) times the logarithm: with n = 1.1 S^0.5 and no shunt, V = 12
+// n k T/q (ln(I/I₀)/n · 1.1 + ln S).
 TEST(ModuleCurve, KeepsTheReferencesOpenCircuitVoltage) {
   ModuleCell cell = usual;
   cell.shunt_ohm = 1e9;

@@ -130,7 +130,7 @@ TEST(NoiseSearch, MeasuresTheCorrelationTime) {
 
 // A gyro that rounds correlated noise to coarse steps: rounding adds a white part of step²/12
 // (Widrow and Kollár, Quantization Noise, 2008, chapter 4), and the time is that of the rest.
-TEST(NoiseSearch, ToldApartAreCorrelatedNoiseAndRounding) {
+TEST(NoiseSearch, CorrelatedNoiseAndRoundingAreDistinguished) {
   const double time_s = 0.8, level = 0.7, step = 1.2;
   Session session;
   session.gyro = {.level = level, .time_s = time_s};
@@ -193,7 +193,7 @@ TEST(NoiseSearch, ReplacesNoiseThatContainsAnEffect) {
       {{"torque_N_m", {amplitude_N_m.x(), amplitude_N_m.y(), amplitude_N_m.z()}},
        {"frequency_Hz", {frequency_Hz}}},
       vibrating.context()));
-  EXPECT_TRUE(settle_again(fit_nominal(vibrating, data.train), {}, data));
+  EXPECT_TRUE(estimate_noise_again(fit_nominal(vibrating, data.train), {}, data));
   EXPECT_TRUE(data.instruments.empty());
   for (const auto* runs : {&data.train, &data.held}) {
     for (int k = 0; k < 6; ++k) {

@@ -33,10 +33,10 @@ class NoiseSource {
 
  private:
   double white() {
-    // Of the scale that Student's t has, not of unit variance.
+    // With the scale of Student's t, not with unit variance.
     if (process_.degrees > 0.0) return t_(random_);
-    const bool wild = uniform_(random_) < process_.contaminated;
-    return (wild ? 5.0 : 1.0) * normal_(random_);
+    const bool is_outlier = uniform_(random_) < process_.contaminated;
+    return (is_outlier ? 5.0 : 1.0) * normal_(random_);
   }
 
   NoiseProcess process_;

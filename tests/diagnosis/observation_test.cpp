@@ -109,7 +109,7 @@ Observation rates_read_as(const Mat3& matrix) {
   return seen;
 }
 
-// How fast the rates turn about the axis, over the spin: I3/I1 − 1 of a top, in its own sense.
+// Angular frequency of the rates about the axis, divided by the spin: I3/I1 − 1 of a top.
 double cone_per_spin(const Observation& seen) {
   const auto phase = [&](size_t i) {
     return std::atan2(seen.gyro_rad_s[i].y(), seen.gyro_rad_s[i].x());
@@ -130,14 +130,14 @@ TEST(FreeRates, AreReadSoThatEulersEquationHolds) {
   }
 }
 
-TEST(FreeRates, ThatAreRightOrSayNothingStayAsTheyAre) {
+TEST(FreeRates, ThatAreRightOrUndeterminedAreUnchanged) {
   const Mat3 inertia = Vec3(1.0, 1.0, Top::ratio).asDiagonal();
   Observation right = rates_read_as(Mat3::Identity());
   EXPECT_EQ(repair_free_rates({&right, 1}, inertia), "");
   // Two axes reversed are the same motion seen from elsewhere.
   Observation turned = rates_read_as(Vec3(-1, -1, 1).asDiagonal());
   EXPECT_EQ(repair_free_rates({&turned, 1}, inertia), "");
-  // Of a ball nothing follows, of other physics nothing that an axis could repair.
+  // The motion of a ball determines nothing. Other physics cannot be repaired by an axis.
   Observation mirrored = rates_read_as(Vec3(1, 1, -1).asDiagonal());
   EXPECT_EQ(repair_free_rates({&mirrored, 1}, Mat3::Identity()), "");
   Observation driven = right;

@@ -77,7 +77,7 @@ TEST(Ringing, GainsMostAtTheRightFrequency) {
 }
 
 // A slow residual, a hundred times as large as the ringing of about 0.1", is not taken for it.
-TEST(Ringing, IsBlindToWhatIsSlow) {
+TEST(Ringing, IgnoresSlowMotion) {
   const double without = PushedTurn(0.0).score(frequency_Hz).estimate[1];
   EXPECT_NEAR(PushedTurn(10.0).score(frequency_Hz).estimate[1], without, 0.02 * without);
 }

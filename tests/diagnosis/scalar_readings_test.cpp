@@ -277,7 +277,7 @@ TEST(ScalarReadings, AnUndeclaredAccelerometerIsNotCompared) {
 
 // A thrown body with a gyro and an accelerometer 10 cm from its centre of mass: f = ω' × r + ω × (ω
 // × r), without gravity. At another place it would not read that.
-TEST(ScalarReadings, AnAccelerometerInFlightFeelsItsPlace) {
+TEST(ScalarReadings, AnAccelerometerOfAFreeBodyDependsOnItsPosition) {
   constexpr double interval_s = 0.01;
   constexpr int rows = 600;
   const Vec3 inertia(1.0, 0.8, 0.5), place_m(0.1, -0.05, 0.02);

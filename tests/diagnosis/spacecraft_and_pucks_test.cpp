@@ -65,7 +65,7 @@ TEST(Pucks, FreelyTheyAreConsistent) {
 
 // Straight on and slower and slower by μ g: a slope or a spring would do as well, and neither is
 // said. The path carries a wave that no law has, ten times the noise, as a real table does.
-TEST(Pucks, WhatOnlySlidesOutIsBrakedByFriction) {
+TEST(Pucks, ASlideToRestIsBrakedByFriction) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> noise(0.0, 3e-4);
   Channel x{"x_m", {}}, y{"y_m", {}};

@@ -213,7 +213,7 @@ TEST(TextbookMachines, AFanThatIsSwitchedOn) {
 }
 
 // The motion of a motor from its first row, or of a swing, has no rest that could be left out.
-TEST(TextbookMachines, WhatMovesFromTheFirstRowIsNotTakenForARest) {
+TEST(TextbookMachines, MotionFromTheFirstRowIsNotARest) {
   std::vector<double> run_up, swing;
   for (int i = 0; i < 200; ++i) {
     run_up.push_back(50.0 * (1.0 - std::exp(-0.02 * i)));

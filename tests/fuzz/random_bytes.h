@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-// Of libFuzzer; of mutate.cpp where that is not at hand.
+// Defined by libFuzzer or, without it, by mutate.cpp.
 extern "C" size_t LLVMFuzzerMutate(uint8_t* data, size_t size, size_t max_size);
 
 namespace photorque::fuzz {

@@ -274,7 +274,7 @@ TEST(MapPicture, DiscsHaveARoundRim) {
   EXPECT_NEAR(area, std::numbers::pi * middle * middle, 1e-3 * area);
 }
 
-TEST(MapPicture, IsAPageOfVectorsTooWhoseLettersAreText) {
+TEST(MapPicture, IsAPageOfVectorsWithTextAsText) {
   const Map map = sample_map();
   const std::string page = svg_of(map, {}, PictureStyle::page);
   EXPECT_THAT(page, testing::HasSubstr(">" + map.title + "</text>"));
@@ -284,7 +284,7 @@ TEST(MapPicture, IsAPageOfVectorsTooWhoseLettersAreText) {
   EXPECT_THAT(pdf_of(map, {}, {"a", "b", "c"}, PictureStyle::page), testing::StartsWith("%PDF"));
 }
 
-// Of the field x from 0 to 4: labels stand on their lines, apart, along them (upright lines).
+// The field x from 0 to 4 has vertical contour lines; labels are on the lines, apart, along them.
 TEST(MapPicture, ContourLinesHaveTheirNumbers) {
   const Map map = smooth_ramp();
   const auto labels = contour_labels(map, colour_scale(map), 800, 800, 60.0);

@@ -24,7 +24,7 @@ std::vector<PagePoint> noisy_line(size_t count, unsigned seed) {
   return line;
 }
 
-// A waterfall: a loss hangs between the previous power and the remainder.
+// A waterfall: a loss is drawn between the previous power and the remainder.
 TEST(Plot, BarsHangBetweenTwoValuesWithTheirNamesUnderThem) {
   Plot plot{"falls", "Falls", "", "power [W]", {}, false, false, {}};
   const auto bar = [&](const std::string& name, double x, double from, double to) {
@@ -132,7 +132,7 @@ TEST(FreeCorner, IsNowhereWhenCurvesFillTheFrame) {
 
 // Okabe and Ito's palette differs under the colour visions that are common; here: no two curves of
 // one chart look alike.
-TEST(CurveStroke, TellsTwentyOneCurvesApart) {
+TEST(CurveStroke, DistinguishesTwentyOneCurves) {
   for (size_t i = 0; i < 21; ++i) {
     for (size_t j = 0; j < i; ++j) {
       const Stroke a = curve_stroke(i);

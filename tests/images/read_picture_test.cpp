@@ -51,7 +51,7 @@ TEST(ReadPicture, ColourIsNotMultipliedByAlpha) {
   for (const float value : picture.rgb) EXPECT_NEAR(value, 0.502886F, 1e-5F);
 }
 
-TEST(ReadPicture, RefusesWhatIsNone) {
+TEST(ReadPicture, RejectsInvalidFiles) {
   const std::string good = two_texels();
   EXPECT_THROW(read_picture(""), InputError);
   EXPECT_THROW(read_picture("glTF"), InputError);
@@ -90,7 +90,7 @@ std::string of_size(uint32_t width, uint32_t height) {
 }
 
 // 12,000 x 12,000 texels took 3.5 GB before.
-TEST(ReadPicture, RefusesByTheHeaderWhatIsTooLarge) {
+TEST(ReadPicture, RejectsTooLargeFilesByTheirHeader) {
   EXPECT_EQ(of_size(2, 1), two_texels());
   try {
     read_picture(of_size(12000, 12000));

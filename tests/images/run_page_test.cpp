@@ -114,7 +114,7 @@ TEST(RunPage, LargeMapsBecomeMeansOfBlocks) {
   EXPECT_THAT(map_reductions({large, tiny}, 20), ::testing::ElementsAre(32, 2));
 }
 
-TEST(RunPage, LongTablesAndCurvesAreCutAndSaySo) {
+TEST(RunPage, LongTablesAndCurvesAreCutWithANote) {
   RunPage page;
   std::vector<double> x(1000), y(1000, 0.0);
   for (size_t i = 0; i < x.size(); ++i) x[i] = static_cast<double>(i);

@@ -135,7 +135,7 @@ SceneView empty_view() {
 
 const Pinhole from_above = Pinhole::looking(Vec3(0.0, 0.0, 10.0), Vec3::Zero(), 0.2);
 
-TEST(DrawnLamps, AreRoundAndHideWhatIsBehindThem) {
+TEST(DrawnLamps, AreRoundAndOpaque) {
   SceneView view = empty_view();
   draw_lamps(view, from_above,
              {{Vec3::Zero(), Vec3::UnitZ(), 0.5}, {Vec3(0.0, 0.0, -1.0), -Vec3::UnitZ(), 0.5}});
@@ -154,7 +154,7 @@ TEST(DrawnLamps, AreRoundAndHideWhatIsBehindThem) {
   EXPECT_EQ(below.part[50 * 101 + 50], 1) << "the side that does not shine";
 }
 
-TEST(DrawnRays, EndOnWhatTheyMeetAndHideBehindIt) {
+TEST(DrawnRays, EndAtTheFirstSurface) {
   const auto rays = [](float x) { return std::vector<float>{x, 0.5F, 0.0F, x, -0.5F, 0.0F}; };
   SceneView view = empty_view();
   draw_lamps(view, from_above, {{Vec3(0.0, 0.0, 1.0), Vec3::UnitZ(), 0.2}});

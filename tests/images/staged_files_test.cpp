@@ -101,7 +101,7 @@ TEST_F(Staged, ListsNestedDeeplyAreNone) {
   EXPECT_TRUE(there().contains("summary.json"));
 }
 
-TEST_F(Staged, WhatWasNotPublishedGoesAwayWithItsFolder) {
+TEST_F(Staged, UnpublishedFilesAreRemovedWithTheirFolder) {
   {
     const StagedFiles staged(folder_ / "deep" / "er");
     write_file_whole(staged.path() / "a.csv", "a");

@@ -110,7 +110,7 @@ TEST(Summary, ListsTheChecksThatFailed) {
   EXPECT_EQ(json.at("provenance").at("warnings"), nlohmann::json(provenance.warnings));
 }
 
-TEST(Summary, SaysNullForWhatIsNotFinite) {
+TEST(Summary, WritesNullForNonFiniteNumbers) {
   Product product;
   product.quantities = {{"a_W", {std::nan(""), HUGE_VAL}}};
   const auto json = nlohmann::json::parse(summary_json(product, {}));

@@ -68,7 +68,7 @@ TEST(LinearTicks, FillTheIntervalWithoutLeavingIt) {
   }
 }
 
-TEST(LinearTicks, LabelsSayTheValues) {
+TEST(LinearTicks, LabelsContainTheValues) {
   for (const AxisRange& range : many_ranges()) {
     const Ticks ticks = linear_ticks(range.low, range.high, 8);
     EXPECT_EQ(ticks.exponent % 3, 0);
@@ -118,7 +118,7 @@ TEST(Drawable, MakesEveryIntervalUsable) {
   }
 }
 
-// Of numbers from one end of floating point to the other.
+// Numbers over the whole range of floating point.
 TEST(Drawable, StepsStayFinite) {
   const AxisRange usable = drawable({-1.7e308, 1.7e308});
   EXPECT_TRUE(std::isfinite(usable.high - usable.low));

@@ -117,7 +117,7 @@ class LongestFile {
   rlimit before_;
 };
 
-TEST_F(Writers, TellOfWritesThatFail) {
+TEST_F(Writers, ReportFailedWrites) {
   for (const WriterKind& kind : all_writer_kinds()) {
     uintmax_t shortest = std::numeric_limits<uintmax_t>::max();
     for (const fs::path& path : kind.write(sample_product(), {}, folder, PictureStyle::page)) {
@@ -158,7 +158,7 @@ TEST_F(Writers, SurviveTextThatIsNotUtf8) {
   EXPECT_NO_THROW(write_formats(product, provenance, folder));
 }
 
-TEST_F(Writers, RefuseItemsWhoseSizesDisagree) {
+TEST_F(Writers, RejectItemsOfDifferentSizes) {
   Product map_too_short;
   map_too_short.maps = {sample_map()};
   map_too_short.maps[0].value.pop_back();

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-Eigen::VectorXd best_of_all_ways(const Eigen::MatrixXd& H, const Parameters& at) {
+Eigen::VectorXd best_of_all_active_sets(const Eigen::MatrixXd& H, const Parameters& at) {
   const Index n = at.size();
   int ways = 1;
   for (Index i = 0; i < n; ++i) ways *= 3;
@@ -49,7 +49,7 @@ Eigen::VectorXd best_of_all_ways(const Eigen::MatrixXd& H, const Parameters& at)
   return best;
 }
 
-TEST(StepToBounds, IsTheCheapestOfAllWays) {
+TEST(StepToBounds, IsTheMinimumOverAllActiveSets) {
   int moved = 0, let_go = 0;
   for (uint64_t seed = 1; seed <= 200; ++seed) {
     std::mt19937_64 random(seed);
@@ -72,7 +72,7 @@ TEST(StepToBounds, IsTheCheapestOfAllWays) {
     }
     const Eigen::VectorXd step = step_to_bounds(arrow, at);
     const Eigen::MatrixXd H = arrow.dense();
-    const Eigen::VectorXd best = best_of_all_ways(H, at);
+    const Eigen::VectorXd best = best_of_all_active_sets(H, at);
     EXPECT_LT((step - best).norm(), 1e-8 * (1.0 + best.norm())) << "seed " << seed;
     moved += best.norm() > 0.0 ? 1 : 0;
     // Cases where the first that is held does not stay on its bound.
@@ -87,7 +87,7 @@ TEST(StepToBounds, IsTheCheapestOfAllWays) {
 
 // Three numbers whose differences are known a million times better than their sum: clamping each
 // alone costs 1e11 times more than moving all of them.
-TEST(StepToBounds, MovesWhatIsCorrelated) {
+TEST(StepToBounds, AdjustsCorrelatedParameters) {
   ArrowMatrix arrow(1, 0, 3);
   Eigen::MatrixXd J(4, 3);
   J << 1e6, -1e6, 0, 0, 1e6, -1e6, -1e6, 0, 1e6, 1, 1, 1;

@@ -26,14 +26,14 @@ Decision decided(const std::vector<Explanation>& trials,
   return decide(trials, candidates, {[](size_t) { return 0.0; }}, limits);
 }
 
-TEST(Decide, NamesWhatPredicts) {
+TEST(Decide, NamesPredictiveEffects) {
   const Decision d = decided({explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0)});
   EXPECT_EQ(d.finding, Finding::named);
   EXPECT_EQ(d.chosen, 1u);
   EXPECT_TRUE(d.because.empty());
 }
 
-TEST(Decide, NothingThatDoesNotPredictIsSaid) {
+TEST(Decide, AnEffectWithoutPredictiveGainIsNotReported) {
   Thresholds::Decision mutant;
   mutant.max_predictive_sigma = 1e9;
   const std::vector<Explanation> named = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 9.0)};
@@ -47,7 +47,7 @@ TEST(Decide, NothingThatDoesNotPredictIsSaid) {
 }
 
 // More evidence than any other, and never compared with the held-out data, where the others were.
-TEST(Decide, WhatWasNeverAskedToPredictIsNotSaid) {
+TEST(Decide, AnEffectWithoutPredictionIsNotReported) {
   std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
                                      explanation({0, 1}, 200.0, 1.0)};
   trials[2].predictive.reset();
@@ -59,7 +59,7 @@ TEST(Decide, WhatWasNeverAskedToPredictIsNotSaid) {
 }
 
 // 3 of log evidence are odds of 20 to 1 for the second name, and too few to report it.
-TEST(Decide, ANameThatIsHardlyMissedIsNotSaid) {
+TEST(Decide, ANameThatHardlyImprovesTheFitIsNotReported) {
   const std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
                                            explanation({0, 1}, 103.0, 1.0)};
   EXPECT_EQ(decided(trials).chosen, 1u);
@@ -71,7 +71,7 @@ TEST(Decide, ANameThatIsHardlyMissedIsNotSaid) {
 }
 
 // Enough evidence, all of it from the fitted recordings: it predicts the held-out data worse.
-TEST(Decide, ANameThatPredictsWorseIsNotSaid) {
+TEST(Decide, ANameThatPredictsWorseIsNotReported) {
   const std::vector<Explanation> trials = {explanation({}, 0.0, 40.0, -90.0),
                                            explanation({0}, 100.0, 1.0, -50.0),
                                            explanation({0, 1}, 120.0, 1.0, -55.0)};
@@ -84,7 +84,7 @@ TEST(Decide, ANameThatPredictsWorseIsNotSaid) {
 // The numbers of both names are known too poorly to predict: the held-out χ² grows as their errors
 // say. Or it grows by more, and a fit to all recordings agrees with the held-out ones only with
 // both.
-TEST(Decide, ANameWhoseNumbersAreOffIsSaid) {
+TEST(Decide, ANameWithWrongParametersIsReported) {
   std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
                                      explanation({0, 1}, 120.0, 1.0)};
   trials[0].holdout_chi2_per_sample = 9000.0;
@@ -103,7 +103,7 @@ TEST(Decide, ANameWhoseNumbersAreOffIsSaid) {
 
 // A law without a name is a hundred times as likely, by less than it takes to say that there is
 // one: the name is a candidate and no more.
-TEST(Decide, ANameThatIsUnlikelyIsNotSaid) {
+TEST(Decide, AnUnlikelyNameIsNotReported) {
   const std::vector<CandidateTraits> all = {{.name = "first"},
                                             {.name = "law", .is_empirical = true}};
   const std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
@@ -119,7 +119,7 @@ TEST(Decide, ANameThatIsUnlikelyIsNotSaid) {
 }
 
 // Two that explain as much are one answer: the first with the second in its place.
-TEST(Decide, ANameThatIsNotToldFromAnotherIsSaidWithIt) {
+TEST(Decide, AnIndistinguishableNameIsReportedToo) {
   const Decision d = decided(
       {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0), explanation({1}, 99.9, 1.0)});
   EXPECT_EQ(d.finding, Finding::named);
@@ -127,7 +127,7 @@ TEST(Decide, ANameThatIsNotToldFromAnotherIsSaidWithIt) {
 }
 
 // Each name has to differ from nothing.
-TEST(Decide, ANameWithinItsErrorIsNotSaid) {
+TEST(Decide, ANameWithinItsErrorIsNotReported) {
   std::vector<Explanation> trials = {explanation({}, 0.0, 1.0), explanation({0}, 100.0, 1.0)};
   trials[1].significance[0] = 3.9;
   EXPECT_EQ(decided(trials).finding, Finding::nothing_missing);
@@ -196,7 +196,7 @@ TEST(Decide, AKnownEffectIsNamedBesideALawThatNeedsIt) {
 
 // Two explanations as likely as one another, each weak without the held-out data. If the nominal
 // model is as likely, nothing is reported as missing; if it does not predict, something is.
-TEST(Decide, WhatCannotBeToldApartIsNotNothing) {
+TEST(Decide, IndistinguishableEffectsAreNotConsistent) {
   const std::vector<CandidateTraits> all = {{.name = "sure"}, {.name = "one"}, {.name = "other"}};
   const auto judged = [&](double nominal_sigma) {
     std::vector<Explanation> trials = {
@@ -224,10 +224,10 @@ TEST(Decide, WhatCannotBeToldApartIsNotNothing) {
 
 // Evidence of 100, and segments that were left out of the fits are predicted no better with the
 // name.
-TEST(Gates, ANameThatLeftOutSegmentsDoNotNeedIsNotSaid) {
+TEST(Gates, ANameThatLeftOutSegmentsDoNotNeedIsNotReported) {
   const std::vector<Explanation> trials = {explanation({}, 0.0, 1.0), explanation({0}, 100.0, 1.0),
                                            explanation({0, 1}, 200.0, 1.0)};
-  // Of "first" and "second" in standard errors.
+  // Gains of "first" and "second" in standard errors.
   const auto judged = [&](double first, double second, const GateLimits& limits) {
     const auto gain = [&](size_t trial, size_t which) -> std::optional<double> {
       return trials[trial].candidates[which] == 0 ? first : second;
@@ -259,7 +259,7 @@ TEST(Gates, AHeldOutChi2FarAboveItsPredictionIsUnknown) {
   EXPECT_EQ(decided(trials, mutant).finding, Finding::named);
 }
 
-TEST(Gates, WhatTheNominalModelPredictsAsWellTestsNoName) {
+TEST(Gates, DataThatTheNominalModelPredictsTestNoName) {
   std::vector<Explanation> trials = {explanation({}, 0.0, 1.0), explanation({0}, 100.0, 1.0)};
   trials[0].holdout_chi2_per_sample = 1.1;
   trials[1].holdout_chi2_per_sample = 1.0;

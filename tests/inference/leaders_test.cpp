@@ -13,7 +13,7 @@ Explanation scored(double log_evidence, const char* objection = "") {
   return e;
 }
 
-TEST(Leaders, WhatIsForbiddenDoesNotSayHowNearTheBestIs) {
+TEST(Leaders, ForbiddenTrialsDoNotAffectTheMargin) {
   Thresholds::HeldOut limits;
   limits.within = 15.0;
   limits.max_leaders = 4;

@@ -109,7 +109,8 @@ class LineDomain {
     return t;
   }
 
-  // Of a linear model the score test is the difference of two fits without priors of the new.
+  // For a linear model, the score test is the difference of two fits without priors of the new
+  // terms.
   std::vector<double> gains(const Trial& at, const std::vector<size_t>& which,
                             const Runs& runs) const {
     std::vector<double> result;

@@ -9,8 +9,8 @@
 namespace photorque::inference {
 namespace {
 
-// Of 1 to 5 Student's t is 3/√(2.5/5) with four degrees of freedom, which is exceeded either way
-// with a probability of 0.01324: a normal number of 2.477 (tables of both distributions).
+// The numbers 1 to 5 have Student's t = 3/√(2.5/5) with four degrees of freedom. Its two-sided
+// probability is 0.01324, that of a normal number of 2.477 (tables of both distributions).
 TEST(MeanSigma, IsThatOfANormalNumber) {
   EXPECT_NEAR(mean_sigma({1.0, 2.0, 3.0, 4.0, 5.0}), 2.477, 0.03);
   EXPECT_NEAR(mean_sigma({-1.0, -2.0, -3.0, -4.0, -5.0}), -2.477, 0.03);
@@ -18,7 +18,7 @@ TEST(MeanSigma, IsThatOfANormalNumber) {
   EXPECT_EQ(mean_sigma({1.0, -1.0, 2.0, -2.0}), 0.0);
 }
 
-// Of noise it is normal: its mean square is 1, which of n draws scatters by √(2/n).
+// For noise it is normal: its mean square is 1, with a standard deviation of √(2/n) for n draws.
 TEST(MeanSigma, OfNoiseIsNormal) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;

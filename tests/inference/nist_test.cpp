@@ -50,7 +50,7 @@ TEST(Nist, CertifiedParametersAndErrors) {
 
 // From the far start of MGH17 the two exponentials become one, which sums of squares in double
 // precision cannot separate again. The answer is wrong, and is reported as such.
-TEST(Nist, WhereItFailsItSaysSo) {
+TEST(Nist, ReportsFailures) {
   const NistProblem problem = mgh17();
   const Eigen::VectorXd& start = problem.starts.front();
   const Fit found = fit(model_of(problem, start), start, Options::to_rounding());

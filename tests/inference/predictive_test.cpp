@@ -39,7 +39,7 @@ double chi2_of_held(const LinearRun& held, double slope) {
 
 // Ten readings fitted, thirty held out: Σ (t − t̄)² = n (n² − 1)/12, so that the slope's error of
 // 1/√82.5 leaves 2247.5/82.5 of χ² beside the noise.
-TEST(Expected, IsWhatLinesLeaveOnAverage) {
+TEST(Expected, EqualsTheMeanResidualOfLines) {
   constexpr int draws = 4000;
   constexpr double held_rows = 30.0;
   const double carried = (30.0 * 899.0 / 12.0) / (10.0 * 99.0 / 12.0) / held_rows;

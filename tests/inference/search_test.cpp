@@ -74,7 +74,7 @@ double false_alarms(double min_significance, int seeds) {
   return alarms / static_cast<double>(seeds);
 }
 
-TEST(Search, CallsNoiseMissingAsOftenAsItsSignificanceSays) {
+TEST(Search, FalseAlarmsAgreeWithTheSignificance) {
   constexpr int seeds = 2000;
   const double expected = 1.0 - std::pow(1.0 - two_sided(2.5), 6);
   const double standard_error = std::sqrt(expected * (1.0 - expected) / seeds);
@@ -175,7 +175,7 @@ TEST(Search, FindsPairsThatHideEachOther) {
 }
 
 // A bump that no known term has: only the empirical one takes it up.
-TEST(Search, CallsUnknownWhatOnlyTheEmpiricalTermFits) {
+TEST(Search, IsUnexplainedIfOnlyTheEmpiricalTermFits) {
   const Eigen::VectorXd signal = smooth(14).shape({grid(samples), {}, 1.0}, 0.0).col(4) * 25.0;
   Thresholds mutant;
   mutant.decision.min_log_odds = 1e9;
@@ -192,7 +192,7 @@ TEST(Search, CallsUnknownWhatOnlyTheEmpiricalTermFits) {
 }
 
 // A bump without an empirical term to absorb it: structure is left.
-TEST(Search, CallsUnknownWhatLeavesStructure) {
+TEST(Search, IsUnexplainedIfStructureRemains) {
   std::vector<Term> terms = known_terms();
   terms.pop_back();
   const Eigen::VectorXd signal = smooth(14).shape({grid(samples), {}, 1.0}, 0.0).col(4) * 40.0;
@@ -217,7 +217,7 @@ std::vector<Term> terms_with_swing(size_t most) {
 // The polynomial takes the slow part of the swing, and the ringing that remains cancels in means of
 // 20 neighbours. With one effect, nothing can be added to the polynomial. Strong ringing leaves all
 // models without it far from the readings, also in pieces.
-TEST(Search, NamesWhatSwingsWhereASlowTermStandsForIt) {
+TEST(Search, NamesAnAppendageThatASlowTermImitates) {
   Thresholds limits;
   limits.search.max_effects = 1;
   for (const double sigmas : {40.0, 400.0}) {
@@ -263,7 +263,7 @@ TEST(Search, KeepsInstrumentErrorsInTheBase) {
   EXPECT_TRUE(of({0, 4}).empty());
 }
 
-TEST(Search, DoesNotNameWhatIsForbidden) {
+TEST(Search, DoesNotNameForbiddenEffects) {
   std::vector<Term> terms = {polynomial(2)};
   terms.front().not_negative = true;
   for (const double sign : {1.0, -1.0}) {
@@ -275,7 +275,7 @@ TEST(Search, DoesNotNameWhatIsForbidden) {
 
 // A slope that follows the sign of a run: one run alone leaves it to the uncertain slope of the
 // nominal model, two of opposite sign show it together.
-TEST(Weigh, FindsWhatOnlyAllRunsShow) {
+TEST(Weigh, FindsAnEffectThatOnlyAllRunsShow) {
   Term turned;
   turned.traits = {"turned slope", false, true, false, true, 1};
   turned.shape = [](const Series& run, double) -> Eigen::MatrixXd { return run.sign * run.x; };

@@ -63,7 +63,7 @@ struct Bench {
   }
 };
 
-TEST(Subsets, PredictWhatEverySetWouldGain) {
+TEST(Subsets, PredictTheGainOfEverySet) {
   const Bench bench(7);
   for (const std::vector<size_t>& own : {std::vector<size_t>{}, {1}, {0, 2}, {1, 3, 4}}) {
     const double now = bench.chi2(own);
@@ -82,7 +82,7 @@ TEST(Subsets, PutTheTruthFirst) {
 
 // A term that looks like everything found, but of whose slopes the nuisances have left a millionth:
 // their squares are rounding, and to explain anything with them is none.
-TEST(Subsets, KnowWhatRoundingIs) {
+TEST(Subsets, AllowForRounding) {
   Bench bench(7);
   LinearProblem problem = bench.about({0, 3});
   const double lost = 1e-7;
@@ -106,7 +106,7 @@ TEST(Subsets, KnowWhatRoundingIs) {
   EXPECT_NEAR(gain_of_duplicate(), all, -0.1 * all);
 }
 
-TEST(Subsets, LeaveOutWhatPhysicsForbids) {
+TEST(Subsets, OmitUnphysicalSets) {
   LinearProblem problem = Bench(7).about({});
   ASSERT_EQ(best_subsets(problem, 4, {}).front().groups, (std::vector<size_t>{0, 3}));
   problem.groups[0].highest = {0.0};  // it is 3

@@ -18,7 +18,7 @@ std::vector<double> white(uint64_t seed, size_t count, double size = 1.0) {
   return r;
 }
 
-TEST(Whiteness, ShowsWhatIsSlow) {
+TEST(Whiteness, ShowsSlowMotion) {
   std::vector<double> r = white(1, 4000, 2.0);
   for (size_t i = 0; i < r.size(); ++i) r[i] += 50.0 * std::sin(0.002 * static_cast<double>(i));
   EXPECT_GT(whiteness({{white(2, 4000), r}}, {}).excess_sigma, 100.0);
@@ -38,7 +38,7 @@ TEST(Whiteness, ExcessOfWhiteNoiseIsAStandardNormal) {
   EXPECT_NEAR(squares / seeds, 1.0, 4.0 * std::sqrt(2.5 / seeds));
 }
 
-TEST(Whiteness, OutliersAreWhatNeighboursDoNotExpect) {
+TEST(Whiteness, OutliersDifferFromLocalPredictions) {
   std::vector<double> r = white(5, 500);
   // A residual that runs away steadily is none, however large.
   for (size_t i = 0; i < r.size(); ++i) r[i] += 3.0 * static_cast<double>(i);

@@ -141,7 +141,7 @@ TEST(PhotovoltaicArray, OverridesThatMeanNothingAreRefused) {
   };
   refused({{{"index", whole(7)}}, {{"index", whole(7)}}});
   refused({{{"index", whole(100)}}});
-  // Of which area?
+  // The area is missing.
   refused({{{"index", whole(7)}, {"shunt_ohm", number(10.0)}}});
 }
 

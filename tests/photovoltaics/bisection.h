@@ -87,7 +87,7 @@ struct Array {
   CellParameters cell;
   std::vector<double> photocurrents_A;
 
-  // Of a cell, or of cells joined in any way, with the diode beside them.
+  // Voltage of a cell, or of a group of cells with its diode.
   Real row_V(const CellGroup& row, Real current_A) const {
     if (row.is_cell()) {
       return cell_V(cell, photocurrents_A[static_cast<size_t>(row.cell)], current_A);

@@ -70,7 +70,7 @@ TEST(PhotovoltaicFit, CurvesThatGoOnBeyondTheirEndsStayWhole) {
   }
 }
 
-TEST(PhotovoltaicFit, SingleWildReadingsAreLeftOut) {
+TEST(PhotovoltaicFit, SingleOutliersAreOmitted) {
   IvSweep sweep = clipped_curve(0.0, 0);
   sweep.current_A[20] = 0.0;   // a contact that opened
   sweep.current_A[55] += 0.2;  // on the falling part

@@ -1,5 +1,5 @@
-// How points of an array's curve move with the photocurrents, against central differences; curves
-// with changes to the array; points near readings.
+// Derivatives of points of a curve with respect to the photocurrents, against central differences;
+// curves with changes to the array; points near readings.
 #include <gtest/gtest.h>
 
 #include <algorithm>

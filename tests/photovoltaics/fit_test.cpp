@@ -230,7 +230,7 @@ TEST(PhotovoltaicFit, DatasheetErrorsAreTheScatterOfRoundedFigures) {
   }
 }
 
-TEST(PhotovoltaicFit, FiguresTellHowFarTheyAreRounded) {
+TEST(PhotovoltaicFit, FiguresDetermineTheirRounding) {
   const std::array points = {RatedPoint{1000, 298.15, 5.116, 22.05, 4.66, 17.6},
                              RatedPoint{200, 298.15, 1.03, 20.0, 0.94, 17.0}};
   const RatedTolerance steps = written_steps(points);

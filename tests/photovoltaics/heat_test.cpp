@@ -1,4 +1,4 @@
-// How warm cells are: the plate's balance against closed forms, a textbook, and SciPy.
+// Cell temperature: the heat balance of a plate against closed forms, a textbook, and SciPy.
 #include "photovoltaics/array/heat.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TEST(CellPlate, NaturalConvectionIsThatOfTheTextbook) {
   EXPECT_NEAR(plate.loss_W_m2(505.0) / (505.0 - 296.0), 7.0, 0.1);
 }
 
-TEST(CellPlate, FacesCoolAlikeAndThinAirLess) {
+TEST(CellPlate, FacesCoolEquallyAndThinAirLess) {
   CellHeat heat{.surroundings_K = 260.0};
   const double both = CellPlate(heat, 0.1).loss_W_m2(330.0);
   heat.air_pressure_Pa = 1000.0;
@@ -239,7 +239,7 @@ TEST(WarmArray, APowerSystemOverTimeEndsInTheSameState) {
   }
 }
 
-TEST(CellHeat, WordsSayTheSurroundings) {
+TEST(CellHeat, WordsDetermineTheSurroundings) {
   EXPECT_EQ(CellHeat{}.in_words(), "both faces in still air of 293.15 K, emissivity 0.84");
   const CellHeat space{.surroundings_K = 2.725, .convection_W_m2_K = 0.0, .faces = 1};
   EXPECT_EQ(space.in_words(), "the front in a vacuum, emissivity 0.84 to 2.73 K");

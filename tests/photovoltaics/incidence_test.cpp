@@ -24,7 +24,7 @@ CellFront clear_glass(double index) {
 
 // J. A. Duffie and W. A. Beckman, Solar Engineering of Thermal Processes, 4th ed., example 5.1.1:
 // glass of index 1.526 reflects 0.0434 of perpendicular light and 0.093 at 60 deg.
-TEST(CellFront, ReflectsWhatTheTextbookSays) {
+TEST(CellFront, HasTheTextbookReflectance) {
   const CellFront front = clear_glass(1.526);
   EXPECT_NEAR(1.0 - front.transmitted(1.0, any_m), 0.0434, 5e-5);
   EXPECT_NEAR(1.0 - front.transmitted(0.5, any_m), 0.093, 5e-4);
@@ -164,7 +164,7 @@ TEST(IncidenceReceiver, GlassOfTheSurfaceItselfIsNotCountedTwice) {
 
 // J. W. T. Walsh (1926), in D. B. Judd, J. Res. NBS 29 (1942) 329: glass of index 1.5 reflects
 // 0.0918 of light that comes evenly from all directions outside.
-TEST(IncidenceReceiver, DiffuseLightLosesWhatWalshFound) {
+TEST(IncidenceReceiver, DiffuseLightHasWalshsReflectance) {
   const LitPlate lit = lit_plate(black());
   const IncidenceReceiver receiver(lit.scene, lit.grid, clear_glass(1.5), std::array{any_m});
   std::vector<fixtures::HitMaker> hits;
@@ -190,7 +190,7 @@ RegularWiring four_in_series() {
 }
 
 // An array whose left half is lit straight and whose right half at a slant.
-TEST(PhotovoltaicArray, PhotocurrentFollowsWhatEntersAndTheWaterfallSaysSo) {
+TEST(PhotovoltaicArray, PhotocurrentAndWaterfallFollowTheEnteringLight) {
   ArrayLight light = array_light(2, 2, 0.2, 0.2, std::vector<double>(4, 500.0));
   light.entry = {8, 1, {1, 1, 1, 1, 1.0, 0.9, 1.0, 0.9}};
   ArrayDesign design;

@@ -110,7 +110,7 @@ std::string message(const std::string& text, const std::string& name) {
   return "accepted";
 }
 
-TEST(ModuleFile, WhatIsMissingOrAmbiguousIsRefused) {
+TEST(ModuleFile, MissingAndAmbiguousNamesAreRejected) {
   EXPECT_NE(message(library, "Advance").find("2 modules have it"), std::string::npos);
   EXPECT_NE(message(library, "Unlisted 100").find("0 modules have it"), std::string::npos);
   EXPECT_NE(message(library, "").find("module_name"), std::string::npos);

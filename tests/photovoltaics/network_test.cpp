@@ -251,7 +251,7 @@ TEST(PhotovoltaicNetwork, EnergyIsConserved) {
 }
 
 // Without diodes nothing is lost, however the cells are joined.
-TEST(PhotovoltaicNetwork, CellsOfNestedGroupsMakeWhatTheArrayGives) {
+TEST(PhotovoltaicNetwork, CellsOfNestedGroupsSumToTheArray) {
   for (const auto& [name, wiring, is_costly] : nested_networks("no diodes", {})) {
     for (uint64_t seed = 0; seed < 10; ++seed) {
       const ArrayCurve curve =

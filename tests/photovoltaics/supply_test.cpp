@@ -71,7 +71,7 @@ TEST(PowerSupply, BatteryIsEmptyWhenTheDeficitHasEmptiedIt) {
   EXPECT_LE(supply.closure().largest(), 1e-12);
 }
 
-TEST(PowerSupply, TellsWhenItLeavesFullAndEmpty) {
+TEST(PowerSupply, ReportsTheTimeOfLeavingFullAndEmpty) {
   SupplyDesign design = four_cells();
   design.battery = Battery{.capacity_J = 10.0};
   design.load_W = 1.0;
@@ -84,9 +84,9 @@ TEST(PowerSupply, TellsWhenItLeavesFullAndEmpty) {
                                              "battery_not_empty", "battery_full"}));
 }
 
-// Of one face with constant convection alone: in light α E − P − h A (T − T_air) = 0 at the end,
-// and an even heating without power follows an exponential.
-TEST(PowerSupply, CellsWarmAsTheirEquationSays) {
+// One face with constant convection only: α E − P − h A (T − T_air) = 0 in the steady state, and
+// heating without power follows an exponential.
+TEST(PowerSupply, CellsWarmByTheirEquation) {
   SupplyDesign design = four_cells();
   design.array.heat = CellHeat{.air_K = 290.0,
                                .convection_W_m2_K = 10.0,

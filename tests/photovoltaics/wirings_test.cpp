@@ -120,7 +120,7 @@ TEST(PhotovoltaicWirings, LevelsAreTheRegularKeysInOtherWords) {
   }
 }
 
-TEST(PhotovoltaicWirings, MistakesNameWhatIsExpected) {
+TEST(PhotovoltaicWirings, MistakesStateTheExpectedValue) {
   const auto message = [](const std::string& key, const SettingsNode& value) -> std::string {
     try {
       design(3, 4, key, value, "ideal");

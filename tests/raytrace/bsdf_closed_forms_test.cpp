@@ -60,7 +60,7 @@ TEST(Fresnel, MeanOverTheHemisphere) {
 }
 
 // A pane without losses passes 2n/(n² + 1) straight on (inner reflections summed).
-TEST(Glass, PanePassesWhatTheTextbookSays) {
+TEST(Glass, PaneHasTheTextbookTransmittance) {
   for (const double n : {1.33, 1.5, 2.0}) {
     const OpticalSurface pane = behind_glass(grey_surface("s", 0, 0, 1), n);
     EXPECT_NEAR(fractions_of(pane, 1.0, 0).transmitted, 2 * n / (n * n + 1), 1e-14);
@@ -191,7 +191,7 @@ TEST(SlopeError, MeanDirectionOfSmallSlopesIsTheMirroredOne) {
 }
 
 // A reflected ray strays by 2σ along and across the plane of incidence (here from 40°).
-TEST(SlopeError, RaysStrayByTwiceTheSlope) {
+TEST(SlopeError, RaysDeviateByTwiceTheSlope) {
   const double sigma = 0.003, cosine = std::cos(40 * degree_rad);
   const auto lobe = slope_error(sigma);
   double across = 0, along = 0;

@@ -56,7 +56,7 @@ TEST(MeasuredBrdf, ATableOfARoughMirrorActsAsTheRoughMirror) {
   }
 }
 
-TEST(MeasuredBrdf, TellsHowFarTheTableIsFromReciprocal) {
+TEST(MeasuredBrdf, ReportsTheDeviationFromReciprocity) {
   BrdfTable table;
   table.incidence_rad = table.scatter_rad = {0.0, 60 * degree_rad};
   table.azimuth_rad = {0.0, pi};
@@ -69,7 +69,7 @@ TEST(MeasuredBrdf, TellsHowFarTheTableIsFromReciprocal) {
 }
 
 // Light from 10 deg alone was measured: that is kept, and holds for light towards 10 deg too.
-TEST(MeasuredBrdf, WhatWasMeasuredOneWayHoldsBothWays) {
+TEST(MeasuredBrdf, OneMeasuredDirectionDeterminesTheReverse) {
   BrdfTable table;
   table.incidence_rad = {10 * degree_rad};
   table.scatter_rad = {0.0, 30 * degree_rad, 60 * degree_rad};

@@ -104,7 +104,7 @@ TEST(IrradianceTable, AgreesWithTheIntegralForSmoothAndForSharpBeams) {
   }
 }
 
-TEST(IrradianceTable, RefusesWhatItCannotTabulate) {
+TEST(IrradianceTable, RejectsFunctionsThatCannotBeTabulated) {
   const Beam pillbox = pillbox_disc("angle"), lambertian = lambertian_disc(0.4);
   const DiscLight sharp(*pillbox.emitter, *pillbox.aperture);
   // The beam's edge crosses the axis at 0.2 m / tan 1.5° = 7.6 m.

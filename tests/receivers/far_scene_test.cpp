@@ -60,7 +60,7 @@ TEST(FarScene, RaysLandWhereTheyShould) {
 }
 
 // p A cos θ along the light, and its torque about the body's origin.
-TEST(FarScene, SunlightPressesAsTheTextbookSays) {
+TEST(FarScene, SunlightHasTheTextbookPressure) {
   const Scene scene = far_plate();
   const TraceableScene traceable(scene);
   const Beam sun = fixtures::sun(0.0);

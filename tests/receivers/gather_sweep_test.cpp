@@ -4,13 +4,13 @@
 #include "core/constants.h"
 #include "raytrace/direct/disc_light.h"
 #include "receivers/gather/gather.h"
-#include "tests/receivers/lamp_lottery.h"
+#include "tests/receivers/random_lamps.h"
 
 namespace photorque {
 namespace {
 
 using fixtures::Draw;
-using fixtures::Lottery;
+using fixtures::RandomLamps;
 
 struct Total {
   double power_W = 0.0, bound_W = 0.0;
@@ -34,13 +34,14 @@ FluxMapReceiver map_over(const Scene& scene, int width, int height) {
 
 // All light of a lamp falls on a plate that is wide enough, however coarse its bins.
 TEST(GatherSweep, AWidePlateGetsAllLightOfAThousandLamps) {
-  Lottery lottery(15);
+  RandomLamps random_lamps(15);
   for (int i = 0; i < 1000; ++i) {
-    const Draw d = lottery.draw();
-    const auto scene = fixtures::wide_plate(d, lottery.uniform(1.0, 1.5));
+    const Draw d = random_lamps.draw();
+    const auto scene = fixtures::wide_plate(d, random_lamps.uniform(1.0, 1.5));
     if (!scene) continue;
     const TraceableScene traceable(*scene);
-    const FluxMapReceiver map = map_over(*scene, lottery.integer(1, 50), lottery.integer(1, 50));
+    const FluxMapReceiver map =
+        map_over(*scene, random_lamps.integer(1, 50), random_lamps.integer(1, 50));
     const Gathered gathered = gather_direct(traceable, {}, std::span(&d.beam, 1), map,
                                             {.replicates = 2, .points = 1, .threads = 1});
     EXPECT_EQ(gathered.shaded_pairs, 0u);
@@ -66,16 +67,16 @@ double nested_power_W(const DiscLight& light, const Vec3& corner_m, const Vec3& 
 }
 
 TEST(GatherSweep, BinsCutByAnEdgeAgreeWithNestedIntegration) {
-  Lottery lottery(16);
+  RandomLamps random_lamps(16);
   for (int i = 0; i < 150; ++i) {
-    const Draw d = lottery.draw();
+    const Draw d = random_lamps.draw();
     const DiscLight light(*d.beam.emitter, *d.beam.aperture);
     // A bin about the rim of the light at half of the flux.
     const double radius_m =
         std::hypot(light.radius_m(), d.height_m * std::tan(light.half_flux_rad()));
-    const double side_m = radius_m * lottery.log_uniform(0.02, 1.0);
+    const double side_m = radius_m * random_lamps.log_uniform(0.02, 1.0);
     Draw moved = d;
-    moved.centre_m += lottery.uniform(0.0, 1.3) * radius_m * d.along;
+    moved.centre_m += random_lamps.uniform(0.0, 1.3) * radius_m * d.along;
     const Scene scene = fixtures::plate_of(moved, side_m, side_m);
     const TraceableScene traceable(scene);
     const FluxMapReceiver map = map_over(scene, 1, 1);
@@ -96,11 +97,11 @@ TEST(GatherSweep, BinsCutByAnEdgeAgreeWithNestedIntegration) {
 // The mean irradiance within a circle, which the flux within angles gives, is that of its points,
 // which the intensity gives.
 TEST(GatherSweep, MeanWithinACircleIsThatOfItsPoints) {
-  Lottery lottery(17);
+  RandomLamps random_lamps(17);
   for (int i = 0; i < 200; ++i) {
-    const Draw d = lottery.draw();
+    const Draw d = random_lamps.draw();
     const DiscLight light(*d.beam.emitter, *d.beam.aperture);
-    const double within_m = lottery.uniform(0.0, 1.2) * d.foot_m;
+    const double within_m = random_lamps.uniform(0.0, 1.2) * d.foot_m;
     const double typical = light.typical_W_m2(d.height_m);
     std::vector<double> kinks_m = {0.0, within_m};
     for (const double slope : light.angles().edge_slopes()) {

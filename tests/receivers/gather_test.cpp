@@ -187,7 +187,7 @@ TEST(Gather, GoesOnUntilTheErrorIsReached) {
   EXPECT_GT(fine.shadow_rays, 2 * coarse.shadow_rays);
 }
 
-TEST(Gather, WhatNeedsRaysIsRefused) {
+TEST(Gather, FeaturesThatNeedRaysAreRejected) {
   Scene scene;
   add(scene, fixtures::sphere(0.1, 8), grey_surface("s", 0, 0), "receiver");
   SurfaceGridOptions options;

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/constants.h"
-#include "tests/receivers/lamp_lottery.h"
+#include "tests/receivers/random_lamps.h"
 
 namespace photorque {
 namespace {
@@ -70,15 +70,15 @@ TEST(GatherTorque, SunOnEitherSideOfAGreyPlateIsTheTextbooksForce) {
 // A black plate that all light falls on takes up the momentum of the beam, which is that of its
 // axis times the mean cosine, wherever its bins cut the beam's edge.
 TEST(GatherTorque, ABlackPlateTakesUpTheMomentumOfTheWholeBeam) {
-  fixtures::Lottery lottery(18);
+  fixtures::RandomLamps random_lamps(18);
   int done = 0, precise = 0;
   for (int i = 0; i < 40; ++i) {
-    const fixtures::Draw d = lottery.draw();
+    const fixtures::Draw d = random_lamps.draw();
     const auto scene = fixtures::wide_plate(d, 1.0);
     if (!scene) continue;
     const TraceableScene traceable(*scene);
     const Vec3 about_m = d.centre_m + d.height_m * Vec3(0.5, -0.2, 0.1);
-    const TorqueMapReceiver map = torque_map_of(*scene, lottery.integer(2, 12), about_m);
+    const TorqueMapReceiver map = torque_map_of(*scene, random_lamps.integer(2, 12), about_m);
     const Gathered gathered = gather_torque(traceable, {}, std::span(&d.beam, 1), map,
                                             {.replicates = 2, .points = 1, .threads = 1});
     EXPECT_EQ(gathered.shaded_pairs, 0u);

@@ -5,7 +5,7 @@
 #include "raytrace/surfaces/bsdf.h"
 #include "raytrace/surfaces/mirrors.h"
 #include "receivers/gather/bodies/wrench.h"
-#include "tests/receivers/lamp_lottery.h"
+#include "tests/receivers/random_lamps.h"
 #include "tests/receivers/receiver_scenes.h"
 #include "tests/receivers/sunlight.h"
 
@@ -98,10 +98,10 @@ TEST(GatherWrench, AShadowTakesItsRectangleOutOfThePlateBelow) {
 // A black plate that all light falls on takes up the momentum of the beam, which is that of its
 // axis times the mean cosine.
 TEST(GatherWrench, ABlackPlateTakesUpTheMomentumOfTheWholeBeam) {
-  fixtures::Lottery lottery(19);
+  fixtures::RandomLamps random_lamps(19);
   int done = 0, precise = 0;
   for (int i = 0; i < 8; ++i) {
-    const fixtures::Draw d = lottery.draw();
+    const fixtures::Draw d = random_lamps.draw();
     const auto scene = fixtures::wide_plate(d, 1.0);
     if (!scene) continue;
     const TraceableScene traceable(*scene);

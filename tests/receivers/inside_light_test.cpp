@@ -58,7 +58,7 @@ TEST(InsideLight, NoneInAClosedBody) {
   EXPECT_EQ(describe_inside_light(box.scene, box.lit, 4.0), "");
 }
 
-TEST(InsideLight, IsWhatFallsThroughTheHole) {
+TEST(InsideLight, EqualsTheLightThroughTheHole) {
   const LitBox box(without_half_a_lid());
   ASSERT_EQ(box.lit.size(), 1u);
   EXPECT_NEAR(box.lit[0].inside_W.value, 0.5, 5 * box.lit[0].inside_W.standard_error);
@@ -72,7 +72,7 @@ TEST(InsideLight, IsWhatFallsThroughTheHole) {
   EXPECT_EQ(describe_inside_light(box.scene, leak, 4.0), "");
 }
 
-TEST(InsideLight, SaysWhenABodyIsTurnedInsideOut) {
+TEST(InsideLight, ReportsABodyThatIsInsideOut) {
   Mesh mesh = unit_box();
   for (auto& triangle : mesh.triangles) std::swap(triangle[0], triangle[1]);
   const LitBox box(mesh);

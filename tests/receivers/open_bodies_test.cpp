@@ -72,7 +72,7 @@ double shadow_m2(Mesh mesh, double tilt_rad) {
   return found.direct.head<3>().matrix().dot(travel) / pressure_Pa;
 }
 
-// Of a box, which is convex: half of what its six faces show of themselves.
+// A box is convex: its shadow is half the sum of the projected areas of its six faces.
 double shadow_of_box_m2(const Vec3& size_m, double tilt_rad) {
   const Vec3 travel = lab_from_body_at(tilt_rad, 0.3).inverse().direction(-Vec3::UnitZ());
   return std::abs(travel.x()) * size_m.y() * size_m.z() +
@@ -102,7 +102,7 @@ TEST(OpenBodies, ADiscOfManyRingsIsLitFromBothSides) {
   }
 }
 
-TEST(OpenBodies, WhatFallsThroughAHoleIsCaughtInside) {
+TEST(OpenBodies, LightThroughAHoleStaysInside) {
   Mesh mesh = cube_of_1_m;
   std::erase_if(mesh.triangles, [&](const std::array<uint32_t, 3>& t) {
     return std::ranges::all_of(t, [&](uint32_t v) { return mesh.vertices_m[v].z() == 1.0; });

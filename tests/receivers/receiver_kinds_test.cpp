@@ -133,7 +133,7 @@ TEST_P(EveryReceiver, NamesTheNearestNode) {
                              Not(HasSubstr("\n"))));
 }
 
-TEST_P(EveryReceiver, ReadsEveryKeyItKnowsAndNoOther) {
+TEST_P(EveryReceiver, ReadsEveryDeclaredKeyAndNoOther) {
   const Settings settings = settings_of({{"node", node_of("solar_array")},
                                          {"name", node_of("wing 1/left")},
                                          {"colour", node_of("red")}});

@@ -32,7 +32,7 @@ TEST(SmoothOverSphere, StatesItsError) {
   const WrenchTable table = sphere_table();
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal(0.0, noise * std::sqrt(2.0));  // of either half
-  std::vector<TwofoldWrench> wrenches(table.nodes());
+  std::vector<WrenchPair> wrenches(table.nodes());
   for (size_t a = 0; a + 1 < table.around_rad.size(); ++a) {
     for (size_t e = 0; e < table.polar_rad.size(); ++e) {
       const Vec3 d = towards_light({table.polar_rad[e], table.around_rad[a]});

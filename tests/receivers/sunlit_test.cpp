@@ -82,8 +82,8 @@ TEST(Sunlit, AWallThroughAPlateShadesAStripBesideIt) {
     const RigidTransform attitude = lab_from_body_at(35.0 * degree_rad, 0.0);
     const Vec3 travel = attitude.inverse().direction(-Vec3::UnitZ());
     ASSERT_NEAR(travel.y(), 0.0, 1e-12);
-    // Of the wall only what stands above the plate is lit; it takes its light from a strip below,
-    // which is further along the same rays.
+    // Only the part of the wall above the plate is lit. It shades a strip below, which is further
+    // along the same rays.
     const Vec3 all_N = pressure_Pa * -travel.z() * 4.0 * travel;
     expect_near(sunlit(traceable, attitude).direct, all_N, Vec3::Zero(), 1e-9);
   }

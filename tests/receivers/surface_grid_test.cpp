@@ -146,7 +146,7 @@ TEST(SurfaceGrid, RingHasAHoleWithoutSurface) {
 }
 
 // A quarter of a square metre above a square metre: more area than the bins have.
-TEST(SurfaceGrid, SaysHowMuchLiesInLayers) {
+TEST(SurfaceGrid, ReportsTheAreaInLayers) {
   Mesh mesh = plate(-0.5, 0.5, -0.5, 0.5);
   EXPECT_NEAR(grid_over(scene_of(mesh), 20, 20).overlapping_m2, 0.0, 1e-12);
   const auto below = static_cast<uint32_t>(mesh.vertices_m.size());

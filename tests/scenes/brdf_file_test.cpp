@@ -44,7 +44,7 @@ TEST(BrdfFile, TakesColumnsAndRowsInAnyOrder) {
   EXPECT_THAT(table.brdf_1_sr, ElementsAre(0.1, 0.3, 0.3, 0.2));
 }
 
-TEST(BrdfFile, NamesTheLineOfWhatIsWrong) {
+TEST(BrdfFile, NamesTheLineOfTheMistake) {
   EXPECT_EQ(brdf_error(with_text(small_table, "brdf_1_sr", "brdf")),
             "scan.csv:3: brdf_1_sr: found no such column, expected a header with incidence_deg, "
             "scatter_deg, azimuth_deg and brdf_1_sr");
@@ -101,14 +101,14 @@ TEST(MeasuredMaterial, ScattersByItsFileWhichIsAnInput) {
   EXPECT_TRUE(model.notices.empty()) << ::testing::PrintToString(model.notices);
 }
 
-// Of the pairs (0, 0), (60, 0), (60, 60) one differs, by nothing in the small table.
-TEST(MeasuredMaterial, ThatIsNotReciprocalIsSaid) {
+// One of the pairs (0, 0), (60, 0), (60, 60) differs; in the small table none differs.
+TEST(MeasuredMaterial, ThatIsNotReciprocalIsReported) {
   const GltfModel model = painted_with(material_with({{"brdf_file", {"scan.csv"}}}),
                                        with_text(small_table, "60,0,0,0.3", "60,0,0,0.1"));
   EXPECT_THAT(model.notices, Contains(HasSubstr("scan.csv: f(i, o) and f(o, i) differ by 66.6")));
 }
 
-TEST(MeasuredMaterial, MeasuredOverFewAnglesIsSaid) {
+TEST(MeasuredMaterial, MeasurementOverFewAnglesIsReported) {
   const auto notices = [](const std::string& rows) {
     return painted_with(material_with({{"brdf_file", {"scan.csv"}}}),
                         "incidence_deg,scatter_deg,azimuth_deg,brdf_1_sr\n" + rows)
@@ -134,7 +134,9 @@ TEST(MeasuredMaterial, ThatShinesOrIsMissingIsRefused) {
   EXPECT_EQ(message_from([&] {
               painted_with(material_with({{"brdf_file", {"scam.csv"}}}), "");
             }),
-            "lab.toml:4: material[0].brdf_file: found \"scam.csv\", expected a file that exists");
+            "lab.toml:4: material[0].brdf_file: found \"scam.csv\", expected an existing file, "
+            "relative to "
+            "the folder of the experiment");
   EXPECT_THAT(message_from([&] {
                 painted_with(material_with({{"brdf_file", {"scan.csv"}}, {"absorptance", {1.0}}}),
                              small_table);

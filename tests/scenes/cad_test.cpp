@@ -225,7 +225,7 @@ TEST(Obj, ManyCornersTakeTheirSquareAtMost) {
   EXPECT_NEAR(area, std::abs(shoelace), 1e-9 * std::abs(shoelace));
 }
 
-TEST(Cad, MaterialsAreTheExperimentsOrSaid) {
+TEST(Cad, MaterialsAreOfTheExperimentOrReported) {
   const std::string text = "usemtl black\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   EXPECT_THAT(obj(text).notices,
               Contains(HasSubstr("'black': the file contains no optical properties")));
@@ -243,7 +243,7 @@ struct BrokenCad {
   const char* name;
   CadFormat format;
   std::string bytes;
-  const char* says;
+  const char* message;
 };
 
 std::vector<BrokenCad> broken_cad_files() {
@@ -281,13 +281,13 @@ std::vector<BrokenCad> broken_cad_files() {
   };
 }
 
-TEST(Cad, WhatIsWrongIsSaidInOneLine) {
+TEST(Cad, MistakesAreReportedInOneLine) {
   for (const BrokenCad& broken : broken_cad_files()) {
     SCOPED_TRACE(broken.name);
     const std::string file = broken.format == CadFormat::stl ? "part.stl" : "part.obj";
     const std::string message =
         refusal_of([&] { read_cad_bytes(broken.bytes, file, broken.format, {1.0}); });
-    EXPECT_THAT(message, HasSubstr(broken.says));
+    EXPECT_THAT(message, HasSubstr(broken.message));
     EXPECT_EQ(message.find('\n'), std::string::npos);
   }
 }
@@ -300,7 +300,7 @@ std::string refusal_of_scene(const std::string& keys) {
   return refusal_of([&] { read_experiment_text(seeds / "obj" / "lab.toml", text); });
 }
 
-TEST(Cad, ExperimentsSayTheUnit) {
+TEST(Cad, ExperimentsStateTheUnit) {
   EXPECT_THAT(refusal_of_scene("file = \"house.obj\""),
               HasSubstr("scene.unit: found nothing, expected one of \"mm\""));
   EXPECT_THAT(refusal_of_scene("file = \"house.OBJ\"\nunit = \"yd\""),
@@ -313,7 +313,7 @@ TEST(Cad, ExperimentsSayTheUnit) {
   EXPECT_THAT(refusal_of_scene(gltf + "up = \"z\""), HasSubstr("scene.up"));
 }
 
-TEST(Cad, AMistypedNameIsToldBeforeTheUnit) {
+TEST(Cad, AMistypedNameIsReportedBeforeTheUnit) {
   EXPECT_THAT(refusal_of_scene("file = \"no_house.gltf\"\nunit = \"mm\""),
               HasSubstr("lab.toml:2: scene.file: found no file"));
   EXPECT_THAT(refusal_of_scene("file = \"house.ob\"\nunit = \"mm\""),

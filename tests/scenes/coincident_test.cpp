@@ -121,7 +121,7 @@ Estimate met_m2(const Scene& scene, const Vec3& travel) {
 
 const std::string unit_square = "v -0.5 -0.5 0\nv 0.5 -0.5 0\nv 0.5 0.5 0\nv -0.5 0.5 0\n";
 
-TEST(CoincidentFaces, FeelTheLightOnce) {
+TEST(CoincidentFaces, ReceiveTheLightOnce) {
   const std::string front = "f 1 2 3 4\n", back = "f 4 3 2 1\n";
   const std::vector<std::pair<const char*, std::string>> sheets = {
       {"shared corners", unit_square + "o a\n" + front + back},
@@ -160,7 +160,7 @@ TEST(CoincidentFaces, FeelTheLightOnce) {
 
 // Sheets that touch along an edge, or cross in the middle, at angles at which they are apart by
 // less than the rounding of rays over some or all of their width. Either is seen as one square.
-TEST(CoincidentFaces, AtASlightAngleFeelTheLightOnce) {
+TEST(CoincidentFaces, AtASlightAngleReceiveTheLightOnce) {
   for (const double angle_rad : {1.2e-6, 1e-5, 1e-4, 2e-3}) {
     for (const double axis_m : {-0.5, 0.1}) {
       for (const char* face : {"f 5 6 7 8\n", "f 8 7 6 5\n"}) {
@@ -181,9 +181,9 @@ TEST(CoincidentFaces, AtASlightAngleFeelTheLightOnce) {
   }
 }
 
-// Of E = 1361 W/m² on 1 m², a sheet absorbs E A (1 − t) by the transmittance t of the side that it
-// turns to the light, and feels that over c: nothing is reflected. Of two such sheets, 0.5 m apart,
-// the second gets what the first lets through.
+// In E = 1361 W/m², a sheet of 1 m² absorbs E A (1 − t), with the transmittance t of the lit side.
+// The force is the absorbed power over c, because nothing is reflected. The second of two sheets,
+// 0.5 m apart, receives the light that passes the first.
 TEST(CoincidentFaces, ThatTransmitAreOneSheet) {
   const std::string front = "usemtl front\nf 1 2 3 4\n", back = "usemtl back\nf 4 3 2 1\n";
   const std::string below = "v -0.5 -0.5 -0.5\nv 0.5 -0.5 -0.5\nv 0.5 0.5 -0.5\nv -0.5 0.5 -0.5\n";

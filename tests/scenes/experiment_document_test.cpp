@@ -138,7 +138,7 @@ TEST(Document, KeepsValuesOrderAndCommentsOfAText) {
   EXPECT_LT(text.find("[[source]]"), text.find("[array]"));
 }
 
-TEST(Document, AddsAndReplacesBesideWhatIsThere) {
+TEST(Document, AddsAndReplacesKeys) {
   TomlDocument document(
       "[disturbance]\nkind = \"tether\"  # one\n[platform]\nmass_kg = 8  # weighed\nx = 1\n",
       "lab.toml");

@@ -40,7 +40,7 @@ TEST(Toml, EveryTypeArrives) {
   EXPECT_NO_THROW(s.finish());
 }
 
-TEST(Toml, EveryValueKnowsItsLine) {
+TEST(Toml, EveryValueHasItsLine) {
   const Settings s = settings_of("# comment\n\n[a]\nx = 1\n[[b]]\n\ny = [1,\n 2]\n");
   EXPECT_EQ(s.table("a").where().line, 3);
   EXPECT_EQ(s.table("a").raw("x").where.line, 4);
@@ -112,7 +112,7 @@ TEST(Override, ThatMakesNoSenseIsRefused) {
         << assignment << ": " << error_of(text, assignment);
   }
   EXPECT_EQ(error_of(text, "t[1].y=2"),
-            "--set: t[1].y: found index 1, expected an index from 0 to 0");
+            "--set: t[1].y: found index 1, expected index 0, the only one");
   EXPECT_EQ(error_of(text, "x.y=2"), "--set: x.y: found that y lies in 1, expected a table there");
   EXPECT_EQ(error_of(text, "x[0]=2"), "--set: x[0]: found index 0, expected no index: this is 1");
   for (const char* assignment : {"x=", "x=two words", "x=[1", "x=1\ny=2", "x={", "x=\"a"}) {

@@ -69,7 +69,7 @@ TestModel with_view_packed(const nlohmann::json& changes) {
   return model;
 }
 
-TEST(GltfMeshopt, DamageIsToldByPlaceAndReason) {
+TEST(GltfMeshopt, DamageIsReportedWithPlaceAndReason) {
   const std::string place = "/bufferViews/0/extensions/EXT_meshopt_compression";
   const std::pair<nlohmann::json, std::string> mistakes[] = {
       {nlohmann::json::object(), ": found data that cannot be decoded"},
@@ -91,7 +91,7 @@ TEST(GltfMeshopt, DamageIsToldByPlaceAndReason) {
   }
 }
 
-TEST(GltfMeshopt, WhatIsPackedIsAsLongAsItsViewSays) {
+TEST(GltfMeshopt, PackedDataHaveTheLengthOfTheirView) {
   const std::array<float, 9> corners = {0, 0, 0, 3, 0, 0, 0, 4, 0};
   std::string bytes(meshopt_encodeVertexBufferBound(3, 12), '\0');
   bytes.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(bytes.data()),
@@ -116,7 +116,7 @@ TEST(GltfMeshopt, WhatIsPackedIsAsLongAsItsViewSays) {
               HasSubstr("/bufferViews/0/byteStride: found 16, expected 12"));
 }
 
-TEST(GltfDraco, DamageIsToldByPlaceAndReason) {
+TEST(GltfDraco, DamageIsReportedWithPlaceAndReason) {
   const auto packed = [](const std::string& bytes, const nlohmann::json& extension) {
     TestModel model = triangle_model();
     model.add_view(bytes);

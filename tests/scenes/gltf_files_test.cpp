@@ -35,7 +35,7 @@ TEST(GltfContainers, TextBinaryAndEmbeddedAreOne) {
   EXPECT_EQ(size_of(embedded.read().scene).area_m2, text.area_m2);
 }
 
-TEST(GltfContainers, UnknownChunksAndTrailingBytesAreToldOf) {
+TEST(GltfContainers, UnknownChunksAndTrailingBytesAreReported) {
   TestModel model = triangle_model();
   model.json["buffers"] = {{{"byteLength", model.buffer.size()}}};
   const std::string bytes =
@@ -94,7 +94,7 @@ TEST(GltfFiles, ImagesAreNeverNeeded) {
   EXPECT_THAT(read.notices, Contains(HasSubstr("textures are ignored")));
 }
 
-TEST(GltfFiles, SpeakOfMillimetresWhenTheSceneIsHuge) {
+TEST(GltfFiles, SuggestMillimetresForAHugeScene) {
   TestModel model = triangle_model();
   EXPECT_THAT(model.read().notices, ::testing::Not(Contains(HasSubstr("millimetres"))));
   model.json["nodes"][0]["scale"] = {100, 100, 100};

@@ -66,7 +66,7 @@ fs::path folder_with(const json& file, const std::string& experiment = "") {
   return folder;
 }
 
-TEST(GltfLights, StandAndShineAsTheFileSays) {
+TEST(GltfLights, HavePositionAndLightOfTheFile) {
   const auto lights = read_gltf_lights(folder_with(lamp_file()) / "lamps.gltf", 1e-3);
   ASSERT_EQ(lights.size(), 3u);
   EXPECT_EQ(lights[0].name, "lamp");

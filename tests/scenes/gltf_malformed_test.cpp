@@ -102,7 +102,7 @@ TestModel indexed_model() {
   return model;
 }
 
-TEST_P(GltfMistakes, AreToldByPlaceAndReason) {
+TEST_P(GltfMistakes, AreReportedWithPlaceAndReason) {
   TestModel model = indexed_model();
   ASSERT_EQ(refusal_of([&] { model.read(); }), "");
   GetParam().make(model);

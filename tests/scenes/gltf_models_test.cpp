@@ -166,7 +166,7 @@ TEST(GltfModels, UnpackABoxFromMeshopt) {
   }
 }
 
-TEST(GltfModels, RefuseWhatIsNotThere) {
+TEST(GltfModels, RejectMissingFiles) {
   const auto file = models / "in/BoxDraco.gltf";
   PHOTORQUE_NEEDS_THIRD_PARTY("models");
   try {

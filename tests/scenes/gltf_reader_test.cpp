@@ -184,7 +184,7 @@ void PrintTo(const Layout& one, std::ostream* out) {
 
 class GltfLayouts : public ::testing::TestWithParam<Layout> {};
 
-TEST_P(GltfLayouts, SaySameSquare) {
+TEST_P(GltfLayouts, DescribeTheSameSquare) {
   const Scene scene = GetParam().make().read().scene;
   ASSERT_EQ(scene.instances.size(), 1u);
   const size_t count = scene.meshes[0].triangles.size();

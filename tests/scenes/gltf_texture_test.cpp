@@ -141,7 +141,7 @@ TEST(GltfTexture, OtherCoordinatesThanTheFirstLeaveTheColourAsItIs) {
   }
 }
 
-TEST(GltfTexture, AMeshWithoutCoordinatesIsTold) {
+TEST(GltfTexture, AMeshWithoutCoordinatesIsReported) {
   const std::string reported = "'paint': its picture is ignored";
   TestModel model = pictured_model();
   EXPECT_THAT(model.read(with_pictures()).notices, testing::Not(Contains(HasSubstr(reported))));

@@ -68,7 +68,7 @@ TEST_P(CommittedPlatform, ConsistsOfClosedSolidsThatFaceOutwards) {
   EXPECT_LE(triangles, 20000u);
 }
 
-TEST_P(CommittedPlatform, SaysWhatEveryMaterialDoesWithLight) {
+TEST_P(CommittedPlatform, ListsTheOpticsOfEveryMaterial) {
   const GltfModel model = read_gltf(scene_file(GetParam()));
   for (const GltfMaterial& material : model.materials) {
     EXPECT_EQ(material.origin, OpticsOrigin::extras) << material.name;

@@ -14,7 +14,7 @@ std::vector<Beam> beams_of(const SourceKind& kind) {
   return kind.make(settings_of(kind.example), test::with_files());
 }
 
-TEST(EverySource, HasANameASummaryAndAnExampleWhoseKeysItReads) {
+TEST(EverySource, HasANameASummaryAndAReadableExample) {
   for (const SourceKind& kind : all_source_kinds()) {
     EXPECT_FALSE(kind.name.empty());
     EXPECT_FALSE(kind.summary.empty() || kind.summary.ends_with('.')) << kind.name;
@@ -107,7 +107,7 @@ TEST(EverySource, PutsAllItsPowerInTheSpectrum) {
   }
 }
 
-TEST(EverySource, RefusesKeysThatItDoesNotKnow) {
+TEST(EverySource, RejectsUnknownKeys) {
   for (const SourceKind& kind : all_source_kinds()) {
     const Settings settings = settings_of(test::changed(kind.example, {{"colour", {"red"}}}));
     kind.make(settings, test::with_files());

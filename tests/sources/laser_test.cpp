@@ -78,7 +78,7 @@ TEST(Laser, WithoutDivergenceIsCollimated) {
   for (const auto& ray : test::rays_of(*beam.emitter, 256)) EXPECT_EQ(ray.direction, Vec3::UnitZ());
 }
 
-TEST(Laser, SaysWhatIsWrong) {
+TEST(Laser, ReportsTheMistake) {
   EXPECT_THROW(make_beams("laser", laser(0.0)), InputError);
   EXPECT_THROW(make_beams("laser", laser(1e-7)), InputError);  // spreads by more than 30 deg
   EXPECT_THROW(make_beams("laser", changed(laser(1e-3), {}, {"wavelength_nm"})), InputError);

@@ -38,7 +38,7 @@ Vec3 mean_of(const std::vector<Vec3>& all) {
   return sum / static_cast<double>(all.size());
 }
 
-// How many others each point has at the distance `pitch_m`; fails if one is nearer.
+// Number of neighbours of each point at the distance `pitch_m`; fails if one is nearer.
 std::vector<int> neighbours(const std::vector<Vec3>& points, double pitch_m) {
   std::vector<int> count(points.size(), 0);
   for (size_t i = 0; i < points.size(); ++i) {
@@ -228,7 +228,7 @@ TEST(LedArray, LedsDifferByTheStatedSpread) {
   EXPECT_EQ(make_beams("led_array", table)[77].emitter->power_W(), 1.0);
 }
 
-TEST(LedArray, SaysWhatIsWrong) {
+TEST(LedArray, ReportsTheMistake) {
   const SettingsNode::Table ring = {{"count", {int64_t{8}}}, {"ring_radius_m", {0.3}}};
   const auto refuses = [](SettingsNode::Table table, const std::string& words) {
     try {

@@ -70,7 +70,7 @@ TEST(Led, EachPillboxMeasureFillsItsOwnMeasureEvenly) {
   check("projected", [](double t) { return std::sin(t) * std::sin(t); });
 }
 
-TEST(Led, SaysWhatIsWrong) {
+TEST(Led, ReportsTheMistake) {
   expect_error("led", changed(led(), {{"power_W", {-3.0}}}), "power_W: found -3");
   expect_error("led", changed(led(), {{"power_W", {0.0}}}), "power_W: found 0");
   expect_error("led", changed(led(), {{"aperture_diameter_m", {0.0}}}), "aperture_diameter_m");

@@ -80,7 +80,7 @@ TEST(IesFile, WrongVerticalCountsAreRefused) {
   expect_refused(with(good, "2 4 1", "2 5 1"), "vertical angles");
 }
 
-TEST(IesFile, SaysWhatIsInIt) {
+TEST(IesFile, ListsItsContent) {
   const PhotometricFile file = read_ies(small_ies, "lamp.ies");
   EXPECT_EQ(file.format, "IESNA:LM-63-2002");
   EXPECT_EQ(file.labels.at(1), (std::pair<std::string, std::string>("MANUFAC", "maker")));
@@ -107,7 +107,7 @@ TEST(IesFile, TakesNumbersInAnyLayoutAndOlderHeaders) {
 }
 
 // Planes to 190 degrees and none beyond: nothing in the file says what the other half does.
-TEST(IesFile, PlanesThatAreMissingAreTold) {
+TEST(IesFile, MissingPlanesAreReported) {
   const auto make = [](int last_deg, int skip_deg) {
     std::string horizontal, rows;
     int count = 0;
@@ -163,7 +163,7 @@ TEST(IesFile, UnfoldsEverySymmetry) {
   EXPECT_NEAR(value_at(full, 315), 2.5, 1e-12);
 }
 
-TEST(IesFile, NamesTheLineOfWhatIsWrong) {
+TEST(IesFile, NamesTheLineOfTheMistake) {
   expect_refused(with(small_ies, "TILT=NONE\n", ""), "TILT");
   expect_refused(with(small_ies, "100 50 0", "100 fifty 0"),
                  "lamp.ies:9: candela value: found \"fifty\"");
@@ -413,7 +413,7 @@ TEST(IesFile, AnyWordThatBeginsWithTiltIsNotItsTiltLine) {
   const std::string text = with(small_ies, "[TEST] by hand\n", "Tilting bracket 2\n");
   EXPECT_EQ(read_photometric(text, "lamp.ies").table.intensity,
             read_photometric(small_ies, "lamp.ies").table.intensity);
-  // Of 1986, without a first line that says what it is.
+  // Version of 1986, without a line that names the format.
   const std::string small =
       with(with(small_ies, "IESNA:LM-63-2002\n", ""), "TILT=NONE", "tilt = none");
   EXPECT_EQ(read_photometric(small, "lamp.ies").format, "LM-63-1986");

@@ -220,7 +220,7 @@ TEST(ZemaxRays, RefuseDamage) {
   }
 }
 
-TEST(LightToolsRays, NameTheLineOfWhatIsWrong) {
+TEST(LightToolsRays, NameTheLineOfTheMistake) {
   const std::string good =
       "# comment\nlt_length_units: meters\nlt_data_origin: 1 0 0\nlt_radiant_flux: 5\n"
       "lt_startofdata\n1 2 3 0 0 1 0.5\n 0 0 0 0 -1 0 1e0\n";
@@ -261,7 +261,7 @@ TEST(LightToolsRays, TakeNoDecimalCommaNoFluxOfZeroAndEachKeywordOnce) {
 }
 
 // The experiment's keys of a file go to the beam; what the file says for itself is said.
-TEST(RayFile, IsScaledToItsHeaderAndSaysSo) {
+TEST(RayFile, IsScaledToItsHeaderWithANotice) {
   const fs::path folder = fs::path(testing::TempDir()) / "ray_set_test";
   write_file_whole(folder / "three.tm25ray", write_tm25(three_rays()));
   std::vector<std::string> notices, inputs;

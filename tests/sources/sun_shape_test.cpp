@@ -167,7 +167,7 @@ TEST(SunShape, KeepsTheIrradiance) {
   }
 }
 
-TEST(SunShape, SaysWhatIsWrong) {
+TEST(SunShape, ReportsTheMistake) {
   const auto refuses = [](SettingsNode::Table shape, const std::string& words) {
     try {
       sun_of(std::move(shape));

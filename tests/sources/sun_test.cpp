@@ -205,7 +205,7 @@ TEST(LimbDarkening, NoneIsTheEvenDiscAndNonsenseIsRefused) {
   EXPECT_THROW(darkened_sun(0.0, 0.4, 0.3), InputError);
 }
 
-TEST(Sun, SaysWhatIsWrong) {
+TEST(Sun, ReportsTheMistake) {
   const SettingsNode::Table table = {{"direction", vector_node(0, 0, -1)}};
   EXPECT_THROW(make_beams("sun", {}), InputError);
   EXPECT_THROW(make_beams("sun", changed(table, {{"irradiance_W_m2", {-1.0}}})), InputError);

@@ -118,7 +118,7 @@ TEST(TabulatedIntensity, CellsAreSampledWithTheirShareOfTheFlux) {
   for (size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(counted[i], expected[i], 2e-5) << i;
 }
 
-TEST(TabulatedIntensity, PolesAcrossTheBeamShineWhereTheirAnglesSay) {
+TEST(TabulatedIntensity, PolesAcrossTheBeamEmitAtTheirAngles) {
   for (const Pole pole : {Pole::vertical, Pole::horizontal}) {
     IntensityTable table{pole, {}, {}, false, {}};
     for (int i = 0; i <= 18; ++i) table.polar_rad.push_back((45 + 5 * i) * deg);

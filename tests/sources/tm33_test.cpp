@@ -109,7 +109,7 @@ TEST(Tm33File, ReadsTypeBAsLm63Does) {
 // against the clock, from C0 towards C90, with v from the nadir. Directions in the emitter's frame,
 // which looks along the beam (z) with C0 along x and C90, seen from above on the left of C0, along
 // −y.
-TEST(Tm33File, ShinesWhereTheStandardsAnglesSay) {
+TEST(Tm33File, EmitsAtTheAnglesOfTheStandard) {
   constexpr double sine = 0.5, cosine = 0.86602540378443865;
   struct Lamp {
     const char* type;
@@ -190,7 +190,7 @@ TEST(Tm33File, LightLeavesTheBottomFace) {
   EXPECT_EQ(pair.notices.size(), 2u);
 }
 
-TEST(Tm33File, SaysWhatIsWrongAndWhere) {
+TEST(Tm33File, ReportsTheMistakeWithItsPlace) {
   expect_refused_at("<IESTM33-22>\n<Header>\n</Emitter>", "well-formed XML", 3);
   expect_refused_at("<html>\n</html>", "<html>", 1);
   expect_refused_at(document(""), "none with a table of intensities");

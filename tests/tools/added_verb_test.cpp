@@ -27,7 +27,7 @@ TEST(AddedVerb, IsReadWithItsOptionAndRun) {
   EXPECT_GT(std::count(text.begin(), text.end(), '\n'), 2);
 }
 
-TEST(AddedVerb, RefusesWhatItDoesNotKnow) {
+TEST(AddedVerb, RejectsUnknownInput) {
   const std::vector<Verb> verbs = all_verbs();
   std::vector<std::string> words = {"photorque", "count", "lab.toml", "--facets"};
   std::vector<char*> line;

@@ -57,22 +57,22 @@ double json_value(const std::string& text, const std::string& name) {
 TEST_F(ArrayCommand, TwinModulesAreOneCircuit) {
   write("plate.obj",
         "o plate\nv -0.4 -0.1 0\nv 0.4 -0.1 0\nv 0.4 0.1 0\nv -0.4 0.1 0\nusemtl m\nf 1 2 3 4\n");
-  std::string twin =
+  std::string doubled =
       "[scene]\nfile = \"plate.obj\"\nunit = \"m\"\n[[material]]\nname = \"m\"\nabsorptance = 1\n"
       "[[source]]\nkind = \"sun\"\ndirection = [0, 0, -1]\nirradiance_W_m2 = 1000\n"
       "angular_radius_deg = 0\n[[receiver]]\nkind = \"flux_map\"\nnode = \"plate\"\nbins = [8, 2]\n"
       "[trace]\nrays = 16384\n[array]\ncells = [8, 1]\nbypass = \"ideal\"\n"
       "temperature_K = 298.15\nCIRCUIT\n";
   for (const int index : {2, 3, 4, 5}) {
-    twin += "[[array.cell_override]]\nindex = " + std::to_string(index) +
-            "\nphotocurrent_factor = 0.5\n";
+    doubled += "[[array.cell_override]]\nindex = " + std::to_string(index) +
+               "\nphotocurrent_factor = 0.5\n";
   }
   for (const char* circuit : {"wiring = [ [ [ [[0, 1], [2, 3]] ], [ [[4, 5], [6, 7]] ] ] ]",
                               "circuit = [\"series 2 bypass\", \"parallel 2\", \"series 2\"]"}) {
-    std::string text = twin;
+    std::string text = doubled;
     text.replace(text.find("CIRCUIT"), 7, circuit);
-    write("twin.toml", text);
-    const Outcome got = run("power " + at("twin.toml") + " --json --out " + at("out"));
+    write("doubled.toml", text);
+    const Outcome got = run("power " + at("doubled.toml") + " --json --out " + at("out"));
     ASSERT_EQ(got.status, 0) << got.err;
     EXPECT_THAT(got.out, HasSubstr("22.272")) << circuit;
   }
@@ -229,14 +229,14 @@ TEST_F(ArrayCommand, ACompressedCurveIsTheSameCurve) {
   }
   write("plain.csv", rows);
   write("packed.csv.gz", gzip(rows));
-  std::vector<std::string> said;
+  std::vector<std::string> outputs;
   for (const char* file : {"plain.csv", "packed.csv.gz"}) {
     write("fit.toml", std::string("[fit]\ncurves = [\"") + file + "\"]\n");
     const Outcome got = run("fit-cell " + at("fit.toml") + " --out " + at("out"));
     ASSERT_EQ(got.status, 0) << got.err;
-    said.push_back(got.out);
+    outputs.push_back(got.out);
   }
-  EXPECT_EQ(said[0], said[1]);
+  EXPECT_EQ(outputs[0], outputs[1]);
 }
 
 // 1 A and 0.6 V of one cell, in closed form: no series resistance and no leak, noise 1e-3.
@@ -318,7 +318,7 @@ TEST_F(ArrayCommand, PowerReportsLossesTrackersDayTargetAndWiring) {
 }
 
 // 23 W and 30 W are the experiment's own [[published]] figures: with others the text is another.
-TEST_F(ArrayCommand, TargetTakesItsFiguresFromWhatWasPublished) {
+TEST_F(ArrayCommand, TargetUsesPublishedFigures) {
   const std::string stasis =
       (fs::path(PHOTORQUE_SOURCE_DIR) / "scenes/stasis/nominal.toml").string();
   const std::string common = "power " + stasis +

@@ -93,7 +93,7 @@ initial_apm = "attitude.apm"
   EXPECT_EQ(run("budget " + experiment + " --out " + at("b")).status, 0);
 }
 
-TEST_F(AttitudeCommands, PropagateWritesWhatTheContractNames) {
+TEST_F(AttitudeCommands, PropagateWritesTheFilesOfTheContract) {
   const Outcome got =
       run("propagate " + stasis + " --set propagate.duration_s=30 --out " + at("o"));
   ASSERT_EQ(got.status, 0) << got.err;

@@ -31,7 +31,7 @@ class CheckCommand : public CommandTest {
   }
 };
 
-TEST_F(CheckCommand, WhatIsShippedHasNoMistake) {
+TEST_F(CheckCommand, ShippedExperimentsHaveNoMistake) {
   size_t checked = 0;
   for (const auto& entry : fs::recursive_directory_iterator(shipped)) {
     if (entry.path().extension() != ".toml" || entry.path().stem() == "parameters") continue;
@@ -43,7 +43,7 @@ TEST_F(CheckCommand, WhatIsShippedHasNoMistake) {
   EXPECT_GE(checked, 9u);
 }
 
-TEST_F(CheckCommand, SaysWhatEachCommandWouldDo) {
+TEST_F(CheckCommand, ReportsTheEffectOfEachCommand) {
   const Outcome got = run("check " + (shipped / "stasis" / "nominal.toml").string());
   for (const std::string line :
        {"trace       12845056 rays of 49 lamps, 88 W, onto solar_array",
@@ -75,14 +75,14 @@ TEST_F(CheckCommand, LeavesNoCommandOut) {
   static const std::set<std::string> others = {"check", "new", "schema", "selftest"};
   for (const char* file :
        {"stasis/nominal.toml", "stasis/attitude.toml", "tabletop/tabletop.toml"}) {
-    const std::string said = run("check " + (shipped / file).string()).out;
+    const std::string message = run("check " + (shipped / file).string()).out;
     size_t asked = 0;
     for (std::sregex_iterator it(help.begin(), help.end(), verb), end; it != end; ++it) {
       const std::string name = (*it)[1];
       if (others.contains(name)) continue;
-      // Beside a sweep no search is said, as both read the same tables.
+      // Beside a sweep no search is message, as both read the same tables.
       const std::regex reported("(^|\n)(" + name + "  |not ([a-z-]+, )*" + name + "[,:])");
-      EXPECT_TRUE(std::regex_search(said, reported)) << file << ": " << name;
+      EXPECT_TRUE(std::regex_search(message, reported)) << file << ": " << name;
       ++asked;
     }
     EXPECT_GE(asked, 15u);
@@ -91,7 +91,7 @@ TEST_F(CheckCommand, LeavesNoCommandOut) {
 
 struct Planted {
   std::string file, from, to;  // the mistake
-  std::string line, said;      // where it is found, and what the line says
+  std::string line, message;   // where it is found, and what the line says
 };
 
 TEST_F(CheckCommand, FindsPlantedMistakesWithOneLineEach) {
@@ -107,7 +107,7 @@ TEST_F(CheckCommand, FindsPlantedMistakesWithOneLineEach) {
       {"nominal.toml", "kind = \"led_array\"", "kind = \"led_aray\"", ":20: source[0].kind",
        "did you mean \"led_array\"?"},
       {"attitude.toml", "table = \"light_torque.csv\"", "table = \"light_torqe.csv\"",
-       "light_torqe.csv", "found no such file"},
+       "].table: found \"light_torqe.csv\"", "perhaps \"light_torque.csv\""},
       {"nominal.toml", "wavelength_nm = 730", "wavelength_nm = 1730", ":19: source[0]",
        "outside the bands"},
       {"nominal.toml", "position_m = [0, 0, 1.0]", "position_m = [0, 0, 0]",
@@ -133,7 +133,7 @@ TEST_F(CheckCommand, FindsPlantedMistakesWithOneLineEach) {
     EXPECT_EQ(got.status, 2) << mistake.to;
     EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;
     EXPECT_THAT(got.err, HasSubstr(mistake.line)) << mistake.to;
-    EXPECT_THAT(got.err, HasSubstr(mistake.said)) << mistake.to;
+    EXPECT_THAT(got.err, HasSubstr(mistake.message)) << mistake.to;
   }
 }
 
@@ -153,13 +153,13 @@ TEST_F(CheckCommand, FindsEveryMisspeltKeyOfAFile) {
                           " --set platform.mass=7 --set array.bypass_evry=4");
   EXPECT_EQ(got.status, 2);
   EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 5) << got.err;
-  for (const std::string said : {"perhaps \"fwhm_deg\"", "perhaps \"bins\"", "perhaps \"rays\"",
-                                 "platform.mass", "perhaps \"bypass_every\""}) {
-    EXPECT_THAT(got.err, HasSubstr(said));
+  for (const std::string message : {"perhaps \"fwhm_deg\"", "perhaps \"bins\"", "perhaps \"rays\"",
+                                    "platform.mass", "perhaps \"bypass_every\""}) {
+    EXPECT_THAT(got.err, HasSubstr(message));
   }
 }
 
-TEST_F(CheckCommand, KnowsModulesAndPlansOfProve) {
+TEST_F(CheckCommand, ContainsModulesAndPlansOfProve) {
   const std::string datasheet =
       "[[module.datasheet]]\nshort_circuit_A = 5.116\nopen_circuit_V = 22.05\nmaximum_A = 4.66\n"
       "maximum_V = 17.63\n";
@@ -177,7 +177,7 @@ TEST_F(CheckCommand, KnowsModulesAndPlansOfProve) {
                                     "expected a known key, perhaps \"cells_in_series\""));
 }
 
-TEST_F(CheckCommand, NewWritesWhatRuns) {
+TEST_F(CheckCommand, NewWritesAnExperimentThatRuns) {
   const std::string model = (shipped / "stasis" / "stasis.gltf").string();
   const Outcome lit = run("new " + at("lab/lit.toml") + " --scene " + model);
   ASSERT_EQ(lit.status, 0) << lit.err;

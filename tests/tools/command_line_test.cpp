@@ -17,6 +17,7 @@ const fs::path scenes = fs::path(PHOTORQUE_SOURCE_DIR) / "scenes";
 class CommandLine : public CommandTest {};
 
 const std::string nominal = (scenes / "stasis" / "nominal.toml").string();
+const std::string attitude = (scenes / "stasis" / "attitude.toml").string();
 const std::string few_rays = " --set trace.rays=65536";
 
 // Ten digits that no file of numbers holds by chance.
@@ -37,7 +38,7 @@ TEST_F(CommandLine, JsonIsTheSummaryAndNothingElse) {
   EXPECT_THAT(got.out, HasSubstr("\"emitted_W\""));
 }
 
-TEST_F(CommandLine, QuietSaysNothing) {
+TEST_F(CommandLine, QuietPrintsNothing) {
   const Outcome got = run("trace " + nominal + few_rays + " --quiet --out " + at("o"));
   EXPECT_EQ(got.status, 0);
   EXPECT_EQ(got.out + got.err, "");
@@ -191,7 +192,7 @@ TEST_F(CommandLine, WrongInputIsOneLineStatusTwoAndNoFiles) {
   const std::string base = "trace " + nominal + few_rays + " ";
   const std::vector<WrongCall> calls = {
       {"", "found no command"},
-      {"trace", "experiment"},
+      {"trace", "found no experiment, expected one: photorque trace EXPERIMENT.toml"},
       {"fly " + nominal, "fly"},
       {"trace /nowhere/lab.toml", "/nowhere/lab.toml"},
       {"trace " + nominal + " --max-time 5", "target_error"},
@@ -212,13 +213,26 @@ TEST_F(CommandLine, WrongInputIsOneLineStatusTwoAndNoFiles) {
       {base + "--set source[0].power=4", "source[0].power"},
       {base + "--set source[0].fwhm_deg=-3", "fwhm_deg"},
       {base + "--set source[0].kind=torch", "led"},
-      {base + "--set source[7].power_W=1", "source[7]"},
+      {base + "--set source[7].power_W=1", "source[7].power_W: found index 7, expected index 0"},
       {base + "--set scene.file=missing.gltf", "missing.gltf"},
       {base + "--set receiver[0].node=solar_aray", "solar_array"},
       {base + "--set receiver[0].bins=[0,5]", "bins"},
       {base + "--set attitude.tilt_deg=400", "tilt_deg"},
       {base + "--set attitude.tilt_deg=nan", "tilt_deg"},
       {base + "--set nonsense", "nonsense"},
+      {base + "--set source[0].direction=[0,0,0]", "[0, 0, 0], expected a vector that is not zero"},
+      {base + "--sett trace.rays=4",
+       "--sett: found an unknown option, expected a known one, perhaps --set"},
+      {base + nominal, "nominal.toml, expected nothing more"},
+      {base + "--format jpg", "--format: found \"jpg\", expected one of exr"},
+      {"schema --key source.powr_W",
+       "found \"source.powr_W\", expected a key with its table, perhaps "
+       "source.power_W"},
+      {"budget " + attitude + " --set 'disturbance={kind=\"bearing_drag\"}'",
+       "disturbance.kind: found \"bearing_drag\" without its keys, expected also "
+       "coefficient_N_m_s"},
+      {"budget " + attitude + " --set 'disturbance={kind=\"radiation_pressure\",table=\"no.csv\"}'",
+       "disturbance.table: found \"no.csv\", expected an existing file"},
       {"power " + nominal + few_rays + " --set array.strings=7", "strings"},
       {"power " + nominal + few_rays + " --set array.cell=banana", "banana"},
       {"power " + (scenes / "spacecraft" / "spacecraft.toml").string(), "array"},

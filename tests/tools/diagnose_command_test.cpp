@@ -46,15 +46,15 @@ noise_rad_s = 2e-4
 duration_s = 30
 initial_rate_rad_s = [0.01, 0.02, 0.05]
 )");
-    const Outcome flown = run("propagate " + experiment_ + " --quiet -o " + at("flown"));
-    ASSERT_EQ(flown.status, 0) << flown.err;
-    recording_ = at("flown/recording.csv");
+    const Outcome propagated = run("propagate " + experiment_ + " --quiet -o " + at("propagated"));
+    ASSERT_EQ(propagated.status, 0) << propagated.err;
+    recording_ = at("propagated/recording.csv");
   }
 
   std::string experiment_, recording_;
 };
 
-TEST_F(DiagnoseCommand, WhatItImprovesFindsItsFilesFromItsFolder) {
+TEST_F(DiagnoseCommand, ImprovedExperimentsFindTheirFiles) {
   const Outcome found = run("diagnose " + experiment_ + " --recording " + recording_ +
                             " --quiet --out " + at("deep/down/answer"));
   ASSERT_EQ(found.status, 0) << found.err;
@@ -64,7 +64,7 @@ TEST_F(DiagnoseCommand, WhatItImprovesFindsItsFilesFromItsFolder) {
   EXPECT_EQ(again.status, 0) << again.err;
 }
 
-TEST_F(DiagnoseCommand, WhatItImprovesHasTheChangesOfTheCommandLine) {
+TEST_F(DiagnoseCommand, ImprovedExperimentsHaveTheChangesOfTheCommandLine) {
   const Outcome found = run("diagnose " + experiment_ + " --recording " + recording_ +
                             " --set platform.mass_kg=12 --set environment.gravity_m_s2=0 --quiet "
                             "--out " +
@@ -93,7 +93,7 @@ TEST_F(DiagnoseCommand, FiguresAreWrittenInTheFormatsThatAreAskedFor) {
   EXPECT_THAT(refused.err, HasSubstr("found \"jpg\", expected"));
 }
 
-TEST_F(DiagnoseCommand, RecordingsOfTwoKindsAreToldByName) {
+TEST_F(DiagnoseCommand, RecordingsOfTwoKindsAreListedByName) {
   const std::string curve = write("curve.csv", "voltage_V,current_A\n0,1\n0.3,0.9\n0.5,0\n");
   for (const std::string& both : {"--recording " + recording_ + " --recording " + curve,
                                   "--recording " + recording_ + " --holdout " + curve}) {
@@ -183,14 +183,14 @@ initial_rate_rad_s = [0, 0, 0.05]
 )");
   Outcome got = run("power " + lab + " --quiet --out " + at("power"));
   ASSERT_EQ(got.status, 0) << got.err;
-  got = run("propagate " + lab + " --quiet --out " + at("flown"));
+  got = run("propagate " + lab + " --quiet --out " + at("propagated"));
   ASSERT_EQ(got.status, 0) << got.err;
   const auto power = nlohmann::json::parse(file_text(at("power/summary.json")));
   const auto figure = [&](const char* name) { return power[name]["value"].dump(); };
-  const std::string both =
-      write("run.csv",
-            with_columns(file_text(at("flown/recording.csv")), ",array_voltage_V,array_current_A",
-                         "," + figure("array_voltage_V") + "," + figure("array_current_A")));
+  const std::string both = write(
+      "run.csv",
+      with_columns(file_text(at("propagated/recording.csv")), ",array_voltage_V,array_current_A",
+                   "," + figure("array_voltage_V") + "," + figure("array_current_A")));
   got = run("diagnose " + lab + " --recording " + both + " --quiet --out " + at("answer"));
   ASSERT_EQ(got.status, 0) << got.err;
   const auto json = nlohmann::json::parse(file_text(at("answer/diagnosis.json")));
@@ -202,13 +202,13 @@ initial_rate_rad_s = [0, 0, 0.05]
   got = run("check " + at("answer/improved.toml"));
   EXPECT_EQ(got.status, 0) << got.err;
   // No light among the recordings, no light held out.
-  got = run("diagnose " + lab + " --recording " + at("flown/recording.csv") + " --holdout " + both +
-            " --quiet --out " + at("answer"));
+  got = run("diagnose " + lab + " --recording " + at("propagated/recording.csv") + " --holdout " +
+            both + " --quiet --out " + at("answer"));
   EXPECT_EQ(got.status, 2);
   EXPECT_THAT(got.err, HasSubstr("run.csv: found a recording of light"));
 }
 
-TEST_F(DiagnoseCommand, AnExperimentWithoutACommandIsToldSo) {
+TEST_F(DiagnoseCommand, AnExperimentWithoutACommandIsReported) {
   const Outcome alone = run(experiment_);
   EXPECT_EQ(alone.status, 2);
   EXPECT_THAT(alone.err, HasSubstr("expected a command before it"));

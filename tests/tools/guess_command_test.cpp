@@ -45,7 +45,7 @@ class GuessCommand : public CommandTest {
   }
 };
 
-TEST_F(GuessCommand, PrintsWhatItWritesAndKeepsWhatSomebodyChanged) {
+TEST_F(GuessCommand, PrintsItsFilesAndKeepsChangedOnes) {
   std::string rows = "t_s,angle_deg\n";
   for (int i = 0; i < 100; ++i) rows += std::to_string(i) + "," + std::to_string(i * i) + "\n";
   const std::string recording = write("disc.csv", rows);

@@ -75,8 +75,8 @@ class Readers {
   // Declared keys that no reader knows as they are declared.
   std::set<std::string> amiss() const {
     std::set<std::string> left;
-    for (const auto& [key, said] : tried_) {
-      if (!agreed_.contains(key)) left.insert(key + ": " + said);
+    for (const auto& [key, message] : tried_) {
+      if (!agreed_.contains(key)) left.insert(key + ": " + message);
     }
     return left;
   }
@@ -134,28 +134,29 @@ class Readers {
     SettingsNode::Table before = table;
     std::erase_if(table, [&](const auto& item) { return is_same_quantity(item.first, key.name); });
     table[key.name] = of_wrong_type(key);
-    const std::string said = all_of(checked(file, root, KeyCheck::by_readers));
+    const std::string message = all_of(checked(file, root, KeyCheck::by_readers));
     table = std::move(before);
-    tried_[id] = said.empty() ? "nothing was said" : said;
+    tried_[id] = message.empty() ? "nothing was message" : message;
     // A value that a reader accepts is known to it.
-    const bool taken = key.type == Key::Type::other && said.empty();
-    if (taken || agrees(said, key, full)) agreed_.insert(id);
+    const bool taken = key.type == Key::Type::other && message.empty();
+    if (taken || agrees(message, key, full)) agreed_.insert(id);
   }
 
-  static bool agrees(const std::string& said, const Key& key, const std::string& full) {
+  static bool agrees(const std::string& message, const Key& key, const std::string& full) {
     constexpr size_t longest = 180;  // of what an error shows
     std::string expected = expected_of(key);
     if (key.range_varies) expected = expected.substr(0, expected.find_first_of("0123456789<>[(\""));
     const std::string line = full + ": found " + describe(of_wrong_type(key)) + ", expected ";
-    if (key.type == Key::Type::other) return said.find(": " + full) != std::string::npos;
+    if (key.type == Key::Type::other) return message.find(": " + full) != std::string::npos;
     if (key.type == Key::Type::table || key.type == Key::Type::tables) {
-      return said.find(": " + line + "a table") != std::string::npos ||
-             said.find(": " + line + "tables [[") != std::string::npos;
+      return message.find(": " + line + "a table") != std::string::npos ||
+             message.find(": " + line + "tables [[") != std::string::npos;
     }
-    const size_t at = said.find(": " + line + expected.substr(0, longest));
+    const size_t at = message.find(": " + line + expected.substr(0, longest));
     if (at == std::string::npos) return false;
     // And nothing beyond.
-    const std::string rest = said.substr(at + 2 + line.size() + std::min(expected.size(), longest));
+    const std::string rest =
+        message.substr(at + 2 + line.size() + std::min(expected.size(), longest));
     return key.range_varies || expected.size() > longest || rest.starts_with("\n");
   }
 

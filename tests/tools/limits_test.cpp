@@ -108,10 +108,10 @@ TEST_F(Limits, CoincidentFacesAreNamed) {
       nlohmann::json::parse(file_text(scenes_of_limits / "dumbbell" / "dumbbell.gltf"));
   size_t with_mesh = 0;
   while (!model["nodes"][with_mesh].contains("mesh")) ++with_mesh;
-  nlohmann::json twin = model["nodes"][with_mesh];
-  twin["name"] = "twin";
-  twin.erase("children");
-  model["nodes"].push_back(twin);
+  nlohmann::json copied_node = model["nodes"][with_mesh];
+  copied_node["name"] = "twin";
+  copied_node.erase("children");
+  model["nodes"].push_back(copied_node);
   bool placed = false;
   for (auto& node : model["nodes"]) {
     if (!node.contains("children")) continue;

@@ -28,7 +28,7 @@ class Optimise : public SweepTest {
     return json::parse(file_text(at(out + "/summary.json")));
   }
   double figure(const std::string& name) const { return summary()[name]["value"]; }
-  // Of the best design.
+  // Value of an axis of the best design.
   double axis(const std::string& key) const {
     return csv_column(at("out/optimise.csv"), key)
         .at(static_cast<size_t>(figure("best_design")) - 1);
@@ -101,7 +101,7 @@ at_most = 120
 
 // The libraries count points that are none of their business (infeasible, failed) otherwise than
 // the limit says: 409 runs of "at most 12". One run more is the experiment's own.
-TEST_F(Optimise, MakesNoMoreDesignsThanItSays) {
+TEST_F(Optimise, MakesAtMostTheStatedNumberOfDesigns) {
   experiment(std::string(R"([sweep]
 verb = "trace"
 maximise = "power_on_plate_W"
@@ -143,7 +143,7 @@ TEST_F(Optimise, GoesOnWhereItWasKilledToTheSameEnd) {
   EXPECT_EQ(file_text(at("out/optimise.csv")), file_text(at("reference/optimise.csv")));
 }
 
-TEST_F(Optimise, WantsRangesAndAGoal) {
+TEST_F(Optimise, RequiresRangesAndAnObjective) {
   const std::string axis = "[[sweep.axis]]\nkey = \"attitude.tilt_deg\"\n";
   experiment("[sweep]\nverb = \"trace\"\nmaximise = \"power_on_plate_W\"\n" + axis +
              "values = [1, 2]\n");
@@ -177,7 +177,7 @@ TEST_F(Optimise, CopiesAsBuiltFollowTheirTolerance) {
   const double reached = all["best_p95_power_on_plate_W"]["value"];
   const double error = all["best_p95_power_on_plate_W"]["standard_error"];
   EXPECT_NEAR(reached, full_W * (1.0 - 1.6449 * 0.03), 0.002 * full_W);
-  // Of independent draws: √(f (1 − f) / n) over the density at the quantile.
+  // For independent draws: √(f (1 − f) / n) over the density at the quantile.
   EXPECT_NEAR(error, full_W * 0.03 * std::sqrt(0.05 * 0.95 / 400.0) / 0.1031, 0.3 * error);
   // Equal draws for both: copies differ by what the designs are, cos 10.5 deg, to rounding.
   const auto best = csv_column(at("out/built.csv"), "best_power_on_plate_W");

@@ -70,7 +70,7 @@ TEST_F(OutputFolders, ThatAreFilesAreFoundBeforeTheWork) {
 }
 
 // An improved.toml that is diagnosed again into its own folder, say.
-TEST_F(OutputFolders, WhoseResultIsTheInputAreFoundBeforeTheWork) {
+TEST_F(OutputFolders, ResultsThatReplaceTheInputAreRejectedBeforeTheRun) {
   const std::string text = file_text(lit_platform);
   fs::create_directories(at("o"));
   write("o/again.toml", text);
@@ -209,7 +209,7 @@ TEST_F(OutputFolders, AreFreeAsSoonAsARunWasStopped) {
   }
 }
 
-TEST_F(OutputFolders, AreClearedOfWhatKilledRunsLeft) {
+TEST_F(OutputFolders, AreClearedOfFilesOfKilledRuns) {
   const pid_t child = start(endless + " --out " + at("o"));
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);

@@ -103,7 +103,7 @@ TEST(Packets, AMillionOfNonsenseAreRefused) {
   EXPECT_EQ(admitted->command.torque_body_N_m[1], 0.1);
 }
 
-TEST(Packets, AreRefusedForWhatTheySay) {
+TEST(Packets, AreRejectedForTheirContent) {
   Gate gate = gate_with_client();
   const auto admitted = [&](const auto& packet, uint64_t sender = 5, int64_t now_ns = 0) {
     return gate.admit(bytes_of(packet), sender, now_ns).has_value();
@@ -132,8 +132,8 @@ TEST(Packets, AreRefusedForWhatTheySay) {
   EXPECT_TRUE(admitted(header_of(PHOTORQUE_HELLO, 1, 0), 5, 3 * second_ns));
 }
 
-// Of what came before the hello nothing counts, from another address or, of a program that was
-// started again, from the same. A hello that is only repeated begins nothing.
+// Packets before the hello are ignored, from another address or from an earlier program at the same
+// address. A repeated hello starts no session.
 TEST(Packets, ASessionBeginsWithItsHello) {
   Gate gate(this_run, 0.5, 2 * second_ns);
   const photorque_header hello = header_of(PHOTORQUE_HELLO, 1, 0);

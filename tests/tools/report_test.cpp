@@ -112,14 +112,14 @@ TEST(Report, ShowsScansBesideTheirModels) {
   }
 }
 
-TEST(Report, DrawsTheArrayWithWhatWasFound) {
+TEST(Report, DrawsTheArrayWithTheFindings) {
   const std::string page = report(diagnosis_of_light());
   EXPECT_THAT(page, HasSubstr("The array, cells by their numbers, those concerned marked"));
   EXPECT_THAT(page, HasSubstr("alt=\"the array\""));
   EXPECT_THAT(report(sample_diagnosis()), Not(HasSubstr("\" alt=\"the array\"")));
 }
 
-TEST(Report, SaysTheFindingFirstAndEscapesIt) {
+TEST(Report, StatesTheFindingFirstAndEscapesIt) {
   const std::string page = report(sample_diagnosis());
   const size_t at = page.find(">A magnetic dipole acts &amp; &lt;explains&gt; what differs.</p>");
   ASSERT_NE(at, std::string::npos);
@@ -161,7 +161,7 @@ TEST(Report, HoldsNumbersWithTheirErrorsAndUnits) {
   EXPECT_THAT(page, HasSubstr("outlier"));
 }
 
-TEST(ReportCharts, PutReadingsAboveResidualsAndShadeWhatWasHeldOut) {
+TEST(ReportCharts, PutReadingsAboveResidualsAndShadeHeldOutData) {
   const RecordingSeries recording = sample_diagnosis().series.at(0);
   const ChannelSeries& channel = recording.channels.at(0);
   const Plot plot = channel_plot(channel, recording);
@@ -183,7 +183,7 @@ TEST(ReportCharts, PutReadingsAboveResidualsAndShadeWhatWasHeldOut) {
   EXPECT_EQ(one_panel.curves.at(0).y, channel.residual_before);
 }
 
-TEST(ReportCharts, RankingLeavesOutWhatIsRuledOutAndMarksTheChosen) {
+TEST(ReportCharts, RankingOmitsRejectedTrialsAndMarksTheChosen) {
   Diagnosis d;
   d.alternatives = {{.kinds = {"tether"}, .log_evidence_relative = 120.0, .chosen = true},
                     {.kinds = {"room_draft", "tether"}, .log_evidence_relative = 117.0},
@@ -199,10 +199,10 @@ TEST(ReportCharts, RankingLeavesOutWhatIsRuledOutAndMarksTheChosen) {
 }
 
 TEST(Report, WritesUnitsAsPeopleReadThem) {
-  EXPECT_EQ(unit_for_people("A_m2"), "A m²");
-  EXPECT_EQ(unit_for_people("N_m_s2"), "N m s²");
-  EXPECT_EQ(unit_for_people("N_m_s_per_T2"), "N m s/T²");
-  EXPECT_EQ(unit_for_people("m_s2"), "m/s²");
+  EXPECT_EQ(printed_unit("A_m2"), "A m²");
+  EXPECT_EQ(printed_unit("N_m_s2"), "N m s²");
+  EXPECT_EQ(printed_unit("N_m_s_per_T2"), "N m s/T²");
+  EXPECT_EQ(printed_unit("m_s2"), "m/s²");
 }
 
 // Scripts find every number of diagnosis.json by its key, with all of its digits.

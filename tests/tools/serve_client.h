@@ -106,10 +106,10 @@ class ServeCommand : public CommandTest {
   // From the line "serving at 127.0.0.1:PORT, …".
   int port_when_known() const {
     for (int i = 0; i < 3000; ++i) {
-      const std::string said = file_text(at("stdout"));
-      const size_t found = said.find("127.0.0.1:");
-      if (found != std::string::npos && said.find('\n', found) != std::string::npos) {
-        return std::atoi(said.c_str() + found + 10);
+      const std::string output = file_text(at("stdout"));
+      const size_t found = output.find("127.0.0.1:");
+      if (found != std::string::npos && output.find('\n', found) != std::string::npos) {
+        return std::atoi(output.c_str() + found + 10);
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }

@@ -135,7 +135,7 @@ TEST_F(Lockstep, IsTheSameAtAnotherRate) {
 }
 
 // A camera whose noise follows from its geometry, at the attitude and rate of every tick.
-TEST_F(Lockstep, SendsWhatACameraOfMarkersSees) {
+TEST_F(Lockstep, SendsReadingsOfAMarkerCamera) {
   const std::string experiment = std::string(PHOTORQUE_SOURCE_DIR) +
                                  "/scenes/stasis/camera.toml --set propagate.duration_s=0.5";
   const auto sent =
@@ -327,7 +327,7 @@ TEST_F(Paced, ReadsABoundedNumberOfPacketsATick) {
   EXPECT_LE(summary.at("packets_refused").at("value").get<double>(), 12 * 256.0);
 }
 
-TEST_F(Paced, KeepsTheClockAndTellsItsDeadlines) {
+TEST_F(Paced, KeepsTheClockAndReportsDeadlines) {
   const std::string experiment = write("p.toml", served_platform);
   const auto begin = std::chrono::steady_clock::now();
   const auto sent = serve(experiment + " --set propagate.duration_s=1 --out " + at("s"), damping);

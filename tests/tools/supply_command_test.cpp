@@ -65,7 +65,7 @@ TEST_F(SupplyCommand, BatteryFollowsFromEnergyAndLithium) {
               1e-6);
 }
 
-TEST_F(SupplyCommand, WaysDeliverTheLoadWhenLevelAndLessWhenTilted) {
+TEST_F(SupplyCommand, SuppliesDeliverTheLoadAtZeroTiltAndLessWhenTilted) {
   const json all = summary();
   for (const char* way : {"battery", "cable", "microwave_5_8_GHz", "induction"}) {
     EXPECT_NEAR(of(all, std::string(way) + "_delivered_level_W"), 20.0, 1e-9) << way;

@@ -26,7 +26,7 @@ class Sweep : public CommandTest {
     outcome_ = run("sweep " + file + " --out " + at("out") + " " + options);
     return outcome_.status;
   }
-  std::string said() const { return outcome_.out; }
+  std::string output() const { return outcome_.out; }
   std::string complained() const { return outcome_.err; }
 
  private:
@@ -67,14 +67,14 @@ TEST_F(Sweep, TakesEveryCombinationOfAGrid) {
 
 TEST_F(Sweep, GoesOnWhereItStopped) {
   ASSERT_EQ(sweep(grid, "--shard 1/2"), 0) << complained();
-  EXPECT_THAT(said(), HasSubstr("3 run now, 0 kept"));
+  EXPECT_THAT(output(), HasSubstr("3 run now, 0 kept"));
   EXPECT_FALSE(fs::exists(folder_ / "out/sweep.csv"));
   ASSERT_EQ(sweep(grid), 0);
-  EXPECT_THAT(said(), HasSubstr("3 run now, 3 kept"));
+  EXPECT_THAT(output(), HasSubstr("3 run now, 3 kept"));
   const std::string first = file_text(folder_ / "out/sweep.csv");
   // Another experiment is another set of designs.
   ASSERT_EQ(sweep(grid, "--seed 9"), 0);
-  EXPECT_THAT(said(), HasSubstr("6 run now, 0 kept"));
+  EXPECT_THAT(output(), HasSubstr("6 run now, 0 kept"));
   EXPECT_NE(file_text(folder_ / "out/sweep.csv"), first);
 }
 

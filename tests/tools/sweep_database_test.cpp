@@ -148,7 +148,7 @@ TEST_F(SweepDatabase, InAReadOnlyFolderIsOneLine) {
   EXPECT_THAT(got.err, HasSubstr("--out"));
 }
 
-TEST_F(SweepDatabase, TellsFilesByTheirContent) {
+TEST_F(SweepDatabase, RecognisesFilesByTheirContent) {
   ASSERT_EQ(sweep().status, 0);
   const std::string small = file_text(at("out/sweep.csv"));
   // Equal content at another time, and an experiment with equal meaning in other words.

@@ -86,7 +86,7 @@ TEST_F(TrackingCommands, EstimatesAreRecordingsThatOthersRead) {
 }
 
 // Notes on a recording, and channels that cannot be compared.
-TEST_F(TrackingCommands, AnEstimateSaysWhatItCouldNotRead) {
+TEST_F(TrackingCommands, AnEstimateListsUnreadableRows) {
   std::string rows = "t_s,q_w,q_x,q_y,q_z,wx,gyro_y_rad_s,gyro_z_rad_s\n",
               truth = "t_s,q_w,q_x,q_y,q_z\n";
   for (int i = 0; i < 100; ++i) {

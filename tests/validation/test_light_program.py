@@ -14,7 +14,7 @@ from validation.light import effects, files, readings, scenarios, setting
 from validation.light.circuit import LitCircuit
 
 PROGRAM = os.environ.get("PHOTORQUE_PROGRAM", "")
-# Of the program's maximum power, whose map has 20 bins along each edge of a cell.
+# Tolerance of the maximum power by the program, whose map has 20 bins along each edge of a cell.
 POWER_TOLERANCE = 5e-4
 
 

@@ -138,7 +138,7 @@ class AgainstTheProgram(unittest.TestCase):
                  "--out", str(self.folder / "out"), "--quiet"]  # fmt: skip
         self.assertEqual(prove.main(words), 0)
         self.assertIn("| all cases: verdict and names right | 2 of 2 |", page.read_text())
-        self.assertIn("| improved.toml that repeats the recording as well as stated | 2 of 2 |", page.read_text())
+        self.assertIn("| improved.toml that reproduces the recording with the stated χ² | 2 of 2 |", page.read_text())
         summary = json.loads((self.folder / "out" / "summary.json").read_text())
         self.assertEqual(summary["cases"]["value"], 2)
         # Cases diagnosed by this program are not diagnosed again.

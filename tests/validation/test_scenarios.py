@@ -4,6 +4,7 @@ import gzip
 import json
 import math
 import pathlib
+import re
 import tempfile
 import unittest
 
@@ -24,11 +25,10 @@ NOTHING = {"per_kind": 0, "none": 0, "pairs": 0, "outside": 0}
 
 
 def documented_kinds():
-    """{kind: what diagnose screens it by} of the table in docs/disturbances.md."""
+    """{kind: its meaning in docs/disturbances.md, with the expected sizes of its parameters}."""
     page = (ROOT / "docs/disturbances.md").read_text()
-    table = page[page.index("| `kind` | in one sentence |") :].split("\n\n")[0].splitlines()[2:]
-    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in table]
-    return {row[0].strip("`"): row[2] for row in rows}
+    tables = re.findall(r"<!-- keys disturbance .*?begin -->(.*?)<!-- keys", page, re.DOTALL)
+    return dict(re.findall(r"^\| \*\*`(\w+)`\*\* \|  \|  \| (.*) \|$", "".join(tables), re.MULTILINE))
 
 
 class Catalogue(unittest.TestCase):

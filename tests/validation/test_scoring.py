@@ -143,7 +143,7 @@ class Counts(unittest.TestCase):
         self.assertEqual(hits_of(scores, "without a stated prediction"), (1, 3))
         scores = [answer(oracle_chi2=1.0, holdout_chi2=h, expected_chi2=e) for h, e in ((1.0, 1.01), (1.2, 1.02), (3.0, 2.5))]
         self.assertEqual(hits_of(scores, "within 10 %"), (1, 3))
-        self.assertEqual(hits_of(scores, "the same, of those"), (1, 2))
+        self.assertEqual(hits_of(scores, "as above, if parameter"), (1, 2))
 
     def test_calibration_is_the_mean_distance_by_bins(self):
         """Ten answers at 0.9 of which six are right, ten at 0.45 of which five are: (|9 − 6| + |4.5 − 5|)/20."""

@@ -1,4 +1,4 @@
-// How time grows with triangles and with emitters, as tables with fitted exponents.
+// Computing time over the number of triangles and of emitters, with fitted exponents.
 //
 //   scaling_benchmark [largest number of triangles, 1e7]
 //

@@ -212,7 +212,7 @@ std::vector<std::vector<Ray>> batches_of(const Case& which, const TraceableScene
                                          bool sorted) {
   std::vector<std::vector<Ray>> batches(std::min<size_t>(which.beams.size(), 8));
   LaunchBuffer launched;
-  // Of one replicate of one beam in `forward`.
+  // Rays of one replicate of one beam in `forward`.
   const int log2_rays = std::countr_zero(std::bit_ceil(forward_rays / 16 / which.beams.size()));
   for (size_t b = 0; b < batches.size(); ++b) {
     const Beam& beam = which.beams[b * which.beams.size() / batches.size()];

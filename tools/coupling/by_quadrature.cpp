@@ -69,13 +69,13 @@ class SunlitDirections final : public LightDirections {
         if (k >= torque) square += error * error / 3.0 / static_cast<double>(table.nodes());
       }
     }
-    say(std::sqrt(square), table, console, threads, warnings);
+    print_comparison(std::sqrt(square), table, console, threads, warnings);
   }
 
  private:
   // Prints the difference between table and rays in other directions, and its expected size.
-  void say(double stated_N_m, const WrenchTable& table, const Console& console, int threads,
-           std::vector<std::string>& warnings) const {
+  void print_comparison(double stated_N_m, const WrenchTable& table, const Console& console,
+                        int threads, std::vector<std::string>& warnings) const {
     constexpr size_t fresh = 16;
     constexpr uint64_t rays = 1 << 19;
     const std::vector<RigidTransform> attitudes = fresh_directions(fresh, sun_);

@@ -16,8 +16,8 @@ WrenchComponents components_of(const Wrench& wrench) {
 
 // Wrench of light after its first contact, about a point, twice: from either half of the
 // replicates.
-TwofoldWrench bounced_of(const WrenchReceiver& receiver, const BinSums& sums,
-                         const Vec3& about_body_m) {
+WrenchPair bounced_of(const WrenchReceiver& receiver, const BinSums& sums,
+                      const Vec3& about_body_m) {
   const int half = sums.replicates / 2;
   const auto mean = [&](int from, int to) {
     WrenchComponents all{};
@@ -46,7 +46,7 @@ class TracedDirections final : public LightDirections {
   // Bounced light smoothed, unless neighbours are too far apart for that.
   void fill(WrenchTable& table, const std::vector<DirectionWrench>& found, bool whole,
             const Console& console, int threads, std::vector<std::string>&) const override {
-    std::vector<TwofoldWrench> halves;
+    std::vector<WrenchPair> halves;
     double own_square = 0.0, smooth_square = 0.0;
     for (size_t node = 0; node < table.nodes(); ++node) {
       halves.push_back(found[node].bounced);
@@ -66,7 +66,7 @@ class TracedDirections final : public LightDirections {
     for (size_t node = 0; node < table.nodes(); ++node) {
       WrenchComponents value{}, error{};
       for (size_t k = 0; k < 6; ++k) {
-        const TwofoldWrench& one = halves[node];
+        const WrenchPair& one = halves[node];
         value[k] = smooth ? smooth->at_node[6 * node + k] : 0.5 * (one.first[k] + one.second[k]);
         error[k] = smooth  ? smooth->error[k]
                    : whole ? std::sqrt(own_square / 3.0 / static_cast<double>(halves.size()))
@@ -74,7 +74,7 @@ class TracedDirections final : public LightDirections {
       }
       add(table, node, value, error);
     }
-    if (smooth) say(*smooth, table, console, threads);
+    if (smooth) print_comparison(*smooth, table, console, threads);
   }
 
  private:
@@ -104,8 +104,8 @@ class TracedDirections final : public LightDirections {
   }
 
   // Prints the difference between series and rays in directions to which it was not fitted.
-  void say(const SmoothWrench& smooth, const WrenchTable& table, const Console& console,
-           int threads) const {
+  void print_comparison(const SmoothWrench& smooth, const WrenchTable& table,
+                        const Console& console, int threads) const {
     constexpr size_t fresh = 32;
     constexpr uint64_t more = 8;  // rays, so that their own noise counts less
     const ExperimentFile& file = run_.experiment().file;
@@ -114,7 +114,7 @@ class TracedDirections final : public LightDirections {
     parallel_for(fresh, threads, [&](size_t i) {
       const OpticalResult result =
           run_.run(attitudes[i], {}, more * file.torque_map_rays.value_or(file.trace.rays));
-      const TwofoldWrench truth =
+      const WrenchPair truth =
           bounced_of(run_.wrench(), result.sums[run_.wrench_index()], about_body_m_);
       const Vec3 towards_body = attitudes[i].inverse().direction(sun_.towards_lab);
       const TableAngles angles = azimuth_and_elevation(towards_body);

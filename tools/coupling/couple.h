@@ -57,7 +57,7 @@ struct CoupledResult {
   std::unique_ptr<LightModel> light;
   std::shared_ptr<const RotationTable> table;  // null where light was traced in the run
   std::unique_ptr<CoupledRun> beside;          // null where light is a torque alone
-  // How far the table's error can have turned the body at the end, of runs up to an hour.
+  // Upper limit for the rotation at the end by the error of the table, for runs up to an hour.
   std::optional<double> attitude_error_rad;
   std::vector<std::string> warnings;  // where the table is further off than light.tolerance
 };

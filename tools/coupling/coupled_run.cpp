@@ -37,7 +37,9 @@ std::vector<GroupOutput> group_outputs(const LightModel& light, const LightSetti
                                                                  schedule, start_s)});
     outputs.back().corners_s = light.corners_s();
     if (!outputs.back().corners_s.empty()) {
-      outputs.back().share = [&light, group](double time_s) { return light.share(group, time_s); };
+      outputs.back().weight = [&light, group](double time_s) {
+        return light.weight(group, time_s);
+      };
     }
   }
   return outputs;
@@ -59,7 +61,7 @@ CoupledRun::CoupledRun(const LightModel& light, std::shared_ptr<const RotationTa
       power_(run.initial.time_s, run.initial.charge_drawn_C) {
   for (const GroupOutput& group : outputs_) {
     has_sun_ = has_sun_ || group.group.is_sun;
-    if (group.group.position > 0) continue;  // lamps as at the first position
+    if (group.group.position > 0) continue;  // all positions have the same lamps
     const auto& all = group.output->switches_s();
     switches_s_.insert(switches_s_.end(), all.begin(), all.end());
     for (const double time_s : all) {
@@ -86,8 +88,8 @@ double CoupledRun::output(const GroupOutput& group, double time_s, double illumi
   return group.at(time_s) * (group.group.is_sun ? illumination : 1.0);
 }
 
-// The next segment ends at the next exchange, switch or end of the run; the power system has its
-// steps in it.
+// The next segment ends at the next exchange, at a switch or at the end of the run. The power
+// system divides it into its own steps.
 void CoupledRun::plan(double from_s) {
   const double steps = std::floor((from_s - start_s_) / step_s_ + 1e-9) + 1.0;
   segment_from_s_ = from_s;
@@ -118,7 +120,7 @@ void CoupledRun::begin(Propagator& motion) {
   }
   double current_A = 0.0;
   if (supply_) {
-    // The current of the battery at the start, by a step that does not count.
+    // The battery current at the start follows from a step that is discarded.
     PowerSupply trial = *supply_;
     trial.step(start_s_, 1e-3, light_of(now));
     current_A = -trial.state().battery_W / battery_voltage_V_;
@@ -204,13 +206,13 @@ ContinuedTorque CoupledRun::continued(double illumination) const {
 }
 
 void CoupledRun::look_for_light(double time_s, double light_W) {
-  constexpr double dark = 1e-3;  // of the most light so far
+  constexpr double dark = 1e-3;  // of the largest light so far
   max_light_W_ = std::max(max_light_W_, light_W);
   const double limit_W = dark * max_light_W_;
   const bool lit = light_W > limit_W;
   if (lit != is_lit_ && max_light_W_ > 0.0) {
-    // When lamps are switched, at the beginning of a segment, the light jumps; otherwise the time
-    // follows by linear interpolation.
+    // Lamps are switched at the beginning of a segment. Otherwise the time of the event follows by
+    // linear interpolation.
     double when_s = segment_from_s_;
     const bool jumps = last_light_s_ <= segment_from_s_ &&
                        std::ranges::binary_search(switches_s_, segment_from_s_);
@@ -225,7 +227,7 @@ void CoupledRun::look_for_light(double time_s, double light_W) {
   last_light_s_ = time_s;
 }
 
-// The power system over the segment, along the light that was passed.
+// Simulates the power system over the segment in the light along the motion.
 void CoupledRun::run_supply() {
   PowerRow row;
   double length_s = 0.0;
@@ -233,8 +235,8 @@ void CoupledRun::run_supply() {
     const Instant& instant = instants_[i];
     const PowerSupply::Light light = light_of(instant);
     look_for_light(instant.middle_s(), light.on_cells_W);
-    // The best point of the array takes longer to find than what a tracker does; it is looked for
-    // now and then.
+    // The search for the maximum power point takes longer than a step of the tracker and is done at
+    // intervals only.
     const bool judge = !supply_->design().tracker || (i == 0 && rows_.size() % judged_every == 0);
     supply_->step(instant.from_s, instant.length_s, light, judge);
     const PowerSupply::State& state = supply_->state();
@@ -251,7 +253,7 @@ void CoupledRun::run_supply() {
     double emitted_W = 0.0, full_W = 0.0;
     for (const GroupOutput& group : outputs_) {
       emitted_W += group.group.emitted_W * group.at(instant.middle_s());
-      full_W += group.group.emitted_W * group.share_at(instant.middle_s());
+      full_W += group.group.emitted_W * group.weight_at(instant.middle_s());
     }
     emitted_.add(emitted_W * h);
     row.output += h * (full_W > 0.0 ? emitted_W / full_W : instant.illumination);
@@ -269,7 +271,7 @@ void CoupledRun::run_supply() {
 void CoupledRun::exchange(Propagator& motion) {
   const double now_s = motion.step_end_s();
   if (now_s < segment_end_s_) {
-    // The run ended within the segment: its remaining instants do not happen.
+    // The run ended within the segment; its remaining instants are omitted.
     std::erase_if(instants_, [&](const Instant& one) { return one.from_s >= now_s; });
     if (!instants_.empty()) instants_.back().length_s = now_s - instants_.back().from_s;
     segment_end_s_ = now_s;
@@ -303,7 +305,7 @@ void CoupledRun::exchange(Propagator& motion) {
     }
     held_ = continued(illumination);
   } else {
-    // An instant that the end of the run cut off has the light of its end.
+    // The last instant has the light at the end of the run if the run ended within it.
     for (Instant& instant : instants_) {
       if (instant.channels.empty()) instant.channels = channels_at(attitude_of(y, 0));
     }

@@ -18,11 +18,11 @@ struct GroupOutput {
   LightModel::Group group;
   std::shared_ptr<const LampOutput> output;
   // Its fraction: the weight of a joint's position, which may be negative; nothing: all.
-  std::function<double(double time_s)> share = {};
+  std::function<double(double time_s)> weight = {};
   std::vector<double> corners_s = {};  // of that weight
 
-  double at(double time_s) const { return output->at(time_s) * share_at(time_s); }
-  double share_at(double time_s) const { return share ? share(time_s) : 1.0; }
+  double at(double time_s) const { return output->at(time_s) * weight_at(time_s); }
+  double weight_at(double time_s) const { return weight ? weight(time_s) : 1.0; }
 };
 std::vector<GroupOutput> group_outputs(const LightModel& light, const LightSettings& settings,
                                        double start_s);
@@ -39,7 +39,7 @@ struct PowerRow {
   double output = 0.0;  // of all lamps, over that at full power
 };
 
-// How well the continued torque of traced light met the next trace.
+// Difference between the extrapolated torque of light and the next trace.
 struct ContinuationError {
   double max_N_m = 0.0, sum_squares = 0.0;
   size_t count = 0;
@@ -70,7 +70,7 @@ class CoupledRun {
   const PowerHistory& power() const { return power_; }
   const std::vector<PowerRow>& rows() const { return rows_; }
   const std::optional<PowerSupply>& supply() const { return supply_; }
-  // Of light and lamps; those of the battery are the supply's.
+  // Events of light and lamps; those of the battery belong to the power system.
   const std::vector<Event>& events() const { return events_; }
   const ContinuationError& continuation() const { return continuation_; }
   double emitted_J() const { return emitted_.value(); }

@@ -41,7 +41,7 @@ struct SunLight {
 // The wrench at one direction, about the point of the table.
 struct DirectionWrench {
   WrenchComponents direct{};
-  TwofoldWrench bounced;     // of light after its first bounce, twice
+  WrenchPair bounced;        // of light after its first bounce, twice
   WrenchComponents error{};  // standard error of the parts that both halves share
   uint64_t rays = 0;
   std::vector<std::string> warnings;

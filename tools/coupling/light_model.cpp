@@ -176,7 +176,7 @@ LightModel::Light LightModel::make_light(std::unique_ptr<OpticalRun> run, const 
   return light;
 }
 
-double LightModel::share(const Group& group, double time_s) const {
+double LightModel::weight(const Group& group, double time_s) const {
   if (!positions_) return 1.0;
   return positions_->weights(joint_->angle_at(time_s))[group.position];
 }

@@ -1,4 +1,5 @@
-// The light of a run of the attitude: the table [light] and its effects at any attitude.
+// The light in a simulation of the attitude: the table [light], and torque and power at any
+// attitude.
 #pragma once
 
 #include <functional>
@@ -16,22 +17,23 @@
 
 namespace photorque {
 
-// The settings of light in a run of the attitude: the table [light].
+// The table [light].
 
 // [light]
 struct LightSettings {
   enum class Mode {
     table,  // traced once over the attitudes, then interpolated
     trace,  // traced at every exchange of the run
-    off,    // left out, as if the file had no scene
+    off,    // no light, as without a scene
   };
   Mode mode = Mode::table;
   double tolerance = 1e-3;  // of the table, relative to the largest value
   double step_s = 1.0;      // between exchanges of motion and power
   uint64_t rays = 0;        // per attitude
   size_t max_traces = 20000;
-  std::optional<double> max_tilt_rad;          // that the first table holds
-  std::optional<std::filesystem::path> cache;  // a folder; none: tables are not kept
+  std::optional<double> max_tilt_rad;  // range of the first table
+  std::optional<std::filesystem::path>
+      cache;  // folder of stored tables; none: tables are not stored
   // [[light.switch]]: lamps of one source, or of all.
   struct Switch {
     double time_s = 0.0;
@@ -61,16 +63,16 @@ class LightModel {
   ~LightModel();
 
   struct Group {
-    std::string name;  // of its source; "light" where all shine alike
+    std::string name;  // that of the source; "light" if there is one group
     size_t first = 0;  // channel
     bool is_sun = false;
     double emitted_W = 0.0;  // 0 for the Sun
-    size_t position = 0;     // of the joint that follows a schedule, see share()
+    size_t position = 0;     // of the joint that follows a schedule, see weight()
   };
   const std::vector<Group>& groups() const { return groups_; }
-  // How much a group counts at an instant: the weight of its position of the joint, else 1.
-  double share(const Group& group, double time_s) const;
-  // Instants at which the joint's schedule has a corner.
+  // The weight of a group at an instant: that of its joint position, otherwise 1.
+  double weight(const Group& group, double time_s) const;
+  // Times in the schedule of the joint, at which the angular rate changes.
   std::vector<double> corners_s() const;
   size_t cells() const { return cell_area_m2_.size(); }
   size_t channels_per_group() const { return cells() > 0 ? 7 + cells() : 6; }
@@ -86,13 +88,13 @@ class LightModel {
   // All channels at one attitude. `progress` as of the console.
   RotationSample trace(const Quat& lab_from_body) const;
 
-  // The largest angle that the motion may have, of body z from the vertical or, where the Sun is
-  // the only light, from the Sun: that of the platform's stop, or π.
+  // The largest possible angle of body z from the vertical, or from the Sun if it is the only
+  // light: the tilt limit of the platform, or π.
   double max_angle_rad() const { return max_angle_rad_; }
-  // The angle that the first table holds, for a motion that begins at a tilt. What a live run does
-  // is not known, and it cannot begin again: its table holds [light] max_tilt_deg or all angles.
+  // The range of the first table for a motion that starts at a tilt. A run in real time cannot
+  // start again with a wider table: its range is [light] max_tilt_deg or all angles.
   double first_angle_rad(double initial_tilt_rad, bool is_live) const;
-  // The table up to an angle, from the cache or traced now; prints which of both.
+  // The table up to an angle, from the cache or traced; prints the origin.
   std::shared_ptr<const RotationTable> make_table(const Console& console,
                                                   double max_angle_rad) const;
 
@@ -116,8 +118,9 @@ class LightModel {
   LightSettings settings_;
   int threads_ = 0;
   std::vector<Group> groups_;
-  std::vector<Light> lights_;   // one per group; of a joint that follows the Sun at its rest
-  std::optional<Joint> joint_;  // the one that moves
+  std::vector<Light>
+      lights_;  // one per group; with the joint at its rest angle if it follows the Sun
+  std::optional<Joint> joint_;  // the moving joint
   size_t joint_number_ = 0;     // among [[joint]]
   std::optional<JointPositions> positions_;
   RunOptions options_;

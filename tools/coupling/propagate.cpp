@@ -24,7 +24,7 @@ void print_run(const Console& console, const PropagationRun& run, const CoupledR
   const Console motion = coupled.beside ? details : console;
   console.heading("Trajectory");
   const PlatformState& end = result.states.back();
-  motion.line("  " + padded("until", 24) + show_duration(end.time_s));
+  motion.line("  " + padded("end of the run", 24) + show_duration(end.time_s));
   const auto figure = [&](const char* name) {
     const Quantity* found = find_quantity(result.product, name);
     return found == nullptr ? 0.0 : found->estimate.value;
@@ -32,15 +32,15 @@ void print_run(const Console& console, const PropagationRun& run, const CoupledR
   console.line("  " + padded("largest tilt", 24) + show_brief(figure("largest_tilt_deg")) +
                " deg at " + show_duration(figure("largest_tilt_time_s")));
   motion.line("  " + padded("yaw excursion", 24) + show_brief(figure("yaw_excursion_deg")) +
-              " deg from least to largest");
+              " deg between smallest and largest yaw");
   // The lowest bar of the fractions is the strongest torque.
   const auto fractions = std::ranges::find(result.product.plots, "torque_fractions", &Plot::name);
   if (fractions != result.product.plots.end() && !fractions->curves.empty()) {
     const Plot::Curve& strongest = fractions->curves.back();
     const double sum = std::accumulate(strongest.y.begin(), strongest.y.end(), 0.0);
-    console.line("  " + padded("strongest torque", 24) + strongest.label + ", " +
+    console.line("  " + padded("dominant disturbance", 24) + strongest.label + ", " +
                  show_brief(sum / static_cast<double>(strongest.y.size())) +
-                 " % of all on average");
+                 " % of the sum of all torques on average");
   }
   const auto row = [&](const std::string& name, double value, const std::string& unit) {
     motion.line("  " + padded(name, 24) + show_brief(value) + " " + unit);
@@ -48,7 +48,7 @@ void print_run(const Console& console, const PropagationRun& run, const CoupledR
   row("tilt at the end", tilt_rad(end) / degree_rad, "deg");
   row("yaw at the end", yaw_rad(end) / degree_rad, "deg, between -180 and 180");
   row("rate at the end", end.rate_body_rad_s.norm(), "rad/s");
-  if (end.charge_drawn_C != 0.0) row("charge missing", end.charge_drawn_C / 3600.0, "Ah");
+  if (end.charge_drawn_C != 0.0) row("charge drawn", end.charge_drawn_C / 3600.0, "Ah");
   details.line("  in " + std::to_string(result.statistics.steps) + " steps");
   if (coupled.attitude_error_rad) {
     console.line("  the error of the table of light turns the body by less than " +

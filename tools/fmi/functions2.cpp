@@ -258,7 +258,7 @@ PHOTORQUE_ABSENT2(fmi2CancelStep)
 PHOTORQUE_ABSENT2(fmi2GetStatus)
 PHOTORQUE_ABSENT2(fmi2GetIntegerStatus)
 PHOTORQUE_ABSENT2(fmi2GetStringStatus)
-// Of model exchange.
+// Functions of model exchange.
 PHOTORQUE_ABSENT2(fmi2EnterEventMode)
 PHOTORQUE_ABSENT2(fmi2NewDiscreteStates)
 PHOTORQUE_ABSENT2(fmi2EnterContinuousTimeMode)

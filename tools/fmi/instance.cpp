@@ -59,9 +59,9 @@ std::unique_ptr<UnitState> UnitState::from(const void* bytes, size_t size) {
   return state;
 }
 
-Instance::Instance(const std::string& resource_folder, const std::string& token, bool tells_events,
+Instance::Instance(const std::string& resource_folder, const std::string& token, bool logs_events,
                    LogSink log)
-    : log_(std::move(log)), tells_events_(tells_events) {
+    : log_(std::move(log)), logs_events_(logs_events) {
   const Resources resources = read_resources(resource_folder);
   if (resources.token != token) {
     throw NumericalError("the token \"" + token + "\" is not that of the unit, \"" +
@@ -73,25 +73,26 @@ Instance::Instance(const std::string& resource_folder, const std::string& token,
   run_ = std::make_unique<CoSimulation>(resources.options, description_.rate_Hz);
 }
 
-void Instance::say(fmi3Status status, const char* category, const std::string& message) const {
+void Instance::log_message(fmi3Status status, const char* category,
+                           const std::string& message) const {
   if (log_) log_(status, category, message.c_str());
 }
 
 fmi3Status Instance::refuse(const std::string& message) const {
-  say(fmi3Error, "logStatusError", message);
+  log_message(fmi3Error, "logStatusError", message);
   return fmi3Error;
 }
 
 void Instance::log_messages() {
   for (const std::string& line : run_->take_messages()) {
-    if (tells_events_ && !line.empty()) say(fmi3OK, "logEvents", line);
+    if (logs_events_ && !line.empty()) log_message(fmi3OK, "logEvents", line);
   }
 }
 
 fmi3Status Instance::set_debug_logging(bool on, size_t count, const char* const categories[]) {
-  tells_events_ = on && count == 0;
+  logs_events_ = on && count == 0;
   for (size_t i = 0; i < count; ++i) {
-    if (std::strcmp(categories[i], "logEvents") == 0) tells_events_ = on;
+    if (std::strcmp(categories[i], "logEvents") == 0) logs_events_ = on;
   }
   return fmi3OK;
 }
@@ -173,9 +174,9 @@ fmi3Status Instance::set_numbers(std::span<const uint32_t> references, const dou
     if (axis >= 3) return refuse("no input has the reference " + std::to_string(reference));
     const double torque_N_m = *values++;
     if (!(std::abs(torque_N_m) <= description_.max_torque_N_m)) {
-      say(fmi3Discard, "logStatusDiscard",
-          "a torque of " + std::to_string(torque_N_m) + " N m, beyond " +
-              std::to_string(description_.max_torque_N_m) + " N m (serve.max_torque_N_m)");
+      log_message(fmi3Discard, "logStatusDiscard",
+                  "a torque of " + std::to_string(torque_N_m) + " N m, beyond " +
+                      std::to_string(description_.max_torque_N_m) + " N m (serve.max_torque_N_m)");
       return fmi3Discard;
     }
     command_body_N_m[axis] = torque_N_m;
@@ -235,12 +236,12 @@ fmi3Status Instance::read_state(const void* bytes, size_t size, void** to) const
 }
 
 Instance* instantiate(const char* function, const char* name, const char* token,
-                      const char* resources, bool tells_events, const LogSink& log) {
+                      const char* resources, bool logs_events, const LogSink& log) {
   try {
     if (resources == nullptr || token == nullptr || name == nullptr) {
       throw NumericalError("name, token and path of the resources are needed");
     }
-    return std::make_unique<Instance>(resources, token, tells_events, log).release();
+    return std::make_unique<Instance>(resources, token, logs_events, log).release();
   } catch (const std::exception& error) {
     if (log)
       log(fmi3Error, "logStatusError", (std::string(function) + ": " + error.what()).c_str());

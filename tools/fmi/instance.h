@@ -37,7 +37,7 @@ class Instance {
  public:
   // `resources`: the folder of that name in the unit. InputError and NumericalError for a wrong
   // token and an experiment that cannot run.
-  Instance(const std::string& resources, const std::string& token, bool tells_events, LogSink log);
+  Instance(const std::string& resources, const std::string& token, bool logs_events, LogSink log);
 
   fmi3Status enter_initialization(double start_s, std::optional<double> stop_s);
   fmi3Status exit_initialization();
@@ -75,7 +75,7 @@ class Instance {
   void give_up() { mode_ = Mode::terminated; }
 
  private:
-  void say(fmi3Status status, const char* category, const std::string& message) const;
+  void log_message(fmi3Status status, const char* category, const std::string& message) const;
   void log_messages();
   // Null, and a message, where no flag has the reference.
   const bool* flag(uint32_t reference) const;
@@ -83,7 +83,7 @@ class Instance {
   fmi3Status begin(std::vector<Vec3> commands);
 
   LogSink log_;
-  bool tells_events_ = false;
+  bool logs_events_ = false;
   Mode mode_ = Mode::instantiated;
   UnitDescription description_;
   std::unique_ptr<CoSimulation> run_;
@@ -107,6 +107,6 @@ fmi3Status guarded(void* handle, const char* function, Body body, Arguments... a
 
 // A new instance; null, and a message to `log`, where it cannot be made. Null arguments are errors.
 Instance* instantiate(const char* function, const char* name, const char* token,
-                      const char* resources, bool tells_events, const LogSink& log);
+                      const char* resources, bool logs_events, const LogSink& log);
 
 }  // namespace photorque::fmi

@@ -172,7 +172,7 @@ void write_archive(const fs::path& path,
   }
 }
 
-// Beside the program, or where it was installed to.
+// The library is beside the program or in its installation folder.
 fs::path unit_library() {
   const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
   for (const fs::path& place : {program, program / PHOTORQUE_UNIT_FOLDER}) {
@@ -257,13 +257,13 @@ void try_unit(const Console& console, const fs::path& library, const std::string
   const auto function = [&]<typename Signature>(const char* name, Signature*) {
     return reinterpret_cast<Signature*>(::dlsym(loaded.get(), name));
   };
-  struct Heard {
+  struct LogMessages {
     const Console* console;
     std::string error;
-  } heard{&console, {}};
-  const auto hear = [](fmi3InstanceEnvironment to, fmi3Status status, fmi3String,
-                       fmi3String message) {
-    auto* all = static_cast<Heard*>(to);
+  } messages{&console, {}};
+  const auto log = [](fmi3InstanceEnvironment to, fmi3Status status, fmi3String,
+                      fmi3String message) {
+    auto* all = static_cast<LogMessages*>(to);
     if (status == fmi3OK) {
       all->console->line(message);
     } else {
@@ -282,7 +282,7 @@ void try_unit(const Console& console, const fs::path& library, const std::string
   using Free = void(fmi3Instance);
   const fmi3Instance unit = function("fmi3InstantiateCoSimulation", (Instantiate*)nullptr)(
       "trial", token.c_str(), (resources.string() + "/").c_str(), false, true, false, false,
-      nullptr, 0, &heard, hear, nullptr);
+      nullptr, 0, &messages, log, nullptr);
   bool works = unit != nullptr;
   bool event = false, end = false, early = false;
   double reached_s = 0.0;
@@ -292,7 +292,7 @@ void try_unit(const Console& console, const fs::path& library, const std::string
   works = works && function("fmi3DoStep", (Step*)nullptr)(unit, 0.0, tick_s, true, &event, &end,
                                                           &early, &reached_s) == fmi3OK;
   if (unit != nullptr) function("fmi3FreeInstance", (Free*)nullptr)(unit);
-  if (!works) throw NumericalError("the unit does not work: " + heard.error);
+  if (!works) throw NumericalError("the unit does not work: " + messages.error);
 }
 
 // All files below a folder, in order of their names.

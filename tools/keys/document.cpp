@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <regex>
+#include <span>
 #include <sstream>
 #include <utility>
 
 #include "core/errors.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -39,11 +41,8 @@ class KeyTable {
     } else {
       rows = kinds_of(table.keys.front(), true);
     }
-    Group above{"above", {}};
-    for (const Row& row : rows) {
-      print(row, 0, "", &above);
-      append(row, 0, above.lines);
-    }
+    Group above{"above", {}, {}};
+    print_all(rows, 0, "", &above);
     return "| key | default | range | meaning |\n|---|---|---|---|\n" + printed_;
   }
 
@@ -52,11 +51,21 @@ class KeyTable {
   struct Group {
     std::string label;
     std::vector<std::pair<int, std::string>> lines;
+    std::vector<Row> full = {};  // without rows below them, and printed with their meaning
   };
 
   static std::string cells(const Row& row) {
     return row.name + " | " + in_cell(row.otherwise) + " | " + in_cell(row.range) + " | " +
            in_cell(row.what) + " |\n";
+  }
+
+  static bool differ_in_name_only(const Row& a, const Row& b) {
+    return a.rows.empty() && b.rows.empty() && a.otherwise == b.otherwise && a.range == b.range &&
+           a.what == b.what;
+  }
+
+  static std::string names_of(std::span<const Row> rows) {
+    return joined_text(rows, ", ", [](const Row& row) { return row.name; });
   }
 
   static void append(const Row& row, int depth, std::vector<std::pair<int, std::string>>& lines) {
@@ -78,7 +87,7 @@ class KeyTable {
             range_in_words(key), key.what};
     const std::string words = brings ? "" : choices_in_words(key);
     if (!words.empty()) row.what += ": " + words;
-    if (brings) row.rows = kinds_of(key, is_top);
+    if (brings) row.rows = is_top ? kinds_of(key, is_top) : with_shared_rows(kinds_of(key, is_top));
     row.indents = false;
     return row;
   }
@@ -92,12 +101,103 @@ class KeyTable {
       }
       Row row{is_top ? "**`" + choice.name + "`**"
                      : "with `" + key.name + " = \"" + choice.name + "\"`",
-              "", "", choice.what};
+              "", "", choice.what + (choice.note.empty() ? "" : ". " + choice.note)};
       row.is_kind = is_top;
       for (const Key& inner : choice.keys) row.rows.push_back(row_of(inner, path_, false));
       rows.push_back(std::move(row));
     }
     return rows;
+  }
+
+  // Choices that have several keys in common: each choice names its keys, and rows of all keys
+  // follow once.
+  static std::vector<Row> with_shared_rows(const std::vector<Row>& choices) {
+    std::vector<Row> named, keys;
+    size_t all = 0;
+    for (const Row& choice : choices) {
+      named.push_back({choice.name, "", "", choice.what});
+      if (!choice.rows.empty()) named.back().what += "; " + names_of(choice.rows);
+      all += choice.rows.size();
+      for (const Row& row : choice.rows) {
+        if (!row.rows.empty()) return choices;
+        const auto known = std::ranges::find_if(keys, [&](const Row& other) {
+          return other.name == row.name && other.otherwise == row.otherwise &&
+                 other.range == row.range;
+        });
+        if (known == keys.end()) {
+          keys.push_back(row);
+        } else if (known->what.find(row.what) == std::string::npos) {
+          known->what += "; " + row.what;
+        }
+      }
+    }
+    constexpr size_t fewest_saved = 6;
+    if (all < keys.size() + fewest_saved) return choices;
+    named.insert(named.end(), keys.begin(), keys.end());
+    return named;
+  }
+
+  // Rows of one level. Rows that an earlier kind or table has are named in one row, as are
+  // neighbours with the same default, range and meaning. `above`: the rows of the top level.
+  void print_all(std::span<const Row> rows, int depth, const std::string& owner, Group* above,
+                 Group* group = nullptr) {
+    for (size_t i = 0; i < rows.size();) {
+      const auto [known, repeated] = repetition(rows.subspan(i));
+      size_t count = 1;
+      if (repeated > 1) {
+        count = repeated;
+        const std::span<const Row> run = rows.subspan(i, count);
+        const bool is_default_new = find(*known, run[0])->otherwise != run[0].otherwise;
+        print_line(
+            {names_of(run), is_default_new ? run[0].otherwise : "", "", "as in " + known->label},
+            depth);
+      } else {
+        while (i + count < rows.size() && differ_in_name_only(rows[i], rows[i + count])) ++count;
+        Row row = rows[i];
+        row.name = names_of(rows.subspan(i, count));
+        print(row, depth, owner, above);
+        if (group != nullptr && row.rows.empty()) {
+          const std::span<const Row> all = rows.subspan(i, count);
+          group->full.insert(group->full.end(), all.begin(), all.end());
+        }
+      }
+      for (size_t k = i; above != nullptr && k < i + count; ++k) append(rows[k], 0, above->lines);
+      i += count;
+    }
+  }
+
+  static const Row* find(const Group& group, const Row& row) {
+    const auto found = std::ranges::find_if(group.full, [&](const Row& other) {
+      return other.name == row.name && other.range == row.range && other.what == row.what;
+    });
+    return found == group.full.end() ? nullptr : &*found;
+  }
+
+  // The printed group that has the most of the first `rows`, and how many: with their defaults, or
+  // all with one other default.
+  std::pair<const Group*, size_t> repetition(std::span<const Row> rows) const {
+    std::pair<const Group*, size_t> longest{nullptr, 0};
+    for (const Group& group : groups_) {
+      const auto count = [&](bool has_own_default) {
+        size_t same = 0;
+        for (; same < rows.size() && rows[same].rows.empty(); ++same) {
+          const Row* other = find(group, rows[same]);
+          const std::string& expected =
+              has_own_default || other == nullptr ? rows[0].otherwise : other->otherwise;
+          if (other == nullptr || rows[same].otherwise != expected) break;
+        }
+        return same;
+      };
+      const size_t same = std::max(count(false), count(true));
+      if (same > longest.second) longest = {&group, same};
+    }
+    return longest;
+  }
+
+  void print_line(const Row& row, int depth) {
+    printed_ += "| ";
+    for (int i = 0; i < depth; ++i) printed_ += "… ";
+    printed_ += cells(row);
   }
 
   // `owner`: the kind that the row belongs to, empty outside of kinds. `above`: the rows of the
@@ -113,15 +213,13 @@ class KeyTable {
       }
       shown.rows.clear();
     }
-    printed_ += "| ";
-    for (int i = 0; i < depth; ++i) printed_ += "… ";
-    printed_ += cells(shown);
+    print_line(shown, depth);
     const std::string name = row.is_kind ? row.name.substr(2, row.name.size() - 4) : row.name;
     const std::string kind = row.is_kind ? name : owner;
-    for (const Row& inner : shown.rows) {
-      print(inner, depth + (row.indents ? 1 : 0), kind, nullptr);
-    }
-    if (!shown.rows.empty()) groups_.push_back({kind.empty() ? name : kind, std::move(lines)});
+    if (shown.rows.empty()) return;
+    Group group{kind.empty() ? name : kind, std::move(lines)};
+    print_all(shown.rows, depth + (row.indents ? 1 : 0), kind, nullptr, &group);
+    groups_.push_back(std::move(group));
   }
 
   // The printed group that has all of `lines` in their order.

@@ -38,15 +38,16 @@ Key sensors_table() {
 Key effect_table() {
   std::vector<Key::Choice> kinds = light_effects();
   for (Key::Choice& of_module : module_effects()) add_choice(kinds, std::move(of_module));
-  const auto said = [](const char* name, unsigned forms) {
+  const auto result_key = [](const char* name, unsigned forms) {
     return OtherKey(name, forms, "further result of a diagnosis, without effect here",
                     {.optional = true});
   };
   return Key::tables(
       "effect",
       {Key::choice("kind", std::move(kinds), "kind of the effect").range_that_varies(),
-       said("u_m", Key::a_number | Key::an_array), said("v_m", Key::a_number | Key::an_array),
-       said("darkest", Key::a_number), said("count_between", Key::a_text)},
+       result_key("u_m", Key::a_number | Key::an_array),
+       result_key("v_m", Key::a_number | Key::an_array), result_key("darkest", Key::a_number),
+       result_key("count_between", Key::a_text)},
       "an effect on light or power, for example of a diagnosis");
 }
 

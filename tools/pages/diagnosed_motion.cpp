@@ -132,11 +132,11 @@ void add_attitude_figures(const RecordingSeries& recording, const Quat& q, doubl
 
 // The mean of the rotation vectors near an instant, and its standard error: that from the noise of
 // the camera or from their scatter, whichever is larger.
-struct MeanTurn {
+struct MeanRotation {
   Vec3 mean_rad = Vec3::Zero(), error_rad = Vec3::Zero();
 };
 
-MeanTurn mean_about(const AttitudeSeries& a, const std::vector<Vec3>& off_rad, size_t at) {
+MeanRotation mean_about(const AttitudeSeries& a, const std::vector<Vec3>& off_rad, size_t at) {
   const double half_s = 0.0025 * (a.time_s.back() - a.time_s.front());
   const size_t from = nearest_instant(a.time_s, a.time_s[at] - half_s),
                to = nearest_instant(a.time_s, a.time_s[at] + half_s) + 1;

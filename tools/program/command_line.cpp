@@ -3,8 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string_view>
 
 #include "core/provenance.h"
@@ -222,15 +224,31 @@ void add_option(CLI::App& app, const Option& option) {
 }
 
 // A list behind --recording would swallow an experiment that follows it: each has its own option.
-std::string hint_at(const CLI::ParseError& error, int argc, char** argv) {
-  if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) return "";
-  // An unknown option is not an item of a list.
-  if (std::string_view(error.what()).find(" -") != std::string_view::npos) return "";
+std::string hint_at(int argc, char** argv) {
   for (const char* option : {"--recording", "--holdout", "--set"}) {
     if (std::find(argv + 1, argv + argc, std::string_view(option)) == argv + argc) continue;
     return std::string("; repeat ") + option + " before each of several";
   }
   return "";
+}
+
+// One line for arguments that the command does not have: of an unknown option the most similar one.
+std::string unexpected(const CLI::ParseError& error, const CLI::App& app, int argc, char** argv) {
+  const std::string text = error.what();
+  std::istringstream words(text.substr(text.find(": ") + 1));
+  std::vector<std::string> found{std::istream_iterator<std::string>(words), {}};
+  const auto option =
+      std::ranges::find_if(found, [](const std::string& word) { return word.starts_with("-"); });
+  if (option == found.end()) {
+    return "found " + joined_text(found, " ") + ", expected nothing more" + hint_at(argc, argv);
+  }
+  std::set<std::string> known;
+  for (const CLI::App* verb : app.get_subcommands()) {
+    for (const CLI::Option* one : options_of(*verb)) known.insert(name_of(*one));
+  }
+  const std::string similar = nearest(*option, known);
+  return *option + ": found an unknown option, expected " +
+         (similar.empty() ? "one that --help lists" : "a known one, perhaps " + similar);
 }
 
 // One line for a first word that is no command; empty where it may be one.
@@ -279,9 +297,15 @@ CommandLine read_command_line(int argc, char** argv, const std::vector<Verb>& ve
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return {app.exit(error)};  // --help, --version
     static const std::regex range(R"(Value (\S+) not in range (\S+) to (\S+))");
-    const std::string mistake =
-        std::regex_replace(error.what(), range, "found $1, expected a number from $2 to $3");
-    return refused(mistake + hint_at(error, argc, argv));
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) {
+      return refused(unexpected(error, app, argc, argv));
+    }
+    if (std::string_view(error.what()) == "experiment is required") {
+      return refused("found no experiment, expected one: photorque " + std::string(argv[1]) +
+                     " EXPERIMENT.toml");
+    }
+    return refused(
+        std::regex_replace(error.what(), range, "found $1, expected a number from $2 to $3"));
   }
   if (manual.page || !manual.shell.empty()) {
     const std::string text =

@@ -97,7 +97,7 @@ int run(int argc, char** argv, Interruption& interruption) {
                      "an existing one (cd)");
   }
   if (options.out && options.out->empty()) throw InputError({"--out"}, "", "nothing", "a folder");
-  hold_memory(options.max_memory_GB);
+  set_memory_limit(options.max_memory_GB);
   return run_command(line.command, {verbs, &interruption});
 }
 

@@ -17,7 +17,7 @@ Gate::Gate(uint64_t run, double max_torque_N_m, int64_t silence_ns)
     : run_(run), max_torque_N_m_(max_torque_N_m), silence_ns_(silence_ns) {}
 
 bool Gate::is_silent(int64_t now_ns) const {
-  return client_ && now_ns - last_heard_ns_ > silence_ns_;
+  return client_ && now_ns - last_received_ns_ > silence_ns_;
 }
 
 uint64_t Gate::total_refused() const {
@@ -80,7 +80,7 @@ std::optional<ClientPacket> Gate::admit(std::span<const std::byte> bytes, uint64
   if (packet.kind == PHOTORQUE_COMMAND) has_commanded_ = true;
   client_ = sender;
   last_sequence_ = packet.command.header.sequence;
-  last_heard_ns_ = now_ns;
+  last_received_ns_ = now_ns;
   if (packet.kind == PHOTORQUE_GOODBYE) client_.reset();
   return packet;
 }

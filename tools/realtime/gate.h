@@ -64,7 +64,7 @@ class Gate {
   std::optional<uint64_t> client_;
   bool has_commanded_ = false;  // since its hello
   uint64_t last_sequence_ = 0;
-  int64_t last_heard_ns_ = 0;
+  int64_t last_received_ns_ = 0;
   std::array<uint64_t, refusal_names.size()> refused_{};
 };
 

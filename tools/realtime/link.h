@@ -71,7 +71,7 @@ class SimulatedLink {
     last_due_s_ = due_s;
     const auto later =
         std::upper_bound(on_the_way_.begin(), on_the_way_.end(), due_s,
-                         [](double due, const OnTheWay& other) { return due < other.due_s; });
+                         [](double due, const DelayedPacket& other) { return due < other.due_s; });
     on_the_way_.insert(later, {due_s, packet});
   }
   // The next that has arrived by `now_s`, by time of arrival.
@@ -91,14 +91,14 @@ class SimulatedLink {
   const LinkImpairment& impairment() const { return fate_; }
 
  private:
-  struct OnTheWay {
+  struct DelayedPacket {
     double due_s;
     Packet packet;
   };
   bool keeps_order_;
   LinkImpairment fate_;
   double last_due_s_ = -std::numeric_limits<double>::infinity();
-  std::vector<OnTheWay> on_the_way_;  // by due_s
+  std::vector<DelayedPacket> on_the_way_;  // by due_s
 };
 
 }  // namespace photorque

@@ -4,7 +4,7 @@
  * One UDP packet is one structure. Every number is little-endian, every double IEEE 754; there is
  * no padding. Times t are those of the simulation; *_ns are nanoseconds of the sender's
  * CLOCK_MONOTONIC. Lab: x east, y north, z up. Quaternions are w, x, y, z (Hamilton) and turn body
- * vectors into the lab. docs/realtime.md says when what is sent. Fill a command, then
+ * vectors into the lab. docs/realtime.md describes the order of the packets. Fill a command, then
  * photorque_seal() it last. */
 #ifndef PHOTORQUE_SERVE_H
 #define PHOTORQUE_SERVE_H

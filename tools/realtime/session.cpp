@@ -140,7 +140,7 @@ ZeroOrderHold Session::tick(const LiveRow& row) {
   tick_s_ = row.time_s - start_s_;
   if (packets_of_tick_ >= packets_a_tick) ++full_ticks_;
   packets_of_tick_ = 0;
-  if (tick_ == 0) meet_client();
+  if (tick_ == 0) await_client();
   const int64_t computing_ns = tick_ == 0 ? 0 : monotonic_ns() - returned_ns_;
   bool is_late = false;
   if (is_paced()) {
@@ -169,7 +169,7 @@ ZeroOrderHold Session::tick(const LiveRow& row) {
   return held;
 }
 
-void Session::meet_client() {
+void Session::await_client() {
   const int64_t give_up_ns = monotonic_ns() + in_ns(settings_.client_timeout_s);
   while ((settings_.wait_for_client || !is_paced()) && !gate_.client()) {
     packets_of_tick_ = 0;  // no tick waits for these

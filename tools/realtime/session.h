@@ -69,7 +69,7 @@ class Session {
  private:
   bool is_paced() const { return settings_.mode == ServeSettings::Mode::paced; }
   double now_s() const;
-  void meet_client();
+  void await_client();
   void wait_until_due(size_t tick);
   void send_arrived(double now_s, bool is_late);
   void send(const photorque_measurement_packet& packet, uint32_t flags);

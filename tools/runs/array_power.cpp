@@ -25,8 +25,8 @@ std::vector<double> mean_wavelengths_m(const std::vector<double>& ideal_responsi
 
 // Within a band the light of all sources counts alike: a notice is printed where it does not. From
 // the ampere per watt of each source in the band.
-std::vector<std::string> unlike_sources(const QuantumEfficiency& efficiency, const Bands& bands,
-                                        const std::vector<WeighedSpectrum>& spectra) {
+std::vector<std::string> spectral_notices(const QuantumEfficiency& efficiency, const Bands& bands,
+                                          const std::vector<WeighedSpectrum>& spectra) {
   constexpr double alike = 0.01;
   std::vector<std::string> notices;
   for (size_t b = 0; b < static_cast<size_t>(bands.count()); ++b) {
@@ -59,7 +59,7 @@ void read_responsivity(OpticalRun& run, ArrayPower& array) {
     return std::vector<double>(values.begin(), values.begin() + bands.count());
   };
   array.responsivity_A_W = over_bands(array.design.efficiency);
-  array.notices = unlike_sources(array.design.efficiency, bands, spectra);
+  array.notices = spectral_notices(array.design.efficiency, bands, spectra);
   for (std::string& line : light_outside(array.design.efficiency, spectra)) {
     run.warn(std::move(line));
   }

@@ -34,14 +34,15 @@ Estimate direct_bin_W(const FluxMapReceiver& map, const BinSums& sums, size_t bi
   return with_bound(estimate_from_replicates(values), bound_W);
 }
 
-// Rays are single precision: cancelling sums keep an error of this fraction of the emitted sum.
+// Rays are in single precision: sums that cancel have an error of this fraction of the emitted
+// power.
 constexpr double ray_rounding = 1e-7;
 
 // `ray_W`: of one ray, on the mean. `counting_W`: see counting_error_W().
 DirectLight compare(const FluxMapReceiver& map, const Gathered& gathered, const BinSums& rays,
                     double ray_W, double counting_W, double emitted_W) {
-  constexpr double few = 100.0;     // rays: their scatter is no estimate of their error
-  constexpr double well_lit = 0.3;  // relative error of the rays' bin at most
+  constexpr double few = 100.0;     // rays: too few to estimate the error from their scatter
+  constexpr double well_lit = 0.3;  // largest relative error of a bin by rays
   DirectLight light;
   light.name = map.name();
   light.gathered_W = direct_total_W(map, gathered.direct);
@@ -159,7 +160,7 @@ struct Wanted {
   double force_N() const { return emitted_W / speed_of_light_m_s; }
   double counting_N() const { return counting_W / speed_of_light_m_s; }
 
-  // Whether it is worth while; otherwise prints a note.
+  // Whether quadrature takes less time than rays; otherwise prints a note.
   bool pays(const std::string& what, size_t pairs) const {
     if (!weigh_cost || gathering_pays(pairs, rays)) return true;
     route.notices.push_back(cost_notice(what, pairs, rays));
@@ -171,7 +172,7 @@ void gather_torques(const Wanted& wanted, const TorqueMapReceiver& map, BinSums&
   if (map.force() != TorqueMapReceiver::Force::momentum) return;
   const std::vector<Beam>& beams = wanted.experiment.beams;
   if (!can_gather_torque(wanted.experiment.scene, map.grid(), beams)) return;
-  constexpr size_t dearer = 8;  // than irradiance, for which there are tables
+  constexpr size_t dearer = 8;  // cost relative to irradiance, which uses tables
   const size_t pairs = dearer * map.grid().bins() * beams.size();
   if (!wanted.pays("torque of direct light on " + map.name(), pairs)) return;
   const Gathered gathered =
@@ -196,8 +197,8 @@ void gather_light(const Wanted& wanted, const FluxMapReceiver& map, size_t place
 
 void gather_wrench(const Wanted& wanted, const WrenchGather& bodies, const WrenchReceiver& receiver,
                    BinSums& sums) {
-  // Sunlight takes closed forms; a lamp that is near a quadrature over every facet that it lights,
-  // which costs tenths of a second.
+  // Sunlight has closed forms. A near lamp needs a quadrature over every lit facet, which takes
+  // tenths of a second.
   const bool sunlight = std::ranges::all_of(wanted.experiment.beams, [](const Beam& beam) {
     return beam.aperture && std::isinf(beam.aperture->radius_m);
   });

@@ -15,7 +15,7 @@ namespace photorque {
 
 class WrenchGather;  // receivers/gather/bodies/wrench.h
 
-// How the two routes to the direct light on a flux map agree.
+// Comparison of direct light on a flux map by quadrature and by rays.
 struct DirectLight {
   size_t receiver = 0;  // its place among the experiment's
   std::string name;
@@ -27,8 +27,8 @@ struct DirectLight {
   uint64_t shadow_rays = 0;
 };
 
-// How the two routes to the torque of direct light on a torque map, or to its wrench on a body,
-// agree.
+// Comparison of the torque of direct light on a torque map, or of its wrench on a body, by
+// quadrature and by rays.
 struct DirectTorque {
   std::string name;
   double worst_sigma = 0.0;  // largest difference of a component in standard errors of both

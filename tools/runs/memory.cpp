@@ -53,7 +53,7 @@ uint64_t memory_limit_bytes(std::optional<double> allowed_GB) {
   return free_bytes == no_limit ? no_limit : free_bytes / 10 * 9;
 }
 
-void hold_memory(std::optional<double> allowed_GB) {
+void set_memory_limit(std::optional<double> allowed_GB) {
   if (!allowed_GB) return;
   const rlimit limit{static_cast<rlim_t>(memory_limit_bytes(allowed_GB)), RLIM_INFINITY};
   ::setrlimit(RLIMIT_DATA, &limit);

@@ -15,7 +15,7 @@ uint64_t memory_limit_bytes(std::optional<double> allowed_GB);
 
 // Sets the memory allowed by the user as a limit of the process. An allocation beyond it ends the
 // run with "not enough memory" and exit status 3.
-void hold_memory(std::optional<double> allowed_GB);
+void set_memory_limit(std::optional<double> allowed_GB);
 
 // Throws InputError at `where` if about `bytes` for `what` exceed the limit.
 void require_memory(std::optional<double> allowed_GB, uint64_t bytes, const InputLocation& where,

@@ -180,7 +180,7 @@ namespace {
 // Standard errors from so many replicates that chance exceeds as seldom as 4 of a normal variable
 // (once in 16,000), by Student's distribution: 5.5 of 16 replicates.
 // Source: M. Abramowitz, I. A. Stegun, "Handbook of Mathematical Functions" (1964), 26.7.5.
-double loud_sigma_of(int replicates) {
+double notice_level_sigma(int replicates) {
   constexpr double z = 4.0, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
   const double n = replicates - 1;
   return z + (z3 + z) / (4.0 * n) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * n * n) +
@@ -197,7 +197,7 @@ std::vector<std::string> OpticalRun::warnings(const OpticalResult& result) const
       ": parts too small for the rays, or light through gaps; raise trace.rays, or compare with "
       "trace.direct = \"rays\"";
   constexpr double lost = 1e-9;
-  const double loud_sigma = loud_sigma_of(experiment_.file.trace.replicates);
+  const double loud_sigma = notice_level_sigma(experiment_.file.trace.replicates);
   std::vector<std::string> lines = experiment_.warnings;
   const PowerBalance& power_balance = result.power_balance;
   if (power_balance.closure > lost) {

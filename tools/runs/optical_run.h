@@ -44,10 +44,10 @@ class OpticalRun {
   // routes to direct light and to force and torque; or power that was lost.
   std::vector<std::string> warnings(const OpticalResult& result) const;
 
-  // Of what this was read for: stands among the warnings of all later runs.
+  // Adds a warning for all later runs.
   void warn(std::string line) { experiment_.warnings.push_back(std::move(line)); }
 
-  // Adds one that is not in the experiment file, for all later runs; returns its place.
+  // Adds one that is not in the experiment file, for all later runs; returns its index.
   size_t add_receiver(NamedReceiver receiver);
 
   // Leaves out, for all later runs, the lamps that are not wanted.

@@ -44,7 +44,7 @@ std::vector<PublishedFigure> read_published(const std::vector<Settings>& tables)
 Product compare_published(const std::vector<PublishedFigure>& figures, double tilt_rad,
                           const Product& product, const Console& console) {
   Table table = Table::of(
-      "published", "Published figures compared with ours",
+      "published", "Published figures compared with photorque",
       {"quantity", "source", "why", "published", "rounded_to", "ours", "standard_error", "ratio"});
   std::optional<double> misfit;
   for (const PublishedFigure& figure : figures) {
@@ -52,7 +52,7 @@ Product compare_published(const std::vector<PublishedFigure>& figures, double ti
     for (const Quantity& quantity : product.quantities) {
       if (quantity.name != figure.quantity) continue;
       if (table.column("quantity").texts.empty())
-        console.heading("Published figures compared with ours");
+        console.heading("Published figures compared with photorque");
       const double ours = quantity.estimate.value;
       table.row()
           .set("quantity", figure.quantity)
@@ -71,7 +71,7 @@ Product compare_published(const std::vector<PublishedFigure>& figures, double ti
                                        : "; beyond its printed digits, " +
                                              show(0.5 * std::abs(off)) + " of the last one";
       }
-      console.line("  " + figure.quantity + ": published " + show(figure.value) + ", ours " +
+      console.line("  " + figure.quantity + ": published " + show(figure.value) + ", computed " +
                    show(quantity.estimate, "") +
                    (figure.value == 0.0 ? "" : " (ratio " + show_brief(ours / figure.value) + ")") +
                    verdict);

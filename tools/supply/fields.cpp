@@ -77,11 +77,11 @@ constexpr TablesKey microwave("microwave", "a microwave beam");
 
 // Fraction of what arrives at the rectenna that its elements take, and of what misses them that is
 // mirrored.
-struct RectennaTakes {
+struct RectennaAbsorption {
   double taken = 0.0, mirrored = 0.0;
 };
 
-RectennaTakes rectenna_takes(const MicrowaveBeam& beam, bool in_e_plane, double tilt_rad) {
+RectennaAbsorption rectenna_takes(const MicrowaveBeam& beam, bool in_e_plane, double tilt_rad) {
   const double arrives = aperture_transmission(beam, tilt_rad);
   const double pattern = in_e_plane ? dipole_pattern_e(tilt_rad) : dipole_pattern_h(tilt_rad);
   const double taken = arrives * element_capture(pattern, tilt_rad);
@@ -119,7 +119,7 @@ SupplyOption microwave_option(const Settings& s, const SupplyTask& task) {
         plain.mass_kg = at[areal] * beam.rectenna_area_m2;
         plain.source_W = beam_W / at[source];
         for (const double tilt_rad : task.tilt_rad) {
-          const RectennaTakes takes = rectenna_takes(beam, in_e_plane, tilt_rad);
+          const RectennaAbsorption takes = rectenna_takes(beam, in_e_plane, tilt_rad);
           plain.delivered_W.push_back(beam_W * takes.taken * at[rectifier]);
           plain.torque_N_m.push_back(
               beam_pressure(beam_W * takes.taken, beam_W * takes.mirrored, tilt_rad, at[height])
@@ -286,7 +286,7 @@ SupplyOption induction_option(const Settings& s, const SupplyTask& task) {
       {"link_efficiency", "coupling", "quality_transmitter", "quality_receiver", "transmitter_A",
        "receiver_A", "ball_eddy_loss_W", "best_link_efficiency_tilted", "clearance_m"});
   option.name = option.symbol = "induction";
-  option.remarks = {"the mean torque is nothing at resonance; its error is that of the tuning"};
+  option.remarks = {"the mean torque is zero at resonance; its error is due to the detuning"};
   return option;
 }
 

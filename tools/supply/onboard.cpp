@@ -94,7 +94,8 @@ SupplyOption battery_option(const Settings& settings, const SupplyTask& task) {
                   },
                   {"energy_Wh", "capacity_Wh"});
   option.name = option.symbol = "battery";
-  option.remarks = {"carried; the torque is that of its lithium when it is empty"};
+  option.remarks = {
+      "on the platform; the torque is that of the displaced lithium in the empty battery"};
   return option;
 }
 
@@ -139,7 +140,7 @@ SupplyOption cable_option(const Settings& s, const SupplyTask& task) {
         const double current_A = 2.0 * task.load_W / (at[volts] + std::sqrt(square_V2));
         plain.source_W = task.load_W + current_A * current_A * ohm;
         const double bending = bending_stiffness_N_m_rad(cable);
-        // Half of it hangs on the platform, half on its other end.
+        // Half of it is carried by the platform, half by the fixed end.
         const double hanging_N =
             0.5 * cable_mass_kg(cable) * task.model.environment.gravity_lab_m_s2.norm();
         for (const double tilt_rad : task.tilt_rad) {
@@ -154,7 +155,7 @@ SupplyOption cable_option(const Settings& s, const SupplyTask& task) {
       },
       {"bending_N_m_per_rad", "twisting_N_m_per_rad", "cable_kg"});
   option.name = option.symbol = "cable";
-  option.remarks = {"tethered: pulls back as it tilts and winds up as it turns"};
+  option.remarks = {"a tether: it restores zero tilt and winds up with the yaw"};
   return option;
 }
 

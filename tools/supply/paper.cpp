@@ -11,7 +11,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-const SupplyOption* way(const SupplyTrade& trade, const std::string& symbol) {
+const SupplyOption* option_of(const SupplyTrade& trade, const std::string& symbol) {
   for (const SupplyOption& option : trade.options) {
     if (option.symbol == symbol) return &option;
   }
@@ -71,7 +71,7 @@ double radiative_limit(double wavelength_m, double irradiance_W_m2, double gap_J
 }
 
 Table paper_supply_table(const SupplyTrade& trade) {
-  Table table = Table::of("paper_supply", "Section III.B of the paper compared with ours");
+  Table table = Table::of("paper_supply", "Section III.B of the paper compared with photorque");
   const auto row = [&](const char* quantity, double published, double ours, const char* why) {
     table.row()
         .set("quantity", quantity)
@@ -89,8 +89,8 @@ Table paper_supply_table(const SupplyTrade& trade) {
   row("battery_heaviest_kg", 6.0, energy_Wh / 100.0,
       "600 Wh at 100 Wh/kg, rugged packs; for 360 Wh, 6 kg correspond to 60 Wh/kg. The masses "
       "agree with 600 Wh");
-  const SupplyOption* low = way(trade, "microwave_2_45_GHz");
-  const SupplyOption* high = way(trade, "microwave_5_8_GHz");
+  const SupplyOption* low = option_of(trade, "microwave_2_45_GHz");
+  const SupplyOption* high = option_of(trade, "microwave_5_8_GHz");
   row("rectifier_2_45_GHz", 0.90, 0.90, "an input: the best rectenna published");
   row("rectifier_5_8_GHz", 0.82, 0.82, "an input, likewise");
   row("transmission_2_45_GHz", 1.0, figure(low, "transmission"),
@@ -101,7 +101,7 @@ Table paper_supply_table(const SupplyTrade& trade) {
   row("mains_to_load_2_45_GHz", none, efficiency(low, trade.task),
       "includes generator, beam and rectifier; the paper gives the rectifier only");
   row("mains_to_load_5_8_GHz", none, efficiency(high, trade.task), "likewise");
-  const SupplyOption* coils = way(trade, "induction");
+  const SupplyOption* coils = option_of(trade, "induction");
   row("induction_link_parallel", none, figure(coils, "link_efficiency"),
       "the paper: most efficient when parallel");
   row("induction_link_tilted", none, figure(coils, "best_link_efficiency_tilted"),

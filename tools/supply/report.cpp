@@ -9,7 +9,7 @@
 namespace photorque {
 namespace {
 
-Table ways_table(const SupplyTrade& trade) {
+Table options_table(const SupplyTrade& trade) {
   Table table = Table::of("supply", "Power supplies");
   for (const SupplyOption& option : trade.options) {
     const SupplyDisturbance worst = disturbance_of(option, trade.task);
@@ -51,7 +51,7 @@ Table tilt_table(const SupplyTrade& trade) {
   return table;
 }
 
-Table figures_of_ways(const SupplyTrade& trade) {
+Table figures_of_options(const SupplyTrade& trade) {
   Table table = Table::of("supply_figures", "Figures of each supply");
   for (const SupplyOption& option : trade.options) {
     for (const auto& [name, estimate] : option.figures) {
@@ -141,7 +141,7 @@ void add_quantities(const SupplyTrade& trade, Product& product) {
 
 Product supply_product(const SupplyTrade& trade) {
   Product product;
-  product.tables = {ways_table(trade), tilt_table(trade), figures_of_ways(trade),
+  product.tables = {options_table(trade), tilt_table(trade), figures_of_options(trade),
                     charge_table(trade), paper_supply_table(trade)};
   product.plots = {tilt_plot(trade), charge_plot(trade)};
   add_quantities(trade, product);
@@ -153,15 +153,16 @@ void print_supply(const Console& console, const Product& product, const SupplyTr
   console.line(show(task.load_W) + " W for " + show(task.duration_s / 3600.0) + " h, tilts up to " +
                show(task.tilt_rad.back() / degree_rad) + " deg");
   console.heading(
-      "Supplies; torques are the largest over the tilts, angles the rotation in that time");
+      "Power supplies: largest torque over the tilts, and the rotation that it causes in this "
+      "time");
   print_table(console, table_named(product, "supply"),
-              {{"way", "way"},
-               {"aboard [kg]", "mass_kg"},
+              {{"supply", "way"},
+               {"on board [kg]", "mass_kg"},
                {"±", "mass_error_kg"},
                {"source [W]", "source_W"},
                {"±", "source_error_W"},
-               {"level [W]", "delivered_level_W"},
-               {"tilted [W]", "delivered_tilted_W"},
+               {"at 0 deg [W]", "delivered_level_W"},
+               {"at max tilt [W]", "delivered_tilted_W"},
                {"torque [N m]", "torque_N_m"},
                {"±", "torque_error_N_m"},
                {"per W [N m]", "torque_N_m_per_W"},
@@ -174,9 +175,10 @@ void print_supply(const Console& console, const Product& product, const SupplyTr
     }
   }
   const Console details = console.details();
-  details.heading("Section III.B of the paper compared with ours");
+  details.heading("Section III.B of the paper compared with photorque");
   const Table& paper = table_named(product, "paper_supply");
-  print_table(details, paper, {{"quantity", "quantity"}, {"paper", "published"}, {"ours", "ours"}});
+  print_table(details, paper,
+              {{"quantity", "quantity"}, {"paper", "published"}, {"photorque", "ours"}});
   print_reasons(details, paper);
 }
 

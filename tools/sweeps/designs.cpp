@@ -45,7 +45,7 @@ double margin(const Constraint& constraint, double value) {
   return std::min(value - constraint.at_least, constraint.at_most - value);
 }
 
-bool keeps_to(const SweepPlan& plan, const std::vector<Figure>& figures) {
+bool satisfies_constraints(const SweepPlan& plan, const std::vector<Figure>& figures) {
   return std::ranges::all_of(plan.constraints, [&](const Constraint& constraint) {
     const Figure* q = find_figure(figures, constraint.figure.column());
     return q != nullptr && margin(constraint, q->estimate.value) >= 0.0;
@@ -97,7 +97,7 @@ std::vector<Figure> worst_of(const SweepPlan& plan,
   return worst;
 }
 
-std::string where_it_failed(const SweepPlan& plan, size_t run) {
+std::string failed_run_label(const SweepPlan& plan, size_t run) {
   const std::string where = joined_text(plan.runs_of({})[run], ", ");
   return where.empty() ? "" : " (" + where + ")";
 }
@@ -127,14 +127,14 @@ bool dominates(const std::vector<double>& a, const std::vector<double>& b) {
 
 Design combine(const SweepPlan& plan, std::span<const RunOutcome> runs) {
   for (size_t i = 0; i < runs.size(); ++i) {
-    if (runs[i].failed()) return {{}, runs[i].error + where_it_failed(plan, i), false};
+    if (runs[i].failed()) return {{}, runs[i].error + failed_run_label(plan, i), false};
   }
   const std::vector<double> weights = plan.mean_weights();
   std::vector<std::vector<Figure>> points;
   bool feasible = true;
   for (size_t begin = 0; begin < runs.size(); begin += weights.size()) {
     points.push_back(mean_of(plan, runs.subspan(begin, weights.size()), weights));
-    feasible = feasible && keeps_to(plan, points.back());
+    feasible = feasible && satisfies_constraints(plan, points.back());
   }
   return {worst_of(plan, points), "", feasible};
 }

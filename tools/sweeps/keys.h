@@ -7,7 +7,7 @@
 
 namespace photorque {
 
-// Of an axis, of a key over which a design takes the mean or the worst, and of a tolerance.
+// Keys of [[sweep.axis]], `mean_over`, `worst_over` and `tolerance`.
 namespace axis_key {
 inline constexpr auto most_designs = static_cast<int64_t>(max_designs);
 

@@ -37,7 +37,7 @@ std::string spaced(std::string text) {
 
 }  // namespace
 
-std::string unit_for_people(const std::string& unit) {
+std::string printed_unit(const std::string& unit) {
   const auto at = std::ranges::find_if(unit_texts, [&](const auto& u) { return unit == u.first; });
   if (at != unit_texts.end()) return at->second;
   std::string text = unit.starts_with("per_") ? "1/" + unit.substr(4) : unit;
@@ -67,8 +67,7 @@ AxisLabel label_of(const SweepAxis& axis) {
     component = point && index.size() == 1 && index[0] < '3' ? xyz[index[0] - '0'] : " " + index;
   }
   const KeyUnit unit = unit_of_key(last);
-  return {axis.name.empty() ? spaced(unit.stem) + component : axis.name,
-          unit_for_people(unit.unit)};
+  return {axis.name.empty() ? spaced(unit.stem) + component : axis.name, printed_unit(unit.unit)};
 }
 
 AxisLabel label_of_figure(const std::string& column) {
@@ -83,7 +82,7 @@ AxisLabel label_of_figure(const std::string& column) {
   if (absolute) rest = rest.substr(4);
   const KeyUnit unit = unit_of_key(rest);
   const std::string name = spaced(unit.stem);
-  return {before + (absolute ? "|" + name + "|" : name), unit_for_people(unit.unit)};
+  return {before + (absolute ? "|" + name + "|" : name), printed_unit(unit.unit)};
 }
 
 std::string title_of_figure(const SweepPlan& plan, const std::string& column) {

@@ -8,7 +8,7 @@
 namespace photorque {
 
 // "W/m²" of "W_m2".
-std::string unit_for_people(const std::string& unit);
+std::string printed_unit(const std::string& unit);
 
 // A name and a unit of an axis: its own name, else the last part of its key: "position z [m]" of
 // source[0].position_m[2].

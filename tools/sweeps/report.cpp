@@ -122,10 +122,9 @@ std::vector<std::string> figure_columns(const SweepPlan& plan, const std::vector
   for (const Figure& figure : figures) names.push_back(figure.name.text());
   const auto require = [&names](const std::string& key, const std::string& name) {
     if (std::ranges::find(names, name) != names.end()) return;
-    const std::string suggestion = nearest(name, {names.begin(), names.end()});
-    throw InputError({}, key, '"' + name + '"',
-                     suggestion.empty() ? "a figure of the command's summary.json"
-                                        : "a figure of the summary, perhaps \"" + suggestion + '"');
+    throw InputError(
+        {}, key, '"' + name + '"',
+        "a figure of the summary: " + listed_names({names.begin(), names.end()}, name));
   };
   for (const std::string& name : plan.figures) {
     if (std::ranges::count(plan.figures, name) > 1) {

@@ -20,7 +20,7 @@ std::vector<std::string> figure_columns(const SweepPlan& plan, const std::vector
 // where asked for, `feasible` and `pareto` (1 or 0), and `error` where a design failed.
 Table sweep_table(const SweepPlan& plan, const SweepResult& result);
 
-// How far uncertain inputs spread the figures of a random plan without an objective.
+// Spread of the figures of a random plan without an objective.
 // "spread": a row per figure of `columns` with its mean, its standard deviation over the designs
 // that did not fail, and for every axis of numbers "from KEY", the fraction of the variance that it
 // causes: b² var(x)/var(y), b of the linear regression on all of them. The fractions sum to one
@@ -31,14 +31,15 @@ std::optional<Table> spread_table(const SweepPlan& plan, const SweepResult& resu
 
 void print_spread(const Console& console, const SweepPlan& plan, const Table& spread);
 
-// Of these figures: over one axis a curve; over two a map, and over more a map for every pair, each
-// point the best that the others allow; of a random plan a scatter over every axis; where axes are
-// no numbers, curves over the last. With several objectives the first against each other, with the
-// Pareto front. The distribution of built copies.
+// Plots of these figures: a curve over one axis, a map over two, and a map for every pair of more
+// axes, in which each point is the best design over the other axes. A random plan gives a scatter
+// plot over every axis. If axes are not numbers, curves are over the last one. With several
+// objectives, the first is plotted against each other one, with the Pareto front. Also the
+// distribution of built copies.
 void add_pictures(Product& product, const SweepPlan& plan, const SweepResult& result,
                   const std::vector<std::string>& figures);
 
-// How a search went: every evaluation and the best so far.
+// Progress of a search: every evaluation and the best so far.
 Plot search_plot(const SweepPlan& plan, const SweepResult& result);
 
 // The table, pictures, and the best as headline figures.

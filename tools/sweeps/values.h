@@ -19,7 +19,7 @@ std::string toml_text(const SettingsNode& node);
 // `values = […]`, or `from`, `to`, `count` (and `spacing`), both ends included.
 std::vector<std::string> grid_values(const Settings& axis);
 
-// Of every design of a random plan: `from` and `to`, or `mean` and `sigma`. Owen-scrambled Sobol
+// Values of an axis (`from` and `to`, or `mean` and `sigma`) in a random plan. Owen-scrambled Sobol
 // points; every `axis` has a separate dimension.
 std::vector<std::string> random_values(const Settings& axis, uint64_t seed, size_t number,
                                        size_t designs);

@@ -135,7 +135,7 @@ class Checker {
     for (const std::string& doubt : run->experiment().warnings) report_.notes.push_back(doubt);
     attempt([&] { read_published(file_->others("published")); });
     for (const InputError& mistake : unlit_receiver_errors(*run)) add_mistake(mistake);
-    say_light(*run);
+    check_light_settings(*run);
     if (file_->settings.has("array")) attempt([&] { check_array(*run); });
     check_recordings_of_light(*run);
   }
@@ -156,7 +156,7 @@ class Checker {
     });
   }
 
-  void say_light(const OpticalRun& run) {
+  void check_light_settings(const OpticalRun& run) {
     const Experiment& experiment = run.experiment();
     double power_W = 0.0;
     for (const Beam& beam : experiment.beams) power_W += beam.emitter->power_W();
@@ -201,7 +201,7 @@ class Checker {
     if (!attempt([&] { experiment = std::make_unique<AttitudeExperiment>(options_); })) return;
     const Settings& settings = experiment->settings();
     if (!attempt([&] { read_attitude_model(settings); })) return;
-    attempt([&] { say_propagation(read_propagation(settings)); });
+    attempt([&] { report_propagation(read_propagation(settings)); });
     attempt([&] {
       const ServeSettings serve = read_serve(settings);
       add("serve", show(serve.rate_Hz) + " Hz at " + serve.address);
@@ -240,7 +240,7 @@ class Checker {
     });
   }
 
-  void say_propagation(const PropagationRun& run) {
+  void report_propagation(const PropagationRun& run) {
     std::string light;
     if (has_light(*file_)) {
       const LightSettings settings = read_light(*file_);
@@ -281,12 +281,14 @@ class Checker {
         no_sweep = "[sweep] lacks count, or values, of an axis with from and to";
       }
       if (!can_run) no_search = no_sweep = plan.verb + " cannot run with its designs";
-      say("optimise", "over " + counted(plan.axes.size(), "key") + " by " + plan.verb, no_search);
-      say("sweep", over, no_sweep);
+      report_command("optimise", "over " + counted(plan.axes.size(), "key") + " by " + plan.verb,
+                     no_search);
+      report_command("sweep", over, no_sweep);
     });
   }
 
-  void say(const std::string& command, const std::string& what, const std::string& why_not) {
+  void report_command(const std::string& command, const std::string& what,
+                      const std::string& why_not) {
     if (why_not.empty()) {
       add(command, what);
     } else {
@@ -358,10 +360,11 @@ void print_commands(const Console& console, const CheckReport& report,
 // The tables that each command needs, where the file has none of them.
 void print_lacking(const Console& console, const CheckReport& report,
                    const std::vector<Verb>& verbs) {
-  std::vector<std::string> said;
+  std::vector<std::string> printed_needs;
   for (const Verb& verb : verbs) {
-    if (verb.needs.empty() || std::ranges::find(said, verb.needs) != said.end()) continue;
-    said.push_back(verb.needs);
+    if (verb.needs.empty() || std::ranges::find(printed_needs, verb.needs) != printed_needs.end())
+      continue;
+    printed_needs.push_back(verb.needs);
     std::string names;
     bool runs = false;
     for (const Verb& other : verbs) {

@@ -1,4 +1,4 @@
-// Everything about an experiment that can be known without running it.
+// Properties of an experiment that can be checked without running it.
 #pragma once
 
 #include <string>

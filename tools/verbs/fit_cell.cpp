@@ -1,5 +1,6 @@
 // photorque fit-cell: the parameters of a solar cell, module or shaded string from measurements.
 #include "tools/verbs/fit_cell.h"
+#include "core/settings/files.h"
 
 #include <algorithm>
 #include <cmath>
@@ -84,7 +85,7 @@ bool are_repeats(const std::vector<CurveAt>& curves) {
 void read_curves(const Settings& s, const fs::path& folder, FitTask& task) {
   if (s.has(fit_key::curves)) {
     for (const std::string& name : s.get(fit_key::curves)) {
-      task.files.push_back(folder / name);
+      task.files.push_back(existing_file(s, fit_key::curves, folder, name));
       add_curves(task.files.back(), {}, {}, task);
     }
   }
@@ -94,7 +95,7 @@ void read_curves(const Settings& s, const fs::path& folder, FitTask& task) {
         if (!one.has(key)) return std::nullopt;
         return one.get(key);
       };
-      task.files.push_back(folder / one.get(fit_key::curve_file));
+      task.files.push_back(existing_file(one, fit_key::curve_file, folder));
       add_curves(task.files.back(), stated(fit_key::curve_irradiance),
                  stated(fit_key::curve_temperature), task);
     }
@@ -143,7 +144,7 @@ FitTask read_fit_task(const Settings& root, const fs::path& folder) {
                   "module_file = \"library.csv\"");
   }
   if (s.has(fit_key::module_file)) {
-    task.files.push_back(folder / s.get(fit_key::module_file));
+    task.files.push_back(existing_file(s, fit_key::module_file, folder));
     task.module = module_in(whole_text(task.files[0]), task.files[0].string(),
                             s.has(fit_key::module_name) ? s.get(fit_key::module_name) : "");
     root.finish();

@@ -108,8 +108,8 @@ std::string lit_node(const Scene& scene) {
   double best_score = -1.0;
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const std::string& path = scene.instances[i].path;
-    const auto says = [&](const char* word) { return path.find(word) != std::string::npos; };
-    const double bonus = says("solar") || says("cells") || says("panel") ? 1e6 : 0.0;
+    const auto contains = [&](const char* word) { return path.find(word) != std::string::npos; };
+    const double bonus = contains("solar") || contains("cells") || contains("panel") ? 1e6 : 0.0;
     const double area_m2 = upward_area_m2(scene, i);
     const double score = area_m2 > 0.0 ? area_m2 * (1.0 + bonus) : -1.0;
     if (score > best_score) {
@@ -142,7 +142,7 @@ SceneWords scene_words(const Options& options) {
   if (ending != ".gltf" && ending != ".glb" && !cad_format(*options.scene)) {
     throw InputError({options.scene->string()}, "", "a model \"" + ending + "\"",
                      "glTF, STL or OBJ (.gltf, .glb, .stl, .obj): others are converted to one of "
-                     "them, as docs/files.md says");
+                     "them, see docs/files.md");
   }
   SceneWords words;
   if (!cad_format(*options.scene)) return words;

@@ -1,9 +1,11 @@
 // photorque schema: the keys of experiments for editors, documents and users.
 #include <cstdio>
+#include <set>
 
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text/format.h"
+#include "core/text/parse.h"
 #include "tools/keys/registry.h"
 #include "tools/verbs/verb.h"
 
@@ -21,6 +23,16 @@ bool is_of_key(const std::string& name, const std::string& wanted) {
   if (name == wanted) return true;
   const KeyUnit unit = unit_of_key(name), other = unit_of_key(wanted);
   return !unit.unit.empty() && !other.unit.empty() && unit.stem == other.stem;
+}
+
+// Paths of all keys as a user writes them.
+void add_paths(const std::vector<Key>& keys, const std::string& above, std::set<std::string>& all) {
+  for (const Key& key : keys) {
+    const std::string path = above + key.name;
+    all.insert(path);
+    add_paths(key.keys, path + ".", all);
+    for (const Key::Choice& choice : key.choices) add_paths(choice.keys, above, all);
+  }
 }
 
 void find(const std::vector<Key>& keys, const std::string& written, const std::string& path,
@@ -57,7 +69,12 @@ void print_key(const std::string& wanted) {
   std::vector<FoundKey> found;
   find(tables, "", "", wanted, found);
   if (found.empty()) {
-    throw InputError({"--key"}, "", wanted, "a key with its table, such as source.power_W");
+    std::set<std::string> known;
+    add_paths(tables, "", known);
+    const std::string similar = nearest(wanted, known);
+    throw InputError({"--key"}, "", in_quotes(wanted),
+                     "a key with its table, " +
+                         (similar.empty() ? "such as source.power_W" : "perhaps " + similar));
   }
   for (const FoundKey& one : found) {
     std::printf("%s: %s\n", one.path.c_str(), description_of(*one.key).c_str());

@@ -44,7 +44,7 @@ RunFile best_experiment(const Study& study, const Changes& changes) {
 
 SweepPlan read_study_plan(const ExperimentFile& file, const std::vector<Verb>& verbs) {
   const auto tables = file.others("sweep");
-  if (tables.empty()) throw file.settings.error("sweep", "none", "a table [sweep]");
+  if (tables.empty()) throw file.settings.error("sweep", "nothing", "a table [sweep]");
   SweepPlan plan = read_sweep_plan(tables.front());
   if (study_verb(verbs, plan.verb) == nullptr) {
     throw InputError({}, "sweep.verb", '"' + plan.verb + '"',

@@ -11,13 +11,13 @@ namespace photorque {
 namespace {
 
 // The ways but for those by light, whose tables are handed on.
-struct TradeWithoutLight {
+struct TradeWithoutBeams {
   SupplyTrade trade;
   std::vector<Settings> beams;
 };
 
-TradeWithoutLight read_trade(const Settings& root, const Settings& s) {
-  TradeWithoutLight read;
+TradeWithoutBeams read_trade(const Settings& root, const Settings& s) {
+  TradeWithoutBeams read;
   read.beams = s.tables("beam");
   read.trade.task = read_supply_task(root, s);
   SupplyTrade& trade = read.trade;
@@ -42,7 +42,7 @@ TradeWithoutLight read_trade(const Settings& root, const Settings& s) {
 std::string supply_in_words(const RunOptions& options) {
   const AttitudeExperiment experiment(options);
   const Settings s = own_table(experiment.settings(), "supply_trade", true);
-  const TradeWithoutLight read = read_trade(experiment.settings(), s);
+  const TradeWithoutBeams read = read_trade(experiment.settings(), s);
   std::string words;
   for (const SupplyOption& option : read.trade.options) words += option.name + ", ";
   for (const Settings& beam : read.beams) words += read_beam(beam, options).name + ", ";
@@ -54,7 +54,7 @@ RunResult run_supply(const RunOptions& options, const Console& console) {
   const WallTime wall;
   const AttitudeExperiment experiment(options);
   const Settings s = own_table(experiment.settings(), "supply_trade", true);
-  TradeWithoutLight read = read_trade(experiment.settings(), s);
+  TradeWithoutBeams read = read_trade(experiment.settings(), s);
   SupplyTrade trade = std::move(read.trade);
   std::vector<BeamSettings> beams;
   for (const Settings& beam : read.beams) beams.push_back(read_beam(beam, options));

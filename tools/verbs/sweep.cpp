@@ -58,7 +58,7 @@ class SweepRun {
                      (each > 1 ? ", " + std::to_string(each) + " runs each" : ""));
     if (!options_.collect && !options_.shard.empty()) {
       run_shard();
-      if (!all_shards_are_there()) {
+      if (!has_all_shards()) {
         console_.line("  not all shards are done; the table is written by the last");
         return;
       }
@@ -80,7 +80,7 @@ class SweepRun {
     }
   }
 
-  bool all_shards_are_there() const {
+  bool has_all_shards() const {
     for (size_t k = 1; k <= shard_.count; ++k) {
       if (!std::filesystem::exists(files_.done_shard(k, shard_.count))) return false;
     }

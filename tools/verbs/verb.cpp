@@ -66,7 +66,8 @@ std::string unknown_format(const std::string& list) {
     formats_in(list);
     return "";
   } catch (const InputError& error) {
-    return error.what();
+    const std::string text = error.what();
+    return text.substr(text.find("found "));  // after the key, which the parser adds
   }
 }
 

@@ -1,6 +1,5 @@
-// A command of the program: its options as data, and the function that runs with them. One file
-// each, which needs no library of command lines: tools/program parses the options and prints help
-// and manual.
+// A command of the program: its options as data, and the function that runs with them. Each command
+// is one file. tools/program parses the options and prints help and manual.
 #pragma once
 
 #include <filesystem>
@@ -26,28 +25,28 @@ struct Verb;
 // Options of every command line: photorque VERB EXPERIMENT [--set KEY=VALUE …] [--out DIR] …
 struct CommandOptions : RunOptions {
   std::string verb;                          // the program sets it
-  std::string name;                          // of the results; empty: that of the experiment
+  std::string name;                          // name of the results; empty: that of the experiment
   std::optional<std::filesystem::path> out;  // --out
-  bool quiet = false;                        // no text but errors
+  bool quiet = false;                        // only errors are printed
   bool json = false;                         // the summary as JSON on standard output
   bool verbose = false;                      // all lines on the terminal
-  std::string format;                        // further formats of the results: "exr,svg"
+  std::string format;                        // additional formats of the results: "exr,svg"
   std::string style = "page";                // of pictures
-  bool page = false;                         // --page, of commands that have it
-  std::optional<double> checkpoint_min;      // --checkpoint, likewise
+  bool page = false;                         // --page, if the command has it
+  std::optional<double> checkpoint_min;      // --checkpoint, if the command has it
 
   // --out, or out/NAME/VERB below the current folder.
   std::filesystem::path out_folder() const;
 };
 
-// The program around a command.
+// Properties of the program that a command uses.
 struct Program {
   const std::vector<Verb>& verbs;
   Interruption* interruption;  // null: a signal leaves incomplete files
 };
 
-// One option: where its value goes, and what --help says of it. Options are "--page" or "-o,--out";
-// a name without hyphens is an argument known by its place.
+// One option: the variable for its value, and its line in --help. Options are "--page" or
+// "-o,--out"; a name without hyphens is a positional argument.
 struct Option {
   std::string names;
   std::variant<bool*, int*, std::string*, std::filesystem::path*,
@@ -57,22 +56,22 @@ struct Option {
       value;
   std::string help;
   bool is_required = false;
-  bool is_one_each = false;  // of lists: every item has the option before it
+  bool is_one_each = false;  // of lists: the option precedes every item
   template <class Number>
   using Between = std::pair<Number, Number>;
   std::variant<std::monostate, Between<int>, Between<int64_t>, Between<double>> range = {};
-  // The mistake in a text; empty: nothing.
+  // The mistake in a value, as a sentence; empty: none.
   std::function<std::string(const std::string&)> mistake = {};
 };
 
 // A verb with options that can be parsed, then run.
 struct Command {
-  enum class Folder { none, own, shared };  // that it writes into: alone, or with others like it
+  enum class Folder { none, own, shared };  // output folder: none, of one run, or shared by several
 
   std::shared_ptr<CommandOptions> options;
   std::vector<Option> list = {};
   Folder folder = Folder::none;
-  // The mistake in a combination of options, as a sentence; empty: nothing.
+  // The mistake in a combination of options, as a sentence; empty: none.
   std::function<std::string()> mistake = {};
   std::function<void(const Program&)> run = {};
 
@@ -97,10 +96,10 @@ struct Verb {
   std::string name;
   std::string summary;  // one sentence for --help
   std::function<Command()> command;
-  // Of an experiment: the tables that it reads, and those that it requires, in words.
+  // Tables of an experiment that the command reads, and those that it requires, in words.
   std::vector<std::string> tables = {};
   std::string needs = {};
-  // One design of a sweep over it: no text, no files. Empty: it gives no figures.
+  // Computes one design of a sweep, without text and files. Empty: the command has no figures.
   std::function<RunResult(const RunOptions&)> study = {};
 };
 
@@ -123,31 +122,29 @@ void experiment_options(Command& command, CommandOptions& options);
 void traced_options(Command& command, CommandOptions& options);
 void traced_page_options(Command& command, CommandOptions& options);
 
-// A command with the options of an experiment that writes what `run` gives.
+// A command with the options of an experiment that writes the result of `run`.
 std::function<Command()> command_that_writes(RunResult (*run)(const RunOptions&, const Console&));
 
 // Every verb named in tools/CMakeLists.txt, in that order.
 std::vector<Verb> all_verbs();
 
-// Text on standard output, of commands that write results at most 30
-// lines without --verbose; silent with --quiet, and with
-// --json, where only the summary appears. What is beyond is left out before the last lines, but no
-// warning. A bar where standard error is a terminal; else a line of words at most every ten
-// seconds.
+// Text on standard output: at most 30 lines without --verbose. Lines in the middle are then
+// omitted, but no warnings. Silent with --quiet and --json. Progress is a bar if standard error is
+// a terminal, otherwise a line at most every ten seconds.
 Console terminal(const CommandOptions& options);
 
 // The formats and the style of --format and --style. InputError for a format that does not exist.
 RunFormats formats_of(const CommandOptions& options);
 
-// Writes the results and summary.json into the command's folder (write_run) and says where; with
-// --json prints the summary.
+// Writes the results and summary.json into the output folder (write_run) and prints its name. With
+// --json, prints the summary.
 void write_results(const CommandOptions& options, const Console& console, const RunResult& result);
 
 // The file of --checkpoint; null without the option.
 std::unique_ptr<CheckpointFile> checkpoint_of(const CommandOptions& options);
 
-// The description of the command on a page: without what changes no result, such as the folder and
-// the number of threads.
+// The command on a page, without options that do not change a result, such as the folder and the
+// number of threads.
 PageHead page_head(const CommandOptions& options,
                    const std::vector<std::filesystem::path>& recordings = {},
                    const std::vector<std::filesystem::path>& holdouts = {});

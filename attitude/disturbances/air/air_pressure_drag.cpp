@@ -1,9 +1,8 @@
 // Form drag of parts in the air: T = −k |ω| ω (eq. 22).
 //
-// coefficient_N_m_s2: k ≥ 0; or three of them, T = −|ω| diag(k) ω, of a body whose shape differs
-// about its axes; or one [[disturbance.part]] per body of external_air.h, whose form
-// drag about the vertical axis is summed in the environment's air. One number is taken the same
-// about every axis.
+// coefficient_N_m_s2: k ≥ 0, valid about every axis; or three numbers, T = −|ω| diag(k) ω. Instead,
+// one [[disturbance.part]] for each part of external_air.h, whose form drags about the vertical
+// axis are summed.
 #include "attitude/disturbances/air/external_air.h"
 #include "attitude/disturbances/kind.h"
 

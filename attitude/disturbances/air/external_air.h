@@ -1,10 +1,10 @@
 // The torque of still air on a platform that turns steadily about its vertical axis.
 //
-// The platform is taken apart into plates, discs, spheres and cylinders that do not disturb each
-// other, as the paper does (section II.B.2). Laminar friction grows as ω^1.5, form drag as ω²; the
-// coefficients of both powers are what the disturbances air_friction and air_pressure_drag take.
-// The paper's own CFD shows the limits of this: about ten times the lumped torque, from air that
-// stagnates on stiffeners; such faces can be added as separate parts (blunt_face).
+// The platform is divided into plates, discs, spheres and cylinders without interference, as in the
+// paper (section II.B.2). Laminar friction is proportional to ω^1.5, form drag to ω². The
+// disturbances air_friction and air_pressure_drag use the coefficients of both powers. The CFD of
+// the paper gives about ten times this torque, from air that stagnates on stiffeners. Such faces
+// can be added as separate parts (blunt_face).
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ enum class AirShape {
   sphere,            // ball spinning about its diameter (eq. 21)
   radial_cylinder,   // cylinder whose axis points away from the axis of rotation (eq. 22)
   upright_cylinder,  // cylinder parallel to the axis of rotation, at a distance
-  blunt_face,        // a face that meets the air square: a stiffener, a box
+  blunt_face,        // flat face normal to the flow: a stiffener, a box
 };
 
 // One or several equal parts. read_air_parts() lists the lengths that a shape needs.
@@ -64,13 +64,13 @@ struct AirCoefficients {
 AirCoefficients air_coefficients(const AirPart& part, const Air& air);
 AirCoefficients air_coefficients(const std::vector<AirPart>& parts, const Air& air);
 
-// Eq. 18 as printed, with the symbol μ read as the dynamic viscosity, for comparison alone. It is
-// no torque by its units.
+// Eq. 18 as printed, with μ as the dynamic viscosity, for comparison only. Its unit is not that of
+// a torque.
 double disc_torque_as_published(const AirPart& disc, const Air& air, double rate_rad_s);
 
 // Whether the laws' assumptions hold at a rate.
 struct AirFlow {
-  double reynolds = 0.0;             // by the length that the law uses
+  double reynolds = 0.0;             // with the length in the law
   double transition_reynolds = 0.0;  // above: turbulent, the law underestimates
   double smallest_reynolds = 0.0;    // below: no thin boundary layer or no separated wake
   bool laminar_law_holds() const {
@@ -87,14 +87,14 @@ AirFlow air_flow(const AirPart& part, const Air& air, double rate_rad_s);
 //   blunt_face: area_m2, distance_m, drag_coefficient.
 std::vector<AirPart> read_air_parts(const std::vector<Settings>& parts);
 
-// One row per part: torque, share, Reynolds number, transition, and whether the law holds.
+// One row per part: torque, fraction, Reynolds number, transition, and whether the law holds.
 Table air_table(const std::vector<AirPart>& parts, const Air& air, double rate_rad_s);
 
 // [[disturbance.part]] as read_air_parts() reads it.
 Key air_parts_key();
 
-// The coefficient of a disturbance: the user's, or where there are parts, `of` their sum in the
-// environment's air.
+// The coefficient of a disturbance: the stated one or, with parts, the member `of` of their sum in
+// the air of the environment.
 PlacedParameters coefficient_of_air(const Settings& settings, const Environment& environment,
                                     const ScalarKey& key, double AirCoefficients::*of);
 

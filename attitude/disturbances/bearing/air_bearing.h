@@ -45,7 +45,7 @@ FilmDrag film_drag(const SphericalSocket& socket, double viscosity_Pa_s);
 // Real films are much softer than that towards small loads: see gap_under_load_m(). At least 0.
 double spring_gap_m(double rated_gap_m, double rated_load_N, double stiffness_N_m, double load_N);
 
-// How thick the air film is: supply, restrictor and compressible film in balance.
+// Thickness of the air film from the balance of supply, restrictor and compressible film.
 //
 // The closed forms above need a gap. A catalogue quotes it at one load; at another load
 // the film settles where the flow that the restrictor lets through equals the flow that the film

@@ -139,7 +139,8 @@ DisturbanceKind kind() {
                                           "one by more than its uncertainty",
                                           {EffectKey::number(coefficient.name, 2e-5)}}},
                     .needs = Requirement::bearing,
-                    .least_sum = LeastSum{min_sum_N_m_s, "the bearing's drag would feed energy"}},
+                    .minimum_sum =
+                        MinimumSum{min_sum_N_m_s, "the bearing's drag would feed energy"}},
       .keys = {coefficient, about_axis, across_axis, key::socket.of(socket_keys())}};
 }
 

@@ -8,7 +8,7 @@
 // date_year: the field is IGRF along the orbit (none without it), of a circle known for duration_s
 //   (default 86400);
 // sun_direction[3] (any length; default: that of [environment.sun]): full light and shadow of the
-//   Earth with its penumbra; without either there is light all the time.
+//   Earth with its penumbra; without a direction there is no eclipse.
 #include <algorithm>
 #include <cmath>
 #include <memory>

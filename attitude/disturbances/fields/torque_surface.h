@@ -1,4 +1,4 @@
-// A wrench table made smooth, with derivatives: the torque and its slopes between the nodes.
+// Smooth interpolation of a wrench table: the torque between the nodes, and its derivatives.
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ class TorqueSurface {
     Vec3 torque_body_N_m;
     Vec3 by_polar, by_around;  // its derivatives [N m/rad]
   };
-  // Up to one step beyond the table the edge's value holds, so that an integrator may look past a
-  // tilt stop; NumericalError further out.
+  // Up to one step beyond the table, the torque is that of the edge, because an integrator
+  // evaluates torques beyond the tilt limit. NumericalError further out.
   Sample at(const TableAngles& angles) const;
 
   WrenchTable::Angles angles() const { return table_.angles; }
@@ -42,8 +42,8 @@ class TorqueSurface {
   bool beyond_is_pole(bool below) const;
 
   WrenchTable table_;
-  bool closed_ = false;         // goes all round
-  std::vector<Patch> patches_;  // cell by cell, those of one polar interval together
+  bool closed_ = false;         // covers the full circle
+  std::vector<Patch> patches_;  // one per cell, the azimuth varying fastest
 };
 
 // Reads a table as the program writes it: a CSV with heading_deg and tilt_deg, or azimuth_deg and
@@ -71,7 +71,7 @@ Vec3Of<T> look_up(const TorqueSurface& surface, const T& polar_rad, const T& aro
   return torque;
 }
 
-// Evaluates for light from a direction in body axes, of a surface over azimuth and elevation.
+// The torque for light from a direction in body axes; the surface is over azimuth and elevation.
 template <class T>
 Vec3Of<T> look_up_towards(const TorqueSurface& surface, const Vec3Of<T>& light_body) {
   constexpr double pole_offset = 1e-9;  // off the pole, where the azimuth has no derivative

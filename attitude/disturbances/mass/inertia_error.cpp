@@ -1,6 +1,6 @@
-// The inertia is not the nominal one: I + δ, about the centre of rotation.
+// The inertia about the centre of rotation is I + δ instead of the nominal I.
 //
-// delta_kg_m2[6]: xx, yy, zz, xy, xz, yz. The whole must remain an inertia.
+// delta_kg_m2[6]: xx, yy, zz, xy, xz, yz. I + δ must be an inertia tensor.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::inertia_error {
@@ -32,7 +32,7 @@ Mat3 inertia_change_kg_m2(const Disturbance& error) {
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   const PlacedParameters six = parameters_of(settings, delta);
   const Mat3 delta_kg_m2 = as_matrix(six.parameters);
-  // [platform] was checked alone.
+  // The reader of [platform] has checked I without δ.
   if (!delta_kg_m2.isZero()) {
     check_inertia(context.platform.inertia_kg_m2 + delta_kg_m2, settings.raw(delta).where,
                   settings.name() + "." + delta.name + " with the platform's inertia");

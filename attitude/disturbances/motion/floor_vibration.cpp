@@ -49,7 +49,7 @@ constexpr TextKey accelerogram_file(
 }  // namespace key
 
 template <class T>
-Vec3Of<T> shaken(const EvaluationContext<T>& now, const Vec3Of<T>& acceleration_lab_m_s2) {
+Vec3Of<T> inertial_torque(const EvaluationContext<T>& now, const Vec3Of<T>& acceleration_lab_m_s2) {
   const Vec3Of<T> felt_body_m_s2 = now.to_body(acceleration_lab_m_s2);
   return -now.mass_kg * now.mass_offset_body_m.cross(felt_body_m_s2);
 }
@@ -59,7 +59,7 @@ struct ToneVibration final : TorqueLaw<ToneVibration> {
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const Vec3Of<T> acceleration_m_s2 =
         sinusoid(now.time_s, own[frequency], own[phase]) * own[shaking];
-    return shaken(now, acceleration_m_s2);
+    return inertial_torque(now, acceleration_m_s2);
   }
 };
 
@@ -77,7 +77,7 @@ class SpectrumVibration final : public TorqueLaw<SpectrumVibration> {
       }
     }
     const Vec3Of<T> acceleration_m_s2 = own[factor] * sum;
-    return shaken(now, acceleration_m_s2);
+    return inertial_torque(now, acceleration_m_s2);
   }
 
  private:
@@ -92,7 +92,7 @@ class RecordedVibration final : public TorqueLaw<RecordedVibration> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const Vec3Of<T> acceleration_m_s2 = own[factor] * acceleration_lab_m_s2_.sample(now.time_s);
-    return shaken(now, acceleration_m_s2);
+    return inertial_torque(now, acceleration_m_s2);
   }
 
   std::vector<Switch> switches(std::span<const Parameter>, double from_s,

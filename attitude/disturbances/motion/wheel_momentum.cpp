@@ -14,7 +14,7 @@ constexpr ScalarKey common_inertia(
     "wheel's own axis: one number for all, or three for those about body x, y and z");
 constexpr VectorKey axis_inertia{common_inertia.name};
 
-struct AlikeWheels final : TorqueLaw<AlikeWheels> {
+struct EqualWheels final : TorqueLaw<EqualWheels> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const Vec3Of<T> by_inertia =
@@ -36,7 +36,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   if (count_as_written(settings, common_inertia.name) > 0) {
     return make_disturbance<OwnWheels>({vector_parameter(settings, axis_inertia)});
   }
-  return make_disturbance<AlikeWheels>({scalar_parameter(settings, common_inertia)});
+  return make_disturbance<EqualWheels>({scalar_parameter(settings, common_inertia)});
 }
 
 }  // namespace

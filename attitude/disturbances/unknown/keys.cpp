@@ -14,52 +14,54 @@ struct VariableKeys {
 };
 constexpr VariableKeys shape_variables[] = {{"tilt", "deg", 0.1, 1.0},
                                             {"rate", "rad_s", 0.1, 1.0},
-                                            {"time", "s", 100.0, 0.0},
                                             {"charge", "Ah", 3600.0, 1.0},
-                                            {"command", "N_m", 1e-4, 1.0}};
+                                            {"command", "N_m", 1e-4, 1.0},
+                                            {"time", "s", 100.0, 0.0}};
 constexpr double most_order = 200.0;
 
-void add_keys_of(const VariableKeys& variable, std::vector<Key>& keys) {
-  const std::string name = variable.name, unit = "_" + std::string(variable.unit);
-  keys.push_back(UncertainNumberKey(name + "_exponent", Range::positive(),
-                                    "exponent of a power of the " + name + "; *or*",
-                                    {.optional = true}));
-  keys.push_back(
-      NumbersKey(name + "_powers", {variable.least_power, most_order},
-                 "integer powers of the " + name + " in rising order, one term each; *or*",
-                 {.optional = true}));
-  keys.push_back(
-      NumbersKey(name + "_knots" + unit, {},
-                 "knots of a smooth table over the " + name +
-                     ": at least 4, in rising order, one coefficient for each; cubic in between",
-                 {.optional = true}));
-  keys.push_back(NumberKey(name + "_reference" + unit, variable.reference_SI, Range::positive(),
-                           name + " at which the powers are 1"));
-  keys.push_back(NumbersKey(
-      name + "_range" + unit, {},
-      "[from, to]: measured range. Beyond it the variable is constant, after a smooth transition "
-      "of at most a twentieth of the range",
-      {.usually = "everywhere; of a table its knots", .size = 2}));
+// Keys of all variables, one property after the other: documents then show each property once.
+std::vector<Key> function_keys() {
+  std::vector<Key> exponents, powers, knots, references, ranges;
+  for (const VariableKeys& variable : shape_variables) {
+    const std::string name = variable.name, unit = "_" + std::string(variable.unit);
+    exponents.push_back(UncertainNumberKey(name + "_exponent", Range::positive(),
+                                           "exponent of a power of the variable; *or*",
+                                           {.optional = true}));
+    powers.push_back(NumbersKey(
+        name + "_powers", {variable.least_power, most_order},
+        "integer powers of the variable in rising order, one term each; *or*", {.optional = true}));
+    knots.push_back(
+        NumbersKey(name + "_knots" + unit, {},
+                   "knots of a smooth table over the variable: at least 4, in rising order, one "
+                   "coefficient for each; cubic in between",
+                   {.optional = true}));
+    references.push_back(NumberKey(name + "_reference" + unit, variable.reference_SI,
+                                   Range::positive(), name + " at which the powers are 1"));
+    ranges.push_back(NumbersKey(
+        name + "_range" + unit, {},
+        "[from, to]: measured range. Beyond it the variable is constant, after a smooth transition "
+        "of at most a twentieth of the range",
+        {.usually = "everywhere; of a table its knots", .size = 2}));
+  }
+  return joined({exponents, powers, knots, references, ranges});
 }
 
 }  // namespace
 
 std::vector<Key> empirical_shape_keys() {
-  std::vector<Key> keys = {
-      TextsKey(
-          "axes",
-          "axes of the torque, each at most once: `\"body\"` x, y, z; `\"lab\"` x, y, z; "
-          "`\"vertical\"`; `\"lean\"` (the tilt axis; positive: reduces the tilt); `\"rate\"` "
-          "(against the rate if positive); `\"rate_by_axis\"` (the same about body x, y, z); "
-          "`\"command\"`; `\"cross_talk\"` (of the command about the other axes: xy, xz, yx, yz, "
-          "zx, zy)"),
-      NumbersKey("yaw_orders", {1.0, most_order},
-                 "integers n in rising order: cos nψ and sin nψ of the yaw ψ (azimuth of body x) "
-                 "for each n",
-                 {.optional = true})};
-  for (const VariableKeys& variable : shape_variables) add_keys_of(variable, keys);
   return joined(
-      {keys,
+      {{TextsKey(
+            "axes",
+            "axes of the torque, each at most once: `\"body\"` x, y, z; `\"lab\"` x, y, z; "
+            "`\"vertical\"`; `\"lean\"` (the tilt axis; positive: reduces the tilt); `\"rate\"` "
+            "(against the rate if positive); `\"rate_by_axis\"` (the same about body x, y, z); "
+            "`\"command\"`; `\"cross_talk\"` (of the command about the other axes: xy, xz, yx, yz, "
+            "zx, zy)"),
+        NumbersKey("yaw_orders", {1.0, most_order},
+                   "integers n in rising order: cos nψ and sin nψ of the yaw ψ (azimuth of body x) "
+                   "for each n",
+                   {.optional = true})},
+       function_keys(),
        {UncertainNumberKey("time_constant_s", Range::positive(),
                            "time constant τ of a factor exp(−t/τ); *or*", {.optional = true}),
         UncertainNumberKey("time_period_s", Range::positive(),

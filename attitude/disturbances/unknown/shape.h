@@ -91,7 +91,7 @@ struct EmpiricalShape {
 
   size_t components() const;
   size_t terms() const;
-  // Of the first coefficient among the parameters: the functions' own come before.
+  // Index of the first coefficient among the parameters, after those of the functions.
   size_t first_coefficient() const;
   size_t coefficients() const { return components() * terms(); }
 };
@@ -101,7 +101,7 @@ inline constexpr const char* empirical_coefficients = "coefficients_N_m";
 size_t components_of(TorqueAxes axes);
 std::string name_of(TorqueAxes axes);
 std::string name_of(MotionVariable variable);
-// Of the variable in files and reports: "deg", "rad_s", "s", "Ah", "N_m".
+// Unit of the variable in files and reports: "deg", "rad_s", "s", "Ah", "N_m".
 std::string unit_of(MotionVariable variable);
 
 // From the keys of an experiment file (empirical_torque.cpp lists them). InputError for keys that

@@ -1,4 +1,4 @@
-// How a candidate acts on the motion: whether it brakes, and whether it restores an angle.
+// Action of a candidate on the motion: whether it brakes, and whether it restores an angle.
 #include <algorithm>
 #include <array>
 #include <cmath>

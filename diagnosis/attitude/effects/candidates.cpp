@@ -45,7 +45,7 @@ std::array<double, 4> place_at(const Observation& seen, size_t i, size_t reach) 
 
 Vec3 rate_at(const Observation& seen, size_t i, size_t reach) {
   Vec3 rate = Vec3::Zero();
-  if (seen.sees_some_attitude()) {
+  if (seen.has_some_attitude()) {
     const size_t from = i - std::min(i, reach), to = std::min(seen.blocks() - 1, i + reach);
     if (seen.attitude_rows[from] > 0.0 && seen.attitude_rows[to] > 0.0 && to > from) {
       const Quat turn = seen.attitude[from].conjugate() * seen.attitude[to];
@@ -71,14 +71,14 @@ ReadMotion read_motion(const AttitudeModel& model, const Observation& seen) {
   ReadMotion motion;
   Vec3 least = Vec3::Constant(1e308), most = -least, slowest = least, fastest = most;
   const int translation = Dynamics(model).first_of_translation();
-  const bool hides_angle = model.platform.turns_about_one_axis() && !seen.sees_some_attitude();
+  const bool hides_angle = model.platform.turns_about_one_axis() && !seen.has_some_attitude();
   const AxisReadings swing =
       hides_angle ? angles_of_swing(seen, model.platform.axis) : AxisReadings();
   size_t at_swing = 0;
   for (size_t i = 0; i < seen.blocks(); i += stride) {
     PlatformState state = Dynamics(model).initial_state(rate_at(seen, i, reach));
     state.time_s = seen.time_s[i];
-    if (seen.sees_some_attitude() && seen.attitude_rows[i] > 0.0) {
+    if (seen.has_some_attitude() && seen.attitude_rows[i] > 0.0) {
       state.lab_from_body = seen.attitude[i];
     }
     while (at_swing < swing.row.size() && swing.row[at_swing] < i) ++at_swing;
@@ -136,7 +136,7 @@ double mean_square_action(const Disturbance& disturbance, const AttitudeModel& n
 }
 
 // Excludes components of an array that have no effect about the single axis if another has one.
-void leave_out_what_does_nothing(const std::vector<double>& actions, Candidate& c) {
+void drop_ineffective_components(const std::vector<double>& actions, Candidate& c) {
   constexpr double nothing = 1e-9;
   for (size_t p = 0; p < actions.size(); ++p) {
     double most = 0.0;
@@ -196,7 +196,7 @@ void scale_to_machine(const NominalModel& nominal, const std::vector<Observation
       if (now > 0.0 && std::isfinite(now)) c.scale[p] *= expected / now;
       actions[p] = now;
     }
-    if (platform.turns_about_one_axis()) leave_out_what_does_nothing(actions, c);
+    if (platform.turns_about_one_axis()) drop_ineffective_components(actions, c);
   }
 }
 
@@ -317,7 +317,7 @@ std::vector<double> rates_about(const Observation& seen, const Vec3& axis) {
       read += seen.gyro_rows[i][k];
     }
     if (read > 0.0 && std::isfinite(along_rad_s)) rate_rad_s.push_back(along_rad_s);
-    if (!seen.sees_some_attitude() || !(seen.attitude_rows[i] > 0.0)) continue;
+    if (!seen.has_some_attitude() || !(seen.attitude_rows[i] > 0.0)) continue;
     const double turned_rad =
         before == seen.blocks()
             ? 0.0
@@ -376,7 +376,7 @@ Path path_of(const Observation& seen) {
 }
 
 // Whether the sliding body moves in one direction and slows down in every run; it may stop.
-bool only_slides_out(const std::vector<Observation>& runs) {
+bool slides_until_rest(const std::vector<Observation>& runs) {
   return std::ranges::all_of(runs, [](const Observation& seen) {
     const auto [place_m, velocity] = path_of(seen);
     if (velocity.size() < 2) return false;
@@ -456,7 +456,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
   const bool floats_in_laboratory =
       !context.platform.has_bearing() && context.environment.latitude_rad != 0.0 &&
       std::any_of(runs.begin(), runs.end(),
-                  [](const Observation& seen) { return seen.sees_some_attitude(); });
+                  [](const Observation& seen) { return seen.has_some_attitude(); });
   const auto has_channel = [&](Requirement channel) {
     switch (channel) {
       case Requirement::command:
@@ -517,7 +517,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
   scale_to_machine(nominal, runs, all.list);
   // The rotation of a sliding body may not be observed.
   const bool sees_turn = std::any_of(runs.begin(), runs.end(), [](const Observation& seen) {
-    return seen.sees_some_attitude() || seen.has_gyro;
+    return seen.has_some_attitude() || seen.has_gyro;
   });
   if (context.platform.slides() && !sees_turn) {
     std::erase_if(all.list, [](const Candidate& c) { return !is_force(c.effect.how.needs); });
@@ -549,7 +549,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
              is_restoring(c, nominal.model);
     });
     const bool sees_angle = std::ranges::any_of(
-        runs, [](const Observation& seen) { return seen.sees_some_attitude(); });
+        runs, [](const Observation& seen) { return seen.has_some_attitude(); });
     const bool swings_freely = !covered.has_commands && swings(runs, context.platform.axis);
     if ((!sees_angle || (!is_level && !swings_freely)) && !context.platform.slides()) {
       for (Candidate& c : all.list) set_zero_at_rest(nominal.model, c);
@@ -579,7 +579,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
         "it rotates in one sense only: friction cannot be distinguished from another constant "
         "torque";
   }
-  if (context.platform.slides() && only_slides_out(runs) &&
+  if (context.platform.slides() && slides_until_rest(runs) &&
       std::erase_if(all.list, [](const Candidate& c) {
         return c.effect.how.steady && c.effect.how.needs == Requirement::plane;
       }) > 0) {

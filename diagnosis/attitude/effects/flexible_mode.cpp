@@ -43,7 +43,7 @@ std::vector<Swing> swings(const PropagatedRun& run, double frequency_Hz, double 
 }
 
 // Subtracts the moving average over `window` neighbours (odd) from every row.
-void take_out_slow(Eigen::MatrixXd& rows, Eigen::Index window) {
+void subtract_moving_average(Eigen::MatrixXd& rows, Eigen::Index window) {
   const Eigen::Index n = rows.rows(), half = window / 2;
   Eigen::MatrixXd until(n + 1, rows.cols());  // sums of the preceding rows
   until.row(0).setZero();
@@ -94,7 +94,7 @@ Eigen::MatrixXd sums_of(const PropagatedRun& run, const std::vector<Swing>& swin
     if (rows.rows() == 0) continue;
     const double a_second = static_cast<double>(rows.rows()) / run.seen.duration_s();
     const auto half = static_cast<Eigen::Index>(0.5 * a_second / frequency_Hz);
-    take_out_slow(rows, 2 * std::max<Eigen::Index>(1, half) + 1);
+    subtract_moving_average(rows, 2 * std::max<Eigen::Index>(1, half) + 1);
     sums += rows.transpose() * rows;
   }
   return sums;

@@ -55,7 +55,7 @@ double inertia_change(const Trial& trial) {
 // physical bound.
 std::string sum_objection(const AttitudeModel& model) {
   for (const DisturbanceKind& kind : disturbance_kinds()) {
-    const std::optional<LeastSum>& least = kind.screening.least_sum;
+    const std::optional<MinimumSum>& least = kind.screening.minimum_sum;
     if (!least) continue;
     double sum = 0.0;
     for (const Disturbance& d : model.disturbances) {

@@ -42,7 +42,8 @@ std::vector<WallPatch> patches_of(const LightLab& lab, const LightWall& wall) {
 // Form factor of a triangle at a point: irradiance per unit of diffuse light that leaves a unit
 // area. Lambert's sum over the edges of the part above the point's horizon (M. Cohen, J. Wallace,
 // Radiosity and Realistic Image Synthesis, 1993, eq. 4.13).
-double near_share(const std::array<Vec3, 3>& triangle, const Vec3& point, const Vec3& normal) {
+double triangle_form_factor(const std::array<Vec3, 3>& triangle, const Vec3& point,
+                            const Vec3& normal) {
   std::array<Vec3, 4> corner;
   size_t corners = 0;
   for (size_t i = 0; i < 3; ++i) {
@@ -63,13 +64,13 @@ double near_share(const std::array<Vec3, 3>& triangle, const Vec3& point, const 
 }
 
 // Form factor of a patch; a distant patch is treated as a point source at its centre.
-double share_of(const WallPatch& patch, const Vec3& point, const Vec3& normal) {
+double patch_form_factor(const WallPatch& patch, const Vec3& point, const Vec3& normal) {
   constexpr double far2 = 64.0;  // (distance/size)²; error of some tenths of a per cent
   const Vec3 to = point - patch.centre_m;
   const double r2 = to.squaredNorm();
   const double leaves = patch.normal.dot(to), arrives = -normal.dot(to);
   if (leaves <= 0.0) return 0.0;
-  if (r2 < far2 * patch.area_m2) return near_share(patch.corners_m, point, normal);
+  if (r2 < far2 * patch.area_m2) return triangle_form_factor(patch.corners_m, point, normal);
   return arrives > 0.0 ? leaves * arrives / (r2 * r2) * patch.area_m2 / pi : 0.0;
 }
 
@@ -144,8 +145,8 @@ WallExchange exchange_with(const LightLab& lab, const LightSites& sites, size_t 
     const LightSites::Group& group = sites.groups[g];
     for (size_t i = group.first_point; i < group.first_point + group.count; ++i) {
       for (size_t k = 0; k < patches.size(); ++k) {
-        sum[k] +=
-            sites.weights[i] * share_of(patches[k], sites.points_body_m[i], lab.normal_body());
+        sum[k] += sites.weights[i] *
+                  patch_form_factor(patches[k], sites.points_body_m[i], lab.normal_body());
       }
     }
     const Eigen::Map<const Eigen::RowVectorXd> row(sum.data(), result.shares.cols());

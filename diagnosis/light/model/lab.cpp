@@ -15,7 +15,7 @@
 namespace photorque {
 namespace {
 
-// Of [sensors].
+// Keys of [sensors].
 namespace noise_key {
 constexpr NumberKey irradiance("noise_W_m2", 0.0, Range::not_negative(),
                                "standard deviation of a reading");

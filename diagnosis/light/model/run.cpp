@@ -225,7 +225,7 @@ void LightRun::find_circumstances(const PartOf* known) {
   circumstances_.resize(between_.empty() ? sites_.outputs.size() : rows() * lab_->cells().size());
   for (size_t row = 0; row < recording_.rows(); ++row) {
     const Vec3 up = recording_.lab_from_body[row] * Vec3::UnitZ();
-    Circumstance c;
+    SampleConditions c;
     c.tilt_rad = std::acos(std::clamp(up.z(), -1.0, 1.0));
     c.heading_rad = std::atan2(up.y(), up.x());
     c.temperature_K = recording_.temperature_K[row];

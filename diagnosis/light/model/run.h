@@ -100,7 +100,7 @@ class LightRun {
   std::vector<Expected> expected(const LightState& state) const;
 
   // Position, time and conditions of each output.
-  const std::vector<Circumstance>& circumstances() const { return circumstances_; }
+  const std::vector<SampleConditions>& circumstances() const { return circumstances_; }
   // The curve of the array in the light of a row.
   ArrayCurve curve(const LightState& state, const std::vector<double>& signals, size_t row) const;
 
@@ -154,7 +154,7 @@ class LightRun {
   std::vector<double> irradiance_sigma_;   // scans, per row
   int number_ = 0;
   double voltage_scale_V_ = 1.0, current_scale_A_ = 1.0;
-  std::vector<Circumstance> circumstances_;  // per output
+  std::vector<SampleConditions> circumstances_;  // per output
   std::vector<size_t> sample_row_;
   std::vector<int> sample_channel_;
   std::vector<std::string> channels_;

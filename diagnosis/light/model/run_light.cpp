@@ -21,7 +21,7 @@ LightTerms light_terms_of(const LightState& state, const LightFields& fields) {
   for (size_t l = 0; l < fields.lamps.size(); ++l) {
     terms.push_back({fields.lamps[l].field.get(), power(l)});
   }
-  for (const WallShare& share : state.walls) {
+  for (const WallReflection& share : state.walls) {
     for (const bool specular : {false, true}) {
       const double part = specular ? share.specular : share.diffuse;
       const auto found = fields.walls.find({share.wall, specular});
@@ -90,7 +90,7 @@ LightFields LightRun::fields(const LightState& state, const LightFields* near, W
       if (same) result.walls[key] = parts;
     }
   }
-  for (const WallShare& share : state.walls) {
+  for (const WallReflection& share : state.walls) {
     for (const bool specular : {false, true}) {
       const double part = specular ? share.specular : share.diffuse;
       const auto key = std::pair(share.wall, specular);
@@ -137,7 +137,7 @@ std::vector<double> LightRun::signals_of(const LightState& state, std::vector<do
   const size_t cells = lab_->cells().size();
   const std::vector<const CellModel*> models = lab_->models();
   for (size_t o = 0; o < light.size(); ++o) {
-    const Circumstance& c = circumstances_[o];
+    const SampleConditions& c = circumstances_[o];
     if (!recording_.lamp_light.empty()) light[o] *= recording_.lamp_light[o / cells];
     if (is_run() && state.droop_depth != 0.0) {
       light[o] *= 1.0 - state.droop_depth * (1.0 - std::exp(-c.time_s / state.droop_time_s));

@@ -72,7 +72,7 @@ std::optional<LightRun::Held> LightRun::held_maximum(const ArrayCurve& curve, bo
 
 double LightRun::current_law(const LightState& state, size_t row, double voltage_V) const {
   if (state.current_laws.empty()) return 0.0;
-  Circumstance c = circumstances_[first_output_[row]];
+  SampleConditions c = circumstances_[first_output_[row]];
   c.voltage = voltage_V / voltage_scale_V_;
   double sum = 0.0;
   for (const auto& law : state.current_laws) sum += law(c);

@@ -49,7 +49,7 @@ constexpr NumberKey voltage_noise("voltage_noise_V", 0.0, Range::not_negative(),
 constexpr TableKey table("module", "a module in sunlight, whose curves are diagnosed");
 }  // namespace module_key
 
-// Of [[effect]] on a module.
+// Kinds of [[effect]] on a module.
 namespace effect_key {
 enum Kind : size_t {
   cell_shaded,
@@ -109,7 +109,7 @@ constexpr NumberKey leak("leak", 1.0, Range::positive(),
 // the curves themselves have priority.
 std::vector<double> of_references(const Settings& s, const OtherKey& key, double usual,
                                   const Range& range, const std::vector<size_t>& files,
-                                  const std::vector<double>& said) {
+                                  const std::vector<double>& recorded) {
   std::vector<double> stated;
   if (s.has(key)) {
     const size_t count = files.empty() ? 1 : files.back() + 1;
@@ -123,7 +123,7 @@ std::vector<double> of_references(const Settings& s, const OtherKey& key, double
   std::vector<double> result;
   for (size_t i = 0; i < files.size(); ++i) {
     const double otherwise = stated.empty() ? usual : stated[files[i]];
-    result.push_back(std::isfinite(said[i]) ? said[i] : otherwise);
+    result.push_back(std::isfinite(recorded[i]) ? recorded[i] : otherwise);
   }
   if (files.empty()) result.push_back(stated.empty() ? usual : stated.front());
   return result;
@@ -131,15 +131,15 @@ std::vector<double> of_references(const Settings& s, const OtherKey& key, double
 
 void read_temperatures(const Settings& s, const std::vector<size_t>& files, ModuleDesign& design) {
   const double usual_K = design.datasheet.empty() ? 298.15 : design.datasheet.front().temperature_K;
-  std::vector<double> said_K, said_W_m2;
+  std::vector<double> recorded_K, recorded_W_m2;
   for (const LightRecording& r : design.references) {
-    said_K.push_back(r.has_temperatures ? median_of(r.temperature_K) : NAN);
-    said_W_m2.push_back(median_of(r.irradiance_W_m2));
+    recorded_K.push_back(r.has_temperatures ? median_of(r.temperature_K) : NAN);
+    recorded_W_m2.push_back(median_of(r.irradiance_W_m2));
   }
   design.reference_temperatures_K = of_references(s, module_key::reference_temperature, usual_K,
-                                                  module_key::temperatures_K, files, said_K);
-  design.reference_irradiances_W_m2 =
-      of_references(s, module_key::reference_irradiance, NAN, Range::positive(), files, said_W_m2);
+                                                  module_key::temperatures_K, files, recorded_K);
+  design.reference_irradiances_W_m2 = of_references(s, module_key::reference_irradiance, NAN,
+                                                    Range::positive(), files, recorded_W_m2);
   design.reference_temperature_K = design.reference_temperatures_K.front();
   design.temperature_K = design.reference_temperature_K;
   if (s.has(module_key::temperature)) {

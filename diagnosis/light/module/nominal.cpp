@@ -274,14 +274,14 @@ ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& de
   ModuleSweep good = all;
   good.voltage_V.clear();
   good.current_A.clear();
-  const double wild_A = std::max(20.0 * all.noise_A, 0.05 * largest_A);
+  const double limit_A = std::max(20.0 * all.noise_A, 0.05 * largest_A);
   for (size_t i = 0; i < all.current_A.size(); ++i) {
     const bool inner = i > 0 && i + 1 < all.current_A.size();
     const double low = inner ? std::min(all.current_A[i - 1], all.current_A[i + 1]) : 0.0,
                  high = inner ? std::max(all.current_A[i - 1], all.current_A[i + 1]) : 0.0;
-    const bool is_wild =
-        inner && (all.current_A[i] < low - wild_A || all.current_A[i] > high + wild_A);
-    if (is_wild) {
+    const bool is_outlier =
+        inner && (all.current_A[i] < low - limit_A || all.current_A[i] > high + limit_A);
+    if (is_outlier) {
       if (dropped != nullptr) ++*dropped;
       continue;
     }

@@ -21,7 +21,7 @@ const bodies = (charts) => element('div', { class: 'charts' }, charts.map((chart
 
 // Curves that carry the line of the slider; of many the first, and the others to be unfolded.
 function alongTheSlider(stage, charts) {
-  // Of several recordings only the curves of the one that is shown are to be seen.
+  // Only the curves of the selected recording are visible.
   const atOnce = charts.some((chart) => chart.json.cursor.only_at) ? charts.length : stage?.bodies.length > 1 ? 6 : 4;
   const title = stage?.axes.some((axis) => axis.plays) ? 'Over time' : 'Along the slider';
   const more = charts.slice(atOnce);

@@ -13,7 +13,7 @@ import { Rays, makeLamps } from './light.js';
 // three.js takes y as upwards; this turn of spherical coordinates makes it z.
 const upright = new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), new Vector3(0, 1, 0));
 
-// Of the bodies in their order; the first is solid. The colours of the diagnosis: nominal, improved.
+// Colours of the bodies in order; the first is solid. In a diagnosis: nominal, improved.
 export const bodyColours = [palette.grey, palette.vermilion, palette.blue];
 
 const widest = 4 / 3;  // width over height for which the field of view is meant; wider ones show more
@@ -95,7 +95,7 @@ export class StageView {
     return { position: target.clone().addScaledVector(back, distance), target };
   }
 
-  // How long a vector is drawn: the longest of all states as long as the body, or to its own scale.
+  // Length of a drawn vector: the longest of all states is as long as the body, or a separate scale.
   lengthOf(json, which) {
     if (json.m_per_unit > 0) return (value) => value * json.m_per_unit;
     const { arrow } = this.stage.states;

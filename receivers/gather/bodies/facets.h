@@ -21,7 +21,7 @@ struct Facet {
   Ball ball;  // about its centroid
   uint32_t instance = 0;
   uint32_t triangle = 0;
-  // Nothing of the scene lies above the back [0] or the front [1]: whatever comes to that side is
+  // No part of the scene lies above the back [0] or the front [1]: all light on that side is
   // not shaded.
   std::array<bool, 2> free = {false, false};
 };
@@ -41,8 +41,7 @@ class Facets {
   // Holds an instance.
   const Ball& ball_of(uint32_t instance) const { return balls_[instance]; }
   size_t count() const { return facets_.size(); }
-  // Of an instance without a gap: whether it is the fronts that look inwards
-  // (fronts_look_inwards()).
+  // fronts_look_inwards() of an instance.
   std::optional<bool> inward(uint32_t instance) const { return inward_[instance]; }
 
  private:
@@ -57,11 +56,10 @@ class Facets {
 
 // Which side of a mesh no light from outside can reach.
 
-// Of a mesh without a gap: whether it is the fronts of its triangles that look inwards. Nothing of
-// one that has an inside nowhere, or not everywhere on the same side: with an edge that belongs to
-// other than two triangles, or to two that run along it the same way; of several bodies of which
-// some are turned inside out; and of a body whose volume is nothing. Corners at the same place are
-// one.
+// Whether the front sides of a closed mesh face inwards. Empty if the mesh has no inside, or not
+// always on the same side of its faces: an edge does not belong to two triangles with opposite
+// orientation, some of several bodies are inside out, or the volume is zero. Corners at the same
+// place are one.
 std::optional<bool> fronts_look_inwards(std::span<const SurfaceFace> faces);
 
 }  // namespace photorque

@@ -50,7 +50,7 @@ struct FacetSide {
   Vec3 normal() const { return front ? facet->normal : Vec3(-facet->normal); }
 };
 
-// How much of a beam's light a side can get.
+// Upper limit for the light of a beam on one side.
 enum class Exposure {
   none,
   partly,  // some rays may come from behind
@@ -64,7 +64,7 @@ class BodyLamp : public PlacedLamp {
            const Bands& bands, double scene_diameter_m)
       : PlacedLamp(beam, of.light(), body_from_lab, bands, scene_diameter_m), table_(of) {}
 
-  // Nothing of the aperture is inside the ball.
+  // No part of the aperture is inside the ball.
   bool outside(const Ball& ball) const;
   Exposure exposure_of(const FacetSide& side) const;
   // About the power on a facet.

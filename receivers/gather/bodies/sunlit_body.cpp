@@ -60,7 +60,7 @@ class SunlitBody::Direction {
     find_lit();
     find_covered();
     add_direct();
-    follow_thrown();
+    trace_onward_light();
     found_.rays += onward_.rays();
     return found_;
   }
@@ -186,7 +186,7 @@ class SunlitBody::Direction {
       for (int k = 0; k < 3; ++k) ray.direction[k] = static_cast<float>(-lit.travel[k]);
       rays.push_back(ray);
     }
-    const std::vector<uint8_t> clear = clear_ways(rays);
+    const std::vector<uint8_t> clear = unshadowed(rays);
     std::vector<LitPiece> kept;
     for (size_t i = 0; i < pieces_.size(); ++i) {
       if (clear[i] != 0) kept.push_back(pieces_[i]);
@@ -205,11 +205,11 @@ class SunlitBody::Direction {
                            lit.side.normal(), body_.scattered_.close_m()));
       whose.push_back(i);
     }
-    const std::vector<uint8_t> clear = clear_ways(rays);
+    const std::vector<uint8_t> clear = unshadowed(rays);
     for (size_t i = 0; i < whose.size(); ++i) pieces_[whose[i]].covered = clear[i] == 0;
   }
 
-  std::vector<uint8_t> clear_ways(std::span<const ShadowRay> rays) {
+  std::vector<uint8_t> unshadowed(std::span<const ShadowRay> rays) {
     std::vector<uint8_t> clear(rays.size());
     for (size_t begin = 0; begin < rays.size(); begin += shadow_batch) {
       const size_t count = std::min<size_t>(rays.size() - begin, shadow_batch);
@@ -251,7 +251,7 @@ class SunlitBody::Direction {
     return cell.at({1.0 - root, root * (1.0 - second), root * second});
   }
 
-  void add_thrown(const LitPiece& one, uint32_t owner, std::vector<OnwardRay>& rays) const {
+  void add_onward_rays(const LitPiece& one, uint32_t owner, std::vector<OnwardRay>& rays) const {
     const LitSide& lit = sides_[one.side];
     const Vec3 normal = lit.side.normal();
     const Vec3 at_m = point_m(*lit.side.facet, place_in(one));
@@ -276,7 +276,7 @@ class SunlitBody::Direction {
 
   // Follows mirrored and transmitted light in rounds. A cell whose four quarters disagree is cut
   // again in the next round.
-  void follow_thrown() {
+  void trace_onward_light() {
     std::vector<LitPiece> now, next;
     for (const LitPiece& one : pieces_) {
       if (sides_[one.side].throws) now.push_back(one);
@@ -288,7 +288,7 @@ class SunlitBody::Direction {
     while (!now.empty()) {
       sums.assign(now.size(), TwofoldSum::Zero());
       for (uint32_t i = 0; i < now.size(); ++i) {
-        add_thrown(now[i], i, rays);
+        add_onward_rays(now[i], i, rays);
         if (rays.size() >= Hits::capacity || i + 1 == now.size()) {
           onward_.follow(rays, cutoff, sink);
         }

@@ -249,7 +249,7 @@ void find_sides(const Facets& facets, const BodyLamp& lamp, bool plain, const Ve
 }
 
 // Distributes the rays in proportion to the light.
-void share_points(Item& item, double points_per_weight, const Vec3& about_m) {
+void distribute_rays(Item& item, double points_per_weight, const Vec3& about_m) {
   constexpr double most = 1 << 14;
   for (SampledSide& sampled : item.sampled) {
     const double wanted = points_per_weight * weight_of(sampled, about_m);
@@ -349,7 +349,7 @@ Gathered WrenchGather::wrench(const RigidTransform& lab_from_body, const WrenchR
     const WrenchEntries entries{item.replicates, item.bound};
     for (const FacetSide& side : item.open) add_open(light, side, entries);
     if (item.sampled.empty()) return;
-    share_points(item, points_per_weight, about_m);
+    distribute_rays(item, points_per_weight, about_m);
     item.rays = add_sampled(light, item.sampled, options.seed, hash_words(item.lamp, item.instance),
                             entries);
   });

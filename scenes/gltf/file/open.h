@@ -1,4 +1,4 @@
-// How a model reaches the files beside it.
+// Access of a model to the files beside it.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// Of models without optics: STL and OBJ.
+// Models without optics: STL and OBJ.
 #pragma once
 
 #include "scenes/cad/model.h"

@@ -1,4 +1,4 @@
-// Of lamp tables: a table that was read can be interpolated and written back.
+// Lamp tables: a table that was read can be interpolated and written.
 #pragma once
 
 #include "sources/photometry/file.h"

@@ -1,4 +1,4 @@
-// Of ray files: a file that was read makes a lamp and can be written back.
+// Ray files: a file that was read gives a lamp and can be written.
 #pragma once
 
 #include "sources/lamps/ray_file.h"

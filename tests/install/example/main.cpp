@@ -1,4 +1,4 @@
-// How much light of an experiment is absorbed, and how a platform of our own making tips.
+// Absorbed light of an experiment, and the motion of a platform that is defined here.
 #include <cstdio>
 
 #include "attitude/disturbances/kind.h"

@@ -88,7 +88,7 @@ void run(const Options& options, const Program&) {
 
 Verb kind() {
   return {"balance",
-          "Centre of mass from a recording, and the balancing masses' moves",
+          "Centre of mass from a recording, and the displacements of the balancing masses",
           command_with(add_options, run),
           {"platform", "environment", "disturbance", "sensors", "balance", "recording"},
           "[balance]",

@@ -37,7 +37,7 @@ void print_air(const Console& console, const Table& parts) {
 
 void print_paper(const Console& console, const Product& product) {
   const Table& figures = table_named(product, "paper_figures");
-  console.heading("Published figures compared with ours");
+  console.heading("Published figures compared with photorque");
   print_table(console, figures,
               {{"quantity", "quantity"},
                {"section", "section"},
@@ -60,7 +60,7 @@ void run(const CommandOptions& options, const Program&) {
                show(state.rate_body_rad_s.norm()) + " rad/s, charge drawn " +
                show(state.charge_drawn_C / 3600.0) + " Ah");
   console.heading(
-      "Disturbance torques, largest first; the angle each would turn if it stayed constant");
+      "Disturbance torques, largest first, and the rotation by each if it stayed constant");
   print_table(console, table_named(product, "budget"),
               {{"disturbance", "disturbance"},
                {"torque [N m]", "torque_N_m"},
@@ -69,7 +69,7 @@ void run(const CommandOptions& options, const Program&) {
                {"1 h [deg]", "angle_1_h_deg"},
                {"1 day [deg]", "angle_1_day_deg"},
                {"paper [N m]", "paper_N_m"},
-               {"ours/paper", "ratio"}},
+               {"ratio to paper", "ratio"}},
               12);
   const auto acts = [](const BudgetEntry& e) { return !e.torque_body_N_m.isZero(0.0); };
   if (!std::ranges::any_of(found.budget.entries, acts)) {
@@ -81,8 +81,8 @@ void run(const CommandOptions& options, const Program&) {
   if (air != nullptr) print_air(console.details(), *air);
   if (found.budget.beside_paper) print_paper(console.details(), product);
   if (!options.verbose && (air != nullptr || found.budget.beside_paper)) {
-    console.line(std::string("  --verbose prints all of them") +
-                 (air != nullptr ? ", the air by part" : "") +
+    console.line(std::string("  --verbose prints all torques") +
+                 (air != nullptr ? ", the air drag of each part" : "") +
                  (found.budget.beside_paper ? ", the paper's figures" : ""));
   }
   write_results(options, console, found.result);

@@ -60,7 +60,7 @@ void print_camera(const Console& console, const CameraRun& run) {
                show(camera.focal_length_m * 1e3) + " mm f/" + show(camera.f_number) + ", " +
                std::to_string(camera.width) + " x " + std::to_string(camera.height) +
                " pixels of " + show(camera.pixel_m * 1e6) + " um, exposure " +
-               show(camera.exposure_s * 1e6) + " us, spots " + show(spot_sigma_px(camera)) +
+               show(camera.exposure_s * 1e6) + " us, spots " + show_brief(spot_sigma_px(camera)) +
                " px; pose " + (camera.knows_centre ? "about the centre of the bearing" : "free"));
   console.heading("Markers in the image at zero tilt");
   print_table(console, table_named(product, "markers"),
@@ -79,16 +79,18 @@ void print_camera(const Console& console, const CameraRun& run) {
   };
   row("in_plane_error_arcsec", "in the image plane      ");
   row("out_of_plane_error_arcsec", "out of the image plane  ");
-  console.heading("By tilt, the worst heading [arcsec]: in the image plane, out of it");
+  console.heading(
+      "Attitude error over the tilt, for the worst heading [arcsec]: in and out of the image "
+      "plane");
   print_table(console, table_named(product, "degradation"),
               {{"tilt [deg]", "tilt_deg"},
                {"all in", "all_in_plane_arcsec"},
                {"out", "all_out_of_plane_arcsec"},
-               {"one dark in", "one_dark_in_plane_arcsec"},
+               {"one off in", "one_dark_in_plane_arcsec"},
                {"out", "one_dark_out_of_plane_arcsec"},
                {"calibration in", "calibration_in_plane_arcsec"},
                {"out", "calibration_out_of_plane_arcsec"},
-               {"middle in", "principal_point_in_plane_arcsec"},
+               {"shift in", "principal_point_in_plane_arcsec"},
                {"out", "principal_point_out_of_plane_arcsec"},
                {"radial in", "radial_in_plane_arcsec"},
                {"out", "radial_out_of_plane_arcsec"},
@@ -96,12 +98,13 @@ void print_camera(const Console& console, const CameraRun& run) {
                {"out", "tangential_out_of_plane_arcsec"},
                {"free in", "free_in_plane_arcsec"},
                {"out", "free_out_of_plane_arcsec"}});
-  console.line("  calibration: each marker's image off by " + show(run.study.calibration_px) +
-               " px, independently; middle: all alike (principal point); free: centre not known");
+  console.line(
+      "  one off: without the most important marker; calibration: each image displaced by " +
+      show(run.study.calibration_px) +
+      " px at random; shift: all images displaced by this; free: centre of rotation unknown");
   const Distortion& lens = run.study.distortion_error;
-  console.line("  radial, tangential: the turn by a distortion that is not calibrated, k1, k2 " +
-               show(lens.k1) + ", " + show(lens.k2) + "; p1, p2 " + show(lens.p1) + ", " +
-               show(lens.p2));
+  console.line("  radial, tangential: error by uncalibrated distortion, k1, k2 " + show(lens.k1) +
+               ", " + show(lens.k2) + "; p1, p2 " + show(lens.p1) + ", " + show(lens.p2));
   console.details().heading("Simulated images against the prediction [arcsec]");
   print_table(console.details(), table_named(product, "images"),
               {{"tilt [deg]", "tilt_deg"},

@@ -137,11 +137,11 @@ EstimateRun run_estimate(const RunOptions& options, const Console& console,
         {},
         notes_of(source.recording.report)};
     one.notes.insert(one.notes.end(), noise.found.begin(), noise.found.end());
-    one.result = estimate_ways(study, one.readings, source.truth,
-                               console.progress("estimating " + source.name));
+    one.result = estimate_by_all_methods(study, one.readings, source.truth,
+                                         console.progress("estimating " + source.name));
     console.done();
     const std::string end = sources.size() > 1 ? "_" + std::to_string(i + 1) : "";
-    const Estimation& chosen = one.result.ways[one.result.chosen].estimation;
+    const Estimation& chosen = one.result.methods[one.result.chosen].estimation;
     run.result.files.push_back(file_of("smoothed" + end + ".csv", chosen.smoothed, source.recording,
                                        stamp, "a recording, smoothed"));
     run.result.files.push_back(file_of("filtered" + end + ".csv", chosen.filtered, source.recording,
@@ -151,7 +151,7 @@ EstimateRun run_estimate(const RunOptions& options, const Console& console,
   }
   if (recordings.empty() && run.study.runs > 0) {
     const EstimateResult& first = run.estimated.front().result;
-    run.consistency = consistency_of(run.study, propagation, first.ways[first.chosen].settings,
+    run.consistency = consistency_of(run.study, propagation, first.methods[first.chosen].settings,
                                      console.progress("simulated runs"));
     console.done();
     append_numbered(run.result.product, run.consistency->product, 0, 1);
@@ -180,7 +180,7 @@ void print_innovations(const Console& console, const std::string& name, const In
                show(sum.numbers) + "; " + band_text(innovation_band(sum)));
 }
 
-void print_way(const Console& console, const EstimateRun::Estimated& one) {
+void print_method(const Console& console, const EstimateRun::Estimated& one) {
   const Readings& readings = one.readings;
   const EstimateResult& result = one.result;
   console.heading(one.name + ": " + std::to_string(readings.rows) + " rows, " +
@@ -195,7 +195,7 @@ void print_way(const Console& console, const EstimateRun::Estimated& one) {
   }
   for (const std::string& note : one.notes) console.line("  " + note);
   print_table(console, result.product.tables[0],
-              {{"way", "way"},
+              {{"method", "way"},
                {"", "estimate"},
                {"rms error [\"]", "rms_error_arcsec"},
                {"predicted [\"]", "predicted_arcsec"},
@@ -205,7 +205,7 @@ void print_way(const Console& console, const EstimateRun::Estimated& one) {
                {"NIS attitude", "nis_attitude"},
                {"NIS gyro", "nis_gyro"},
                {"rate walk", "rate_walk"}});
-  const Ingredients& chosen = result.ways[result.chosen];
+  const Ingredients& chosen = result.methods[result.chosen];
   console.heading("Written: " + chosen.name);
   print_innovations(console, "attitude", chosen.estimation.attitude);
   print_innovations(console, "gyro", chosen.estimation.gyro);
@@ -249,7 +249,7 @@ void add_options(Command& command, Options& options) {
 void run(const Options& options, const Program&) {
   const Console console = terminal(options);
   const EstimateRun run = run_estimate(options, console, options.recordings, options.truth);
-  for (const EstimateRun::Estimated& one : run.estimated) print_way(console, one);
+  for (const EstimateRun::Estimated& one : run.estimated) print_method(console, one);
   if (run.consistency) print_consistency(console, *run.consistency);
   write_results(options, console, run.result);
 }

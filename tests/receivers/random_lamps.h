@@ -22,9 +22,9 @@ struct Draw {
   double foot_m;  // radius that all light is within at the height of the centre
 };
 
-class Lottery {
+class RandomLamps {
  public:
-  explicit Lottery(uint32_t seed) : random_(seed) {}
+  explicit RandomLamps(uint32_t seed) : random_(seed) {}
 
   double uniform(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random_);
