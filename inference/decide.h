@@ -79,7 +79,7 @@ struct Decision {
 // Gate (b): whether every candidate that has a size (NaN: it has none) differs from neutral.
 bool is_significant(const std::vector<double>& significance, const Thresholds::Decision& limits);
 
-// The same for a trial, on fitted and held-out data together where it has been fitted to both.
+// Gate (b) for a trial, on fitted and held-out data together where it has been fitted to both.
 bool is_significant(const Explanation& trial, const Thresholds::Decision& limits);
 
 // Trial 0 is the nominal model. `excess_sigma` is called for the best named trial. The finding

@@ -266,7 +266,7 @@ namespace {
 AxisReadings swing_of(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
   constexpr size_t fewest_readings = 60;
   AxisReadings read = rows.has_some_attitude() ? angles_about(rows, axis, first, last)
-                                                : angles_of_swing(rows, axis);
+                                               : angles_of_swing(rows, axis);
   if (read.row.size() >= fewest_readings) leave_out_rest(read);
   return read.row.size() < fewest_readings ? AxisReadings() : read;
 }
@@ -342,7 +342,7 @@ RestoringLaw law_of_periods(const AxisReadings& read) {
     for (const double value : values) sizes.push_back(std::abs(value - middle));
     return upper_median(sizes);
   };
-  // Of what rests or is pushed, some periods have nothing to do with the law.
+  // While the body rests or is pushed, periods do not follow the law.
   constexpr double clearly = 2.0;
   const double spring = scatter(of_spring), weight = scatter(of_weight);
   return clearly * spring < weight   ? RestoringLaw::spring

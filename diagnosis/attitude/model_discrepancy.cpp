@@ -396,8 +396,8 @@ bool is_consistent_with_noise(const Fit& fit, const RecordedData& data) {
 std::optional<Answer> identify_with_discrepancy(const NominalModel& nominal, RecordedData& data,
                                                 const DiagnoseOptions& options, const Trial* laws) {
   const NoiseLevels own = data.train.front().noise;
-  // What all laws together leave is no missing effect. What the nominal model leaves may be one: it
-  // must not count less where it is largest.
+  // The residual of all laws together is no missing effect. That of the nominal model may be one:
+  // it must not count less where it is largest.
   const size_t parts = laws != nullptr ? options.limits.discrepancy.segments : 0;
   std::optional<Answer> best;
   use_noise(noise_from_spread(data.train, own), data);

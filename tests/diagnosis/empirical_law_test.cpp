@@ -56,8 +56,8 @@ Fitted fitted(unsigned seed, const Extra& extra, const std::string& label) {
   if (at == f.all.list.end()) throw std::runtime_error("no candidate " + label);
   const Trial parent = nominal_trial(fit_nominal(nominal, f.runs), f.all);
   const std::vector<Start> starts = starts_of(*at, parent, f.runs, f.runs, {}, {});
-  f.trial = extend(parent, f.all, static_cast<size_t>(at - f.all.list.begin()),
-                   starts.front().disturbance, f.runs);
+  f.trial =
+      extend(parent, f.all, static_cast<size_t>(at - f.all.list.begin()), starts.front(), f.runs);
   return f;
 }
 

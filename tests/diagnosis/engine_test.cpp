@@ -258,7 +258,7 @@ TEST(Trial, CompliancesGoBackWithinPhysicsTogether) {
     const auto sag = static_cast<size_t>(
         std::ranges::find(all.list, "elastic_sag", &Candidate::label) - all.list.begin());
     const Trial fitted = extend(nominal_trial(fit_nominal(nominal_model(), runs), all), all, sag,
-                                all[sag].start, runs);
+                                {all[sag].start}, runs);
     const auto values = [](const Trial& t) {
       const auto& p = t.fit.best.model.disturbances.at(t.disturbances.at(0)).parameters;
       return Vec3(p[0].value, p[1].value, p[2].value);

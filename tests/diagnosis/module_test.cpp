@@ -458,7 +458,7 @@ TEST(ModuleOfNgspice, NamesAShadeBesideAShortedDiode) {
 }
 
 // Cells of one module break down alike: 11 cells in unequal light with the breakdown that curve 070
-// of docs/real_light.md gives. Two cells, each with a breakdown of its own, fit to 0.4 %.
+// of docs/real_light.md gives. Two cells with separate breakdowns fit to 0.4 %.
 TEST(ModuleDiagnosis, NamesNoTwoCellsWhereManyAreShaded) {
   constexpr int many = 96;
   const ModuleState::Breakdown breakdown = {1.5, -6.75, 5.9};

@@ -100,8 +100,8 @@ TEST(TextbookMachines, AFlywheelThatAMotorSpinsUp) {
 }
 
 // θ'' = −k (θ − θ₀) − c θ', as a program for schools writes it: angles to a hundredth, whose zero
-// is a few digits beside the rest position, and a rate from the unrounded angles before and after,
-// which the first row lacks and which is too small by sin(ωh)/(ωh).
+// differs from the rest position by a few digits, and a rate from the unrounded angles before and
+// after, which the first row lacks and which is too small by sin(ωh)/(ωh).
 TEST(TextbookMachines, ATorsionPendulumWithItsZeroBesideItsRest) {
   constexpr double k = 8.4, c = 0.047, rest_rad = -0.023, interval_s = 0.11;
   const double omega = std::sqrt(k - 0.25 * c * c);

@@ -137,7 +137,7 @@ TEST(Decide, ANameWithinItsErrorIsNotReported) {
 }
 
 // Two names stand together; "second" is hardly missed, and alone "first" is within its error.
-TEST(Gates, ANameThatIsWithinItsErrorWithoutAnotherIsNotSaid) {
+TEST(Gates, ANameWithinItsErrorWithoutAnotherIsNotReported) {
   std::vector<Explanation> trials = {explanation({}, 0.0, 1.0), explanation({0}, 100.0, 1.0),
                                      explanation({0, 1}, 102.0, 1.0)};
   trials[1].joint_significance = {3.9};

@@ -382,7 +382,7 @@ bool slides_until_rest(const std::vector<Observation>& runs) {
     if (velocity.size() < 2) return false;
     const Vec2 start = velocity.front();
     constexpr double along = 0.95, slower = 0.8, little = 0.1;
-    // What swings comes back within the time of a difference.
+    // A body that swings returns within the time of a difference.
     double farthest_m = 0.0, back_m = 0.0;
     for (const Vec2& place : place_m) {
       const double out_m = (place - place_m.front()).dot(start.normalized());

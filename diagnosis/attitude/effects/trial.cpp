@@ -155,8 +155,9 @@ Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const
   trial.disturbances = parent.disturbances;
   Hypothesis h = parent.fit.best;
   FitSettings how = settings;
-  // A scan that explains most of the residual starts near the solution.
-  const bool is_near = std::isfinite(start.gain) && start.gain > 0.5 * parent.fit.chi2;
+  // The scan of a mode that explains most of the residual starts near the solution.
+  const bool is_near =
+      all[candidate].effect.how.scan == Scan::mode && start.gain > 0.5 * parent.fit.chi2;
   if (is_near) {
     how.max_iterations = std::max(how.max_iterations, all.limits.fitting.patient_iterations);
   } else if (parent.fit.chi2_per_sample() > all.limits.diverged_chi2_per_sample) {

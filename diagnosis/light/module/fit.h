@@ -32,7 +32,7 @@ struct ModuleHypothesis {
     std::function<double(std::span<const double> x)> value;
   };
   std::vector<Number> numbers;
-  // Of two effects together: the index of each among the hypotheses, and its parameters here.
+  // For two effects together, the index of each among the hypotheses, and its parameters here.
   struct Member {
     size_t hypothesis;
     std::vector<size_t> at;
