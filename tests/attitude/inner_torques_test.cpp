@@ -125,6 +125,42 @@ TEST(FlexibleMode, KeepsAngularMomentumAndLosesEnergyToItsDamper) {
   EXPECT_LT(energy(end), energy(middle));
 }
 
+// The equations follow from L = ½ ωᵀ(I + φ J S) ω + J φ' a·ω + ½ J φ'² − ½ J ω_n² φ², whose energy
+// and momentum are constant, whatever S is.
+TEST(FlexibleMode, KeepsMomentumAndEnergyWhereItChangesTheInertia) {
+  const double J = 0.03, f = 0.5;
+  const std::vector<double> slope{0.4, -0.3, -0.1, 0.5, -0.2, 0.6};
+  const AttitudeModel model = with(bench_model(), "flexible_mode",
+                                   {{"axis", numbers({1, 1, 0})},
+                                    {"frequency_Hz", node(f)},
+                                    {"damping", node(0)},
+                                    {"inertia_kg_m2", node(J)},
+                                    {"inertia_slope", numbers(slope)},
+                                    {"initial_angle_deg", node(6)}});
+  const Vec3 axis = Vec3(1, 1, 0).normalized();
+  Mat3 S;
+  S << 0.4, 0.5, -0.2, 0.5, -0.3, 0.6, -0.2, 0.6, -0.1;
+  const auto rate_of = [&](const PlatformState& s) {
+    return s.extra[1] - axis.dot(s.rate_body_rad_s);
+  };
+  const auto inertia_at = [&](const PlatformState& s) -> Mat3 {
+    return model.platform.inertia_kg_m2 + s.extra[0] * J * S;
+  };
+  const auto momentum_lab = [&](const PlatformState& s) -> Vec3 {
+    return s.lab_from_body * Vec3(inertia_at(s) * s.rate_body_rad_s + J * rate_of(s) * axis);
+  };
+  const auto energy = [&](const PlatformState& s) {
+    const Vec3& w = s.rate_body_rad_s;
+    return 0.5 * w.dot(inertia_at(s) * w) + J * rate_of(s) * axis.dot(w) +
+           0.5 * J * (std::pow(rate_of(s), 2) + std::pow(2 * pi * f * s.extra[0], 2));
+  };
+  const PlatformState start = state_of(model, Quat::Identity(), {0.9, -0.4, 0.7});
+  const PlatformState end = propagated(model, start, 20);
+  EXPECT_GT(std::abs(end.extra[0] - start.extra[0]), 1e-2);
+  EXPECT_LT((momentum_lab(end) - momentum_lab(start)).norm(), 1e-9);
+  EXPECT_NEAR(energy(end), energy(start), 1e-9);
+}
+
 // Nothing moves, so nothing but the derivatives keeps the steps short enough for a swing.
 TEST(FlexibleMode, OfAnAppendageAtRestTheDerivativeIsTheSwing) {
   const double I = 0.19, appendage = 0.05, f = 1.3;

@@ -46,14 +46,15 @@ void expect_named_rightly(const fs::path& folder) {
 
 class CaseOfAnotherProgram : public testing::TestWithParam<const char*> {};
 
-// By a simulator in another language.
+// By a simulator in another language, or by a multibody engine (tests/data/dart_mechanisms.py): a
+// part on a hinge that is not round about it, and one that is let go deflected.
 TEST_P(CaseOfAnotherProgram, IsNamedRightly) {
   expect_named_rightly(outside::reference_data("cases") / GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(All, CaseOfAnotherProgram,
                          testing::Values("01", "02", "03", "04", "05", "06", "07", "08", "09", "10",
-                                         "11", "12"),
+                                         "11", "12", "appendage", "deflected"),
                          [](const auto& one) { return std::string(one.param); });
 
 // Strong friction, which `propagate` made of the true model: the nominal model lacks it. Platforms
