@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <set>
 
 namespace photorque::inference {
@@ -12,7 +13,14 @@ class Judge {
  public:
   Judge(const std::vector<Explanation>& trials, const std::vector<CandidateTraits>& all,
         const Checks& checks, const Thresholds::Decision& limits)
-      : trials_(trials), all_(all), checks_(checks), limits_(limits) {}
+      : trials_(trials), all_(all), checks_(checks), limits_(limits) {
+    for (size_t i = 0; i < trials.size(); ++i) {
+      if (!trials[i].objection.empty() || is_empirical(i) || is_combination(i)) continue;
+      if (inference::is_significant(trials[i], limits)) {
+        clear_ = std::max(clear_, trials[i].log_evidence);
+      }
+    }
+  }
 
   bool is_empirical(size_t trial) const {
     const std::vector<size_t>& candidates = trials_[trial].candidates;
@@ -21,7 +29,10 @@ class Judge {
   }
 
   bool is_significant(size_t trial) const {
-    return inference::is_significant(trials_[trial], limits_);
+    const bool is_rivalled =
+        trials_[trial].log_evidence < clear_ + limits_.min_log_odds_of_combination;
+    return !(is_rivalled && is_combination(trial)) &&
+           inference::is_significant(trials_[trial], limits_);
   }
 
   // The trial of largest evidence whose log odds against the nominal model reach the limit; 0 if
@@ -210,10 +221,19 @@ class Judge {
     return b.predictive->log_score > a.predictive->log_score - limits_.max_predictive_loss;
   }
 
+  // Whether only a combination of the numbers of some name is known, each being within its error.
+  bool is_combination(size_t trial) const {
+    return !is_empirical(trial) &&
+           std::ranges::any_of(trials_[trial].largest_component,
+                               [&](double sigma) { return sigma < limits_.min_component_sigma; });
+  }
+
   const std::vector<Explanation>& trials_;
   const std::vector<CandidateTraits>& all_;
   const Checks& checks_;
   const Thresholds::Decision& limits_;
+  // The largest evidence of an explanation that does not rest on such a combination.
+  double clear_ = -std::numeric_limits<double>::infinity();
 };
 
 // Posterior probability of each trial. It is 0 for trials that physics forbids and for trials with

@@ -1,7 +1,8 @@
 // The verdict on the trials of any domain. Every name passes the same gates:
 //
 //   (a) it, or an indistinguishable effect, is probable; otherwise it remains a candidate;
-//   (b) each of its groups of parameters differs significantly from neutral;
+//   (b) each of its groups of parameters differs significantly from neutral. If only a combination
+//       of numbers does that are all within their errors, no other explanation is nearly as good;
 //   (c) segments that are left out of a fit are predicted better with it than without it;
 //   (d) with all names the held-out χ² agrees with its prediction; otherwise: unknown;
 //   (e) held-out data that the nominal model predicts as well do not test the names;

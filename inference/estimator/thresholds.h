@@ -188,6 +188,12 @@ struct Thresholds {
     double min_log_odds = 4.5;
     // Minimum significance of every named effect [sigma].
     double min_significance = 4.0;
+    // Minimum of |value|/error of the clearest number of a named effect. Three independent numbers
+    // of that significance have one above 2.3; where all are below, only a combination is known.
+    double min_component_sigma = 2.2;
+    // Log odds by which such an explanation must be better than every other one: the total of a
+    // free body's inertia cannot be known, that the stated one is wrong can.
+    double min_log_odds_of_combination = 20.0;
     // Maximum excess of the held-out runs over the predictive distribution of an accepted model
     // [sigma].
     double max_predictive_sigma = 5.0;

@@ -148,6 +148,20 @@ TEST(Gates, ANameWithinItsErrorWithoutAnotherIsNotReported) {
   EXPECT_EQ(decided(trials, mutant).chosen, 1u);
 }
 
+// Only a combination of its numbers is known: the limit of another effect has the same one.
+TEST(Gates, ANameAllOfWhoseNumbersAreWithinTheirErrorsNeedsALeadOverOthers) {
+  std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 110.0, 1.0),
+                                     explanation({1}, 100.0, 1.0)};
+  trials[1].largest_component = {2.1};
+  trials[2].largest_component = {9.0};
+  EXPECT_EQ(decided(trials).chosen, 2u);
+  Thresholds::Decision mutant;
+  mutant.min_component_sigma = 0.0;
+  EXPECT_EQ(decided(trials, mutant).chosen, 1u);
+  trials[1].log_evidence = 130.0;
+  EXPECT_EQ(decided(trials).chosen, 1u);
+}
+
 TEST(Decide, HopelessEvidenceHasAProbabilityAsWell) {
   const Decision d = decided({explanation({}, -1e300, 40.0), explanation({0}, -1e300, 1.0)});
   EXPECT_TRUE(std::isfinite(d.confidence));

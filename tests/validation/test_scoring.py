@@ -139,7 +139,7 @@ class Counts(unittest.TestCase):
             return CaseScore("a", answered=True, verdict="missing_physics", **more)
 
         scores = [answer(predictive_sigma=1.2), answer(predictive_sigma=7.0), answer()]
-        self.assertEqual(hits_of(scores, "contradicts its own prediction"), (1, 2))
+        self.assertEqual(hits_of(scores, "above the prediction"), (1, 2))
         self.assertEqual(hits_of(scores, "without a stated prediction"), (1, 3))
         scores = [answer(oracle_chi2=1.0, holdout_chi2=h, expected_chi2=e) for h, e in ((1.0, 1.01), (1.2, 1.02), (3.0, 2.5))]
         self.assertEqual(hits_of(scores, "within 10 %"), (1, 3))
