@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <set>
 
 namespace photorque::inference {
@@ -13,14 +12,7 @@ class Judge {
  public:
   Judge(const std::vector<Explanation>& trials, const std::vector<CandidateTraits>& all,
         const Checks& checks, const Thresholds::Decision& limits)
-      : trials_(trials), all_(all), checks_(checks), limits_(limits) {
-    for (size_t i = 0; i < trials.size(); ++i) {
-      if (!trials[i].objection.empty() || is_empirical(i) || is_combination(i)) continue;
-      if (inference::is_significant(trials[i], limits)) {
-        clear_ = std::max(clear_, trials[i].log_evidence);
-      }
-    }
-  }
+      : trials_(trials), all_(all), checks_(checks), limits_(limits) {}
 
   bool is_empirical(size_t trial) const {
     const std::vector<size_t>& candidates = trials_[trial].candidates;
@@ -29,10 +21,8 @@ class Judge {
   }
 
   bool is_significant(size_t trial) const {
-    const bool is_rivalled =
-        trials_[trial].log_evidence < clear_ + limits_.min_log_odds_of_combination;
-    return !(is_rivalled && is_combination(trial)) &&
-           inference::is_significant(trials_[trial], limits_);
+    return inference::is_significant(trials_[trial], limits_) &&
+           !(is_combination(trial) && has_clear_rival(trial));
   }
 
   // The trial of largest evidence whose log odds against the nominal model reach the limit; 0 if
@@ -228,12 +218,22 @@ class Judge {
                                [&](double sigma) { return sigma < limits_.min_component_sigma; });
   }
 
+  // Whether an explanation without one of the names is nearly as good, and no such combination.
+  bool has_clear_rival(size_t trial) const {
+    const double least = trials_[trial].log_evidence - limits_.min_log_odds_of_combination;
+    for (size_t i = 0; i < trials_.size(); ++i) {
+      const Explanation& t = trials_[i];
+      if (!(t.log_evidence > least) || !t.objection.empty() || is_empirical(i)) continue;
+      if (is_combination(i) || has_names_of(trial, i)) continue;
+      if (inference::is_significant(t, limits_)) return true;
+    }
+    return false;
+  }
+
   const std::vector<Explanation>& trials_;
   const std::vector<CandidateTraits>& all_;
   const Checks& checks_;
   const Thresholds::Decision& limits_;
-  // The largest evidence of an explanation that does not rest on such a combination.
-  double clear_ = -std::numeric_limits<double>::infinity();
 };
 
 // Posterior probability of each trial. It is 0 for trials that physics forbids and for trials with
