@@ -548,8 +548,8 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
       return has_weight && c.effect.how.needs == Requirement::bearing &&
              is_restoring(c, nominal.model);
     });
-    const bool sees_angle = std::ranges::any_of(
-        runs, [](const Observation& seen) { return seen.has_some_attitude(); });
+    const bool sees_angle =
+        std::ranges::any_of(runs, [](const Observation& seen) { return seen.has_some_attitude(); });
     const bool swings_freely = !covered.has_commands && swings(runs, context.platform.axis);
     if ((!sees_angle || (!is_level && !swings_freely)) && !context.platform.slides()) {
       for (Candidate& c : all.list) set_zero_at_rest(nominal.model, c);
