@@ -112,8 +112,8 @@ TEST_F(GuessCommand, RealRecordingsAreDiagnosedByTheirGuess) {
     most_N_m += sigma_N_m;
   }
   for (const nlohmann::json& error_N_m : torque.at("standard_error_N_m")) {
-    EXPECT_EQ(std::ranges::count(error_N_m, 0.0), 2);
-    EXPECT_LE(*std::ranges::max_element(error_N_m), most_N_m);
+    EXPECT_EQ(std::count(error_N_m.begin(), error_N_m.end(), 0.0), 2);
+    EXPECT_LE(*std::max_element(error_N_m.begin(), error_N_m.end()), most_N_m);
   }
 }
 
