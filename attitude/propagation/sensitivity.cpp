@@ -53,7 +53,7 @@ Sensitivity::Sensitivity(const Dynamics& dynamics, std::vector<Variable> variabl
   increments_.assign(n * count, Lanes(0.0));
   accepted_increments_ = increments_;
   source_ = increments_;
-  stages_ = rates_ = increments_;
+
   const Quat q(y[0], y[1], y[2], y[3]);
   for (size_t v = 0; v < count; ++v) {
     const int initial = variables_[v].initial;
@@ -180,23 +180,65 @@ void Sensitivity::differentiate_rates(const CollocationStep& step, const ZeroOrd
 }
 
 bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, double tolerance) {
-  const size_t count = variables_.size(), n = step.start().size();
   differentiate_rates(step, held);
   h_s_ = step.length_s();
   if (step.is_stiff()) {
     solve_at_once(step);
     return is_resolved(step);
   }
-  const auto each = [&](const auto& visit) {
-    for (size_t c = 0; c < n; ++c) {
-      for (const size_t v : moving_) visit(c * count + v);
-    }
-  };
-  if (has_polynomial_) {
-    const auto continuation = gauss::continuation_columns(h_s_ / accepted_h_s_);
-    each([&](size_t i) { increments_[i] = gauss::times(continuation, accepted_increments_[i]); });
-  } else {
+  predict();
+  sort_jacobian();
+  for (size_t first = 0; first < moving_.size(); first += group_size) {
+    if (!settle(first, tolerance)) return false;
+  }
+  return true;
+}
+
+// A first guess of the increments: the polynomials of the step before, continued.
+void Sensitivity::predict() {
+  if (!has_polynomial_) {
     std::fill(increments_.begin(), increments_.end(), Lanes(0.0));
+    return;
+  }
+  const size_t count = variables_.size();
+  const auto continuation = gauss::continuation_columns(h_s_ / accepted_h_s_);
+  for (size_t row = 0; row < start_.size(); row += count) {
+    for (const size_t v : moving_) {
+      increments_[row + v] = gauss::times(continuation, accepted_increments_[row + v]);
+    }
+  }
+}
+
+// By rows, which settle() goes through one after the other.
+void Sensitivity::sort_jacobian() {
+  std::sort(room_.jacobian.begin(), room_.jacobian.end(),
+            [](const RateDerivative& a, const RateDerivative& b) {
+              return std::pair(a.row, a.column) < std::pair(b.row, b.column);
+            });
+}
+
+// Solves for the variables from moving_[first] on, `group_size` of them, by Gauss–Seidel iteration:
+// every component uses the newest stages of the others. Few variables at a time stay in the cache
+// and need no more iterations than the slowest of them.
+bool Sensitivity::settle(size_t first, double tolerance) {
+  struct Column {
+    double start;
+    Lanes source, increment, stage;
+  };
+  using Row = std::array<Column, group_size>;
+  const size_t count = variables_.size(), n = start_.size() / count;
+  std::array<size_t, group_size> variable;
+  for (size_t k = 0; k < group_size; ++k) {
+    variable[k] = moving_[std::min(first + k, moving_.size() - 1)];
+  }
+  static_assert(std::is_trivially_copyable_v<Row>);
+  std::vector<Row> rows(n);
+  for (size_t c = 0; c < n; ++c) {
+    for (size_t k = 0; k < group_size; ++k) {
+      const size_t i = c * count + variable[k];
+      rows[c][k] = {start_[i], source_[i], increments_[i],
+                    start_[i] + gauss::times(gauss::mu_columns, increments_[i])};
+    }
   }
   const Lanes weighted_h_s = h_s_ * Lanes(gauss::weights);
   // Linear, and of the same contraction as the stages, which have settled: mostly it will, however
@@ -205,31 +247,40 @@ bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, 
   constexpr int max_stalled_changes = 25;
   Settling settling(tolerance, 1e-13, max_stalled_changes);
   for (int iteration = 1; iteration <= max_sweeps; ++iteration) {
-    each([&](size_t i) {
-      stages_[i] = start_[i] + gauss::times(gauss::mu_columns, increments_[i]);
-      rates_[i] = source_[i];
-    });
-    for (const RateDerivative& entry : room_.jacobian) {
-      const Lanes* from = stages_.data() + entry.column * count;
-      Lanes* to = rates_.data() + entry.row * count;
-      for (const size_t v : moving_) to[v] += entry.value * from[v];
+    std::array<Lanes, group_size> size{}, moved{};
+    auto entry = room_.jacobian.begin();
+    for (size_t c = 0; c < n; ++c) {
+      std::array<Lanes, group_size> rate;
+      for (size_t k = 0; k < group_size; ++k) rate[k] = rows[c][k].source;
+      for (; entry != room_.jacobian.end() && entry->row == c; ++entry) {
+        const Row& from = rows[entry->column];
+        for (size_t k = 0; k < group_size; ++k) rate[k] += entry->value * from[k].stage;
+      }
+      for (size_t k = 0; k < group_size; ++k) {
+        Column& to = rows[c][k];
+        const Lanes increment = weighted_h_s * rate[k];
+        moved[k] = larger_magnitude(moved[k], increment - to.increment);
+        to.increment = increment;
+        to.stage = to.start + gauss::times(gauss::mu_columns, increment);
+        size[k] = larger_magnitude(size[k], to.stage);
+      }
     }
     // The derivatives by different variables have different units: each is its own scale.
     double change = 0.0;
-    for (const size_t v : moving_) {
-      Lanes size = 0.0, moved = 0.0;
-      for (size_t i = v; i < start_.size(); i += count) {
-        const Lanes increment = weighted_h_s * rates_[i];
-        moved = larger_magnitude(moved, increment - increments_[i]);
-        size = larger_magnitude(size, stages_[i]);
-        increments_[i] = increment;
-      }
-      const double of_size = std::max(largest(size), next_to_nothing * largest_[v]);
-      if (of_size > 0.0) change = std::max(change, largest(moved) / of_size);
+    for (size_t k = 0; k < group_size; ++k) {
+      const double of_size = std::max(largest(size[k]), next_to_nothing * largest_[variable[k]]);
+      if (of_size > 0.0) change = std::max(change, largest(moved[k]) / of_size);
     }
     const Settling::Verdict verdict = settling.judge(change);
-    if (verdict == Settling::Verdict::settled) return true;
-    if (verdict == Settling::Verdict::failed) break;
+    if (verdict == Settling::Verdict::failed) return false;
+    if (verdict == Settling::Verdict::settled) {
+      for (size_t c = 0; c < n; ++c) {
+        for (size_t k = 0; k < group_size; ++k) {
+          increments_[c * count + variable[k]] = rows[c][k].increment;
+        }
+      }
+      return true;
+    }
   }
   return false;
 }

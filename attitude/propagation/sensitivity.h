@@ -81,6 +81,10 @@ class Sensitivity {
   double h_s_ = 0.0, accepted_h_s_ = 0.0;
   bool has_polynomial_ = false;
   void note_extent();
+  void predict();
+  void sort_jacobian();
+  static constexpr size_t group_size = 2;
+  bool settle(size_t first, double tolerance);
   void solve_at_once(const CollocationStep& step);
   bool is_resolved(const CollocationStep& step) const;
   std::vector<size_t> moving_;  // variables on which the motion depends
@@ -89,7 +93,6 @@ class Sensitivity {
   std::vector<double> offset_slopes_;
   RateWorkspace room_;         // its `jacobian` is that of the step
   std::vector<Lanes> source_;  // ∂(dy_c/dt)/∂(variable)
-  std::vector<Lanes> stages_, rates_;
 };
 
 }  // namespace photorque
