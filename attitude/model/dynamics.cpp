@@ -381,7 +381,7 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
   bool everything = false;
   for (int k = 0; k < DualLanes::block; ++k) {
     if (block.state[k] < 0) continue;
-    y_dual[static_cast<size_t>(block.state[k])].partial[k] = 1.0;
+    y_dual[static_cast<size_t>(block.state[k])].seed(k);
     everything =
         everything || block.state[k] < component::extra ||
         (translation_ >= 0 && block.state[k] >= translation_ && block.state[k] < translation_ + 4);
@@ -428,7 +428,7 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
     for (int k = 0; k < DualLanes::block; ++k) {
       const int index = block.parameter[k] - own.first_parameter;
       if (index >= 0 && index < static_cast<int>(own_parameters.size())) {
-        own_parameters[static_cast<size_t>(index)].partial[k] = 1.0;
+        own_parameters[static_cast<size_t>(index)].seed(k);
       }
     }
     disturbance.law->act(
@@ -448,7 +448,8 @@ void Dynamics::derivatives(const Lanes& time_s, const ZeroOrderHold& held, const
                            const Block& block, Lanes* derivatives, Workspace& room) const {
   differentiate(time_s, broadcast(held, time_s), y, block, false, room);
   for (const DualLanes& rate : room.rates) {
-    derivatives = std::copy(rate.partial.begin(), rate.partial.end(), derivatives);
+    const DualLanes::Partials partials = rate.partials();
+    derivatives = std::copy(partials.begin(), partials.end(), derivatives);
   }
 }
 
@@ -459,7 +460,8 @@ void Dynamics::reading_derivatives(const Lanes& time_s,
   const EvaluationContext<DualLanes> now =
       differentiate(time_s, gather(held, time_s), y, block, true, room);
   const auto put = [&](const DualLanes& x) {
-    derivatives = std::copy(x.partial.begin(), x.partial.end(), derivatives);
+    const DualLanes::Partials partials = x.partials();
+    derivatives = std::copy(partials.begin(), partials.end(), derivatives);
   };
   for (int i = 0; i < 3; ++i) put(now.inertial_rate_body_rad_s[i] + now.gyro_error_rad_s[i]);
   for (int i = 0; i < 3; ++i) put(now.camera_error_rad[i]);

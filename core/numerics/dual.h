@@ -9,55 +9,86 @@
 
 namespace photorque {
 
-// Value and derivatives at eight instants. `partial[k]` is the derivative with respect to the k-th
+// Value and derivatives at eight instants. Partial k is the derivative with respect to the k-th
 // variable of the block that is being differentiated; which variables those are is the choice of
-// the caller that seeds them.
-struct DualLanes {
+// the caller that seeds them. Most numbers of a torque law depend on none of them: these constants
+// carry no partials, and operations on them do no work for any.
+class DualLanes {
+ public:
   static constexpr int block = 8;
+  using Partials = std::array<Lanes, block>;
   Lanes value;
-  std::array<Lanes, block> partial;
 
   DualLanes() = default;
   // A constant; implicit, so that constants mix with duals in formulas.
-  DualLanes(double x) : DualLanes(Lanes(x)) {}  // NOLINT(google-explicit-constructor)
-  DualLanes(const Lanes& x) : value(x) {        // NOLINT(google-explicit-constructor)
-    partial.fill(Lanes(0.0));
+  DualLanes(double x) : value(x) {}        // NOLINT(google-explicit-constructor)
+  DualLanes(const Lanes& x) : value(x) {}  // NOLINT(google-explicit-constructor)
+  DualLanes(const DualLanes& b) : value(b.value), varies_(b.varies_) {
+    if (varies_) partials_ = b.partials_;
+  }
+  DualLanes& operator=(const DualLanes& b) {
+    value = b.value;
+    varies_ = b.varies_;
+    if (varies_) partials_ = b.partials_;
+    return *this;
+  }
+  ~DualLanes() = default;
+
+  Partials partials() const {
+    if (varies_) return partials_;
+    Partials zero;
+    zero.fill(Lanes(0.0));
+    return zero;
+  }
+  // Makes this the k-th variable of the block.
+  void seed(int k) {
+    partials_ = partials();
+    partials_[static_cast<size_t>(k)] = 1.0;
+    varies_ = true;
   }
 
   // f(x) given f and df/dx at x.
   static DualLanes chain(const DualLanes& x, const Lanes& f, const Lanes& slope) {
-    DualLanes r;
-    r.value = f;
-    for (int k = 0; k < block; ++k) r.partial[k] = slope * x.partial[k];
+    DualLanes r(f);
+    if (x.varies_) r.fill([&](size_t k) { return slope * x.partials_[k]; });
     return r;
   }
   // f(x, y) given f, ∂f/∂x and ∂f/∂y.
   static DualLanes chain(const DualLanes& x, const DualLanes& y, const Lanes& f,
                          const Lanes& slope_x, const Lanes& slope_y) {
-    DualLanes r;
-    r.value = f;
-    for (int k = 0; k < block; ++k) r.partial[k] = slope_x * x.partial[k] + slope_y * y.partial[k];
+    if (!y.varies_) return chain(x, f, slope_x);
+    if (!x.varies_) return chain(y, f, slope_y);
+    DualLanes r(f);
+    r.fill([&](size_t k) { return slope_x * x.partials_[k] + slope_y * y.partials_[k]; });
     return r;
   }
 
   DualLanes operator-() const { return chain(*this, -value, -1.0); }
-  DualLanes& operator+=(const DualLanes& b) { return *this = *this + b; }
-  DualLanes& operator-=(const DualLanes& b) { return *this = *this - b; }
+  DualLanes& operator+=(const DualLanes& b) {
+    value += b.value;
+    if (!b.varies_) return *this;
+    if (varies_) {
+      fill([&](size_t k) { return partials_[k] + b.partials_[k]; });
+    } else {
+      fill([&](size_t k) { return b.partials_[k]; });
+    }
+    return *this;
+  }
+  DualLanes& operator-=(const DualLanes& b) {
+    value -= b.value;
+    if (!b.varies_) return *this;
+    if (varies_) {
+      fill([&](size_t k) { return partials_[k] - b.partials_[k]; });
+    } else {
+      fill([&](size_t k) { return -b.partials_[k]; });
+    }
+    return *this;
+  }
   DualLanes& operator*=(const DualLanes& b) { return *this = *this * b; }
   DualLanes& operator/=(const DualLanes& b) { return *this = *this / b; }
 
-  friend DualLanes operator+(const DualLanes& a, const DualLanes& b) {
-    DualLanes r;
-    r.value = a.value + b.value;
-    for (int k = 0; k < block; ++k) r.partial[k] = a.partial[k] + b.partial[k];
-    return r;
-  }
-  friend DualLanes operator-(const DualLanes& a, const DualLanes& b) {
-    DualLanes r;
-    r.value = a.value - b.value;
-    for (int k = 0; k < block; ++k) r.partial[k] = a.partial[k] - b.partial[k];
-    return r;
-  }
+  friend DualLanes operator+(DualLanes a, const DualLanes& b) { return a += b; }
+  friend DualLanes operator-(DualLanes a, const DualLanes& b) { return a -= b; }
   friend DualLanes operator*(const DualLanes& a, const DualLanes& b) {
     return chain(a, b, a.value * b.value, b.value, a.value);
   }
@@ -71,6 +102,25 @@ struct DualLanes {
   friend DualLanes operator*(const DualLanes& a, double b) { return chain(a, a.value * b, b); }
   friend DualLanes operator/(const DualLanes& a, double b) { return a * (1.0 / b); }
   friend bool operator==(const DualLanes& a, const DualLanes& b) { return a.value == b.value; }
+  // a where x ≥ bound, b elsewhere; lane by lane, derivatives likewise.
+  friend DualLanes where_at_least(const DualLanes& x, double bound, const DualLanes& a,
+                                  const DualLanes& b) {
+    DualLanes r(where_at_least(x.value, bound, a.value, b.value));
+    if (!a.varies_ && !b.varies_) return r;
+    const Partials of_a = a.partials(), of_b = b.partials();
+    r.fill([&](size_t k) { return where_at_least(x.value, bound, of_a[k], of_b[k]); });
+    return r;
+  }
+
+ private:
+  template <class Function>
+  void fill(const Function& partial) {
+    for (size_t k = 0; k < partials_.size(); ++k) partials_[k] = partial(k);
+    varies_ = true;
+  }
+
+  bool varies_ = false;
+  Partials partials_;  // where it varies
 };
 
 // For plain values without derivatives, so that one formula is valid for both types.
@@ -114,17 +164,6 @@ inline DualLanes atan2(const DualLanes& y, const DualLanes& x) {
   const Lanes square = x.value * x.value + y.value * y.value;
   return DualLanes::chain(y, x, atan2(y.value, x.value), x.value / square, -y.value / square);
 }
-// a where x ≥ bound, b elsewhere; lane by lane, derivatives likewise.
-inline DualLanes where_at_least(const DualLanes& x, double bound, const DualLanes& a,
-                                const DualLanes& b) {
-  DualLanes r;
-  r.value = where_at_least(x.value, bound, a.value, b.value);
-  for (int k = 0; k < DualLanes::block; ++k) {
-    r.partial[k] = where_at_least(x.value, bound, a.partial[k], b.partial[k]);
-  }
-  return r;
-}
-
 // A function of one variable that is known by numbers (a table, an iteration): `f` returns its
 // value and its slope at one point as {value, slope}.
 template <class Function>

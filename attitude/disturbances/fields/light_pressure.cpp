@@ -19,12 +19,8 @@ Lanes chained(const QuatOf<Lanes>&, const Lanes& value, const std::array<Lanes, 
 }
 DualLanes chained(const QuatOf<DualLanes>& q, const Lanes& value,
                   const std::array<Lanes, 4>& slopes) {
-  DualLanes result(value);
-  const std::array<const DualLanes*, 4> of = {&q.w(), &q.x(), &q.y(), &q.z()};
-  for (int k = 0; k < DualLanes::block; ++k) {
-    for (size_t i = 0; i < 4; ++i) result.partial[k] += slopes[i] * of[i]->partial[k];
-  }
-  return result;
+  const DualLanes by_w_and_x = DualLanes::chain(q.w(), q.x(), value, slopes[0], slopes[1]);
+  return by_w_and_x + DualLanes::chain(q.y(), q.z(), 0.0, slopes[2], slopes[3]);
 }
 
 class TabulatedLight final : public TorqueLaw<TabulatedLight> {
