@@ -191,7 +191,7 @@ bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, 
   for (size_t first = 0; first < moving_.size(); first += group_size) {
     if (!settle(first, tolerance)) return false;
   }
-  return true;
+  return is_resolved(step);
 }
 
 // A first guess of the increments: the polynomials of the step before, continued.
@@ -299,7 +299,7 @@ void Sensitivity::solve_at_once(const CollocationStep& step) {
   StageSystem(step.start().size(), h_s_, room_.jacobian).solve(increments_, count);
 }
 
-// No iteration has seen how fast the derivatives change: judged by the last Legendre term of their
+// Whether the step is short enough for the derivatives: judged by the last Legendre term of their
 // polynomials, relative to each derivative's largest size in units of the scales.
 bool Sensitivity::is_resolved(const CollocationStep& step) const {
   constexpr double tolerance = 1e-3;
