@@ -50,7 +50,8 @@ struct CandidateTraits {
   // Whether it is so nonlinear that forecasts about a model without it fail. Such candidates are
   // fitted one at a time, from all their starts, before sets are forecast.
   bool is_fitted_first = false;
-  // Whether an effect that swings fast equals it in slow motion.
+  // Whether a part swings, and whether such an effect equals this one in slow motion.
+  bool swings = false;
   bool is_limit_of_swinging = false;
   // Whether it changes only readings, so that no torque takes its place.
   bool is_of_instrument = false;

@@ -55,6 +55,7 @@ class Weighing {
     add_candidates_of_all_runs(best().joint.candidates);
     refit_from_best();
     search_on();
+    search_swings();
     add_without_each();
     exchange_places();
     restart_from_joint_fit();
@@ -241,6 +242,37 @@ class Weighing {
       Trial train = assembled(joint, domain_.terms_of(joint), until_convergence(limits_));
       add_leader(std::move(train), std::move(joint));
       ++added;
+    }
+  }
+
+  // Replaces the slow limit of an effect that swings by that effect where all runs together show
+  // swings beside the limit. The train runs alone may hardly excite them.
+  void search_swings() {
+    const Leader from = best();
+    const std::vector<CandidateTraits>& all = domain_.candidates();
+    const std::vector<size_t>& acting = from.joint.candidates;
+    const auto limit =
+        std::ranges::find_if(acting, [&](size_t c) { return all[c].is_limit_of_swinging; });
+    if (limit == acting.end()) return;
+    if (std::ranges::any_of(acting, [&](size_t c) { return all[c].swings; })) return;
+    std::vector<size_t> swinging;
+    for (size_t c = 0; c < all.size(); ++c) {
+      if (all[c].swings) swinging.push_back(c);
+    }
+    const auto starts = domain_.starts(from.joint, swinging, all_runs_,
+                                       slow_runs<D>(domain_, from.joint, {all_runs_}), threads_);
+    std::vector<Task<D>> tasks;
+    for (size_t i = 0; i < swinging.size(); ++i) {
+      for (const auto& start : starts[i]) tasks.push_back({swinging[i], start});
+    }
+    for (const Trial& both : extend_by_tasks(domain_, from.joint, tasks, all_runs_, threads_)) {
+      Members<typename D::Start> others;
+      for (const auto& term : domain_.terms_of(both)) {
+        if (term.candidate != *limit) others.push_back({term});
+      }
+      Trial joint = domain_.assemble(both, others, all_runs_, until_convergence(limits_));
+      Trial train = assembled(joint, domain_.terms_of(joint), until_convergence(limits_));
+      add_leader(std::move(train), std::move(joint));
     }
   }
 

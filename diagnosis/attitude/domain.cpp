@@ -21,7 +21,8 @@ inference::CandidateTraits traits_of(const Candidate& c) {
   traits.is_limit_of_swinging = c.effect.how.inertia_change_kg_m2 != nullptr;
   traits.is_of_instrument = c.start.stage == Stage::measurement;
   // Several appendages with different frequencies and axes are distinguishable.
-  if (c.effect.how.scan == Scan::mode) traits.most = 2;
+  traits.swings = c.effect.how.scan == Scan::mode;
+  if (traits.swings) traits.most = 2;
   traits.has_strength = c.has_linear_strength();
   traits.parameters = c.start.parameters.size();
   return traits;

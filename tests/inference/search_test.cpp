@@ -236,6 +236,36 @@ TEST(Search, NamesAnAppendageThatASlowTermImitates) {
   }
 }
 
+// The fitted run does not excite the swing, so that all frequencies of the same slow part are alike
+// there. The held-out run does, too little to contradict the polynomial.
+TEST(Search, NamesAnAppendageThatOnlyTheHeldOutRunExcites) {
+  Term swinging = swing();
+  swinging.traits.swings = true;
+  swinging.shape = [](const Series& run, double periods) -> Eigen::MatrixXd {
+    const Eigen::Index degree = 2 + std::lround(periods) % 6;
+    const Eigen::MatrixXd slow = polynomial(degree).shape(run, 0.0);
+    return run.sign > 0.0 ? slow : swing().shape(run, periods);
+  };
+  std::vector<Term> terms;
+  for (Eigen::Index degree = 2; degree <= 7; ++degree) {
+    terms.push_back(polynomial(degree));
+    terms.back().traits.is_limit_of_swinging = true;
+  }
+  terms.push_back(swinging);
+  std::vector<Term> mutant = terms;
+  mutant.back().traits.swings = false;
+  for (uint64_t seed = 1; seed <= 5; ++seed) {
+    const auto recorded_with = [&](uint64_t noise, double sign) {
+      const Series run{grid(samples), {}, sign};
+      return recorded(noise, 20.0 * swinging.shape(run, 40.0).col(0), sign);
+    };
+    const std::vector<Series> train = {recorded_with(2 * seed, 1.0)},
+                              held = {recorded_with(2 * seed + 1, -1.0)};
+    EXPECT_EQ(answer(terms, train, held).names, Names{"swing"}) << seed;
+    EXPECT_EQ(answer(mutant, train, held).names, Names{"degree 6"}) << seed;
+  }
+}
+
 TEST(Search, NamesTwoThatSwing) {
   for (uint64_t seed = 1; seed <= 5; ++seed) {
     const Eigen::VectorXd signal = of_swing(20.0, 40.0) + of_swing(33.0, 50.0);
