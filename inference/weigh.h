@@ -246,34 +246,45 @@ class Weighing {
   }
 
   // Replaces the slow limit of an effect that swings by that effect where all runs together show
-  // swings beside the limit. The train runs alone may hardly excite them.
+  // swings beside the limit. The train runs alone may hardly excite them, or the search may have
+  // fitted another swing to what the limit leaves.
   void search_swings() {
     const Leader from = best();
     const std::vector<CandidateTraits>& all = domain_.candidates();
-    const std::vector<size_t>& acting = from.joint.candidates;
-    const auto limit =
-        std::ranges::find_if(acting, [&](size_t c) { return all[c].is_limit_of_swinging; });
-    if (limit == acting.end()) return;
-    if (std::ranges::any_of(acting, [&](size_t c) { return all[c].swings; })) return;
-    std::vector<size_t> swinging;
-    for (size_t c = 0; c < all.size(); ++c) {
-      if (all[c].swings) swinging.push_back(c);
+    const auto is_limit = [&](size_t c) { return all[c].is_limit_of_swinging; };
+    const auto swings = [&](size_t c) { return all[c].swings; };
+    if (std::ranges::none_of(from.joint.candidates, is_limit)) return;
+    std::vector<Trial> parents = {from.joint};
+    if (std::ranges::any_of(from.joint.candidates, swings)) {
+      parents.push_back(together_without(from.joint, swings));
     }
-    const auto starts = domain_.starts(from.joint, swinging, all_runs_,
-                                       slow_runs<D>(domain_, from.joint, {all_runs_}), threads_);
-    std::vector<Task<D>> tasks;
-    for (size_t i = 0; i < swinging.size(); ++i) {
-      for (const auto& start : starts[i]) tasks.push_back({swinging[i], start});
-    }
-    for (const Trial& both : extend_by_tasks(domain_, from.joint, tasks, all_runs_, threads_)) {
-      Members<typename D::Start> others;
-      for (const auto& term : domain_.terms_of(both)) {
-        if (term.candidate != *limit) others.push_back({term});
+    for (const Trial& about : parents) {
+      std::vector<size_t> swinging;
+      for (size_t c = 0; c < all.size(); ++c) {
+        if (swings(c) && !acts_already(about.candidates, c, all)) swinging.push_back(c);
       }
-      Trial joint = domain_.assemble(both, others, all_runs_, until_convergence(limits_));
-      Trial train = assembled(joint, domain_.terms_of(joint), until_convergence(limits_));
-      add_leader(std::move(train), std::move(joint));
+      const auto starts = domain_.starts(about, swinging, all_runs_,
+                                         slow_runs<D>(domain_, about, {all_runs_}), threads_);
+      std::vector<Task<D>> tasks;
+      for (size_t i = 0; i < swinging.size(); ++i) {
+        for (const auto& start : starts[i]) tasks.push_back({swinging[i], start});
+      }
+      for (const Trial& both : extend_by_tasks(domain_, about, tasks, all_runs_, threads_)) {
+        Trial joint = together_without(both, is_limit);
+        Trial train = assembled(joint, domain_.terms_of(joint), until_convergence(limits_));
+        add_leader(std::move(train), std::move(joint));
+      }
     }
+  }
+
+  // Fits the other candidates to all runs.
+  template <class Condition>
+  Trial together_without(const Trial& joint, const Condition& is_left_out) const {
+    Members<typename D::Start> others;
+    for (const auto& term : domain_.terms_of(joint)) {
+      if (!is_left_out(term.candidate)) others.push_back({term});
+    }
+    return domain_.assemble(joint, others, all_runs_, until_convergence(limits_));
   }
 
   // Refits the best explanation without each of its names, to measure the rise of χ² for each name.

@@ -166,6 +166,12 @@ Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const
   }
   trial.candidates.push_back(candidate);
   trial.disturbances.push_back(add_free(h, all[candidate], start.disturbance, all.limits));
+  if (is_near) {
+    // First how far each run begins to swing: before, the readings say nothing of the frequency.
+    Hypothesis as_scanned = h;
+    std::erase_if(as_scanned.free, [](const Free& f) { return !f.per_run; });
+    h.runs = fit(as_scanned, runs, settings).best.runs;
+  }
   trial.fit =
       fit_unbent(h, h.model.disturbances.size() - trial.candidates.size(), runs, how, all.limits);
   judge(trial, all);
@@ -210,6 +216,32 @@ std::vector<double> growing_windows(const Thresholds& limits,
   return windows;
 }
 
+// Index of the first extra state of a disturbance.
+size_t first_state(const AttitudeModel& model, size_t disturbance) {
+  size_t first = 0;
+  for (size_t d = 0; d < disturbance; ++d) first += model.disturbances[d].states.size();
+  return first;
+}
+
+// Lets candidates that `from` has too begin in each run as there: parts that hang deflected swing
+// without any push.
+void begin_as(const Trial& from, const Trial& trial, Hypothesis& h) {
+  std::vector<bool> is_taken(from.candidates.size(), false);
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    size_t j = 0;
+    while (j < is_taken.size() && (is_taken[j] || from.candidates[j] != trial.candidates[i])) ++j;
+    if (j == is_taken.size()) continue;
+    is_taken[j] = true;
+    const size_t count = h.model.disturbances[trial.disturbances[i]].states.size();
+    const size_t source = first_state(from.fit.best.model, from.disturbances[j]),
+                 target = first_state(h.model, trial.disturbances[i]);
+    for (size_t run = 0; run < h.runs.size(); ++run) {
+      std::copy_n(from.fit.best.runs[run].initial.extra.begin() + source, count,
+                  h.runs[run].initial.extra.begin() + target);
+    }
+  }
+}
+
 Trial assembled(const Trial& from, const Candidates& all, const inference::Members<Start>& members,
                 const std::vector<Observation>& runs, const FitSettings& settings) {
   Hypothesis h = nominal_part(from);
@@ -225,6 +257,7 @@ Trial assembled(const Trial& from, const Candidates& all, const inference::Membe
     trial.candidates.push_back(member.term.candidate);
     trial.disturbances.push_back(add_free(h, c, start, all.limits));
   }
+  begin_as(from, trial, h);
   trial.fit = fit_unbent(h, h.model.disturbances.size() - trial.candidates.size(), runs, settings,
                          all.limits);
   return trial;
