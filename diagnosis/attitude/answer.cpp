@@ -138,18 +138,23 @@ void keep_predictive_explanation(const RecordedData& data, const Thresholds& lim
 }
 
 // Searches with the noise level of the readings. If the explanation changes the noise estimate, the
-// search is repeated with it.
+// search is repeated with it. That includes known physics that explains most of the residual but
+// not all: what rang before may have been taken for noise that is correlated.
 Answer at_noise_of_readings(const NominalModel& nominal, RecordedData& data,
                             const DiagnoseOptions& options, Fit& nominal_fit, const Trial* near) {
+  constexpr double most_left = 0.5;
   tell(options, "fitting every effect of the catalogue");
   Answer a = searched(nominal, nominal_fit, data, options, Among::all, near);
-  const bool is_named = a.decision.finding == inference::Finding::named;
-  if (!data.noise_is_open && !is_named) return a;
-  if (!estimate_noise_again(a.chosen().fit, options.limits, data)) return a;
+  const size_t known = a.decision.best_named;
+  const bool is_known = a.decision.finding == inference::Finding::named ||
+                        (a.decision.finding == inference::Finding::unknown && known != 0 &&
+                         a.trials[known].fit.chi2 < most_left * nominal_fit.chi2);
+  if (!data.noise_is_open && !is_known) return a;
+  const Trial explained = is_known ? a.trials[known] : a.chosen();
+  if (!estimate_noise_again(explained.fit, options.limits, data)) return a;
   tell(options, "again, with the noise that was found");
   nominal_fit = fit(nominal_fit.best, data.train);
-  const Trial named = a.chosen();
-  return searched(nominal, nominal_fit, data, options, Among::all, is_named ? &named : near);
+  return searched(nominal, nominal_fit, data, options, Among::all, is_known ? &explained : near);
 }
 
 // Whether an empirical law describes the recordings far better than known physics.
