@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
+#include <set>
 
 #include "core/parallel.h"
 
@@ -14,15 +14,12 @@ Gathering::Gathering(const TraceableScene& scene, const RigidTransform& lab_from
     : plane_(scene, side.grid, side.bands, side.side),
       triangles_(triangles_above(scene.scene(), plane_.patches().point_m, plane_.normal())) {
   const RigidTransform body_from_lab = lab_from_body.inverse();
-  // The LEDs of an array share one emitter and its tables.
-  std::map<const Emitter*, std::shared_ptr<const DiscLight>> lights;
-  for (const Beam& beam : beams) {
-    auto& light = lights[beam.emitter.get()];
-    if (!light) light = std::make_shared<DiscLight>(*beam.emitter, *beam.aperture);
-    lamps_.emplace_back(beam, light, body_from_lab, plane_);
+  const auto lights = lights_of(beams);
+  for (size_t i = 0; i < beams.size(); ++i) {
+    lamps_.emplace_back(beams[i], lights[i], body_from_lab, plane_);
   }
-  for (const auto& [emitter, light] : lights) {
-    if (tables) make_table(*light, threads);
+  if (tables) {
+    for (const auto& light : std::set(lights.begin(), lights.end())) make_table(*light, threads);
   }
   // The bodies that may shade any bin, for every lamp.
   std::vector<uint32_t> all(triangles_.size());
