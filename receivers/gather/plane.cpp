@@ -149,6 +149,21 @@ std::pair<BinTile, BinTile> BinTile::halves() const {
   return {low, high};
 }
 
+std::vector<BinTile> squares_of(const SurfaceGrid& grid) {
+  constexpr int most = 32;
+  const auto parts = [](int bins) { return (bins + most - 1) / most; };
+  const auto begin = [&](int bins, int part) { return bins * part / parts(bins); };
+  std::vector<BinTile> squares;
+  for (int j = 0; j < parts(grid.height); ++j) {
+    for (int i = 0; i < parts(grid.width); ++i) {
+      const int column = begin(grid.width, i), row = begin(grid.height, j);
+      squares.push_back(
+          {column, row, begin(grid.width, i + 1) - column, begin(grid.height, j + 1) - row});
+    }
+  }
+  return squares;
+}
+
 GatherPlane::GatherPlane(const TraceableScene& scene, const SurfaceGrid& grid, const Bands& bands,
                          Side side)
     : scene_(scene),
@@ -195,6 +210,22 @@ std::pair<double, double> GatherLamp::heights_m(const GatherPlane& plane) const 
     }
   }
   return heights;
+}
+
+void GatherLamp::fill_irradiance(const GatherPlane& plane, const BinTile& tile,
+                                 std::span<const double> fraction, Eigen::MatrixXd& W_m2) const {
+  const auto place = [&](int columns, int rows) {
+    return emitter_from_body().point(plane.point_m(tile.column + columns, tile.row + rows));
+  };
+  const Vec3 corner = place(0, 0);
+  const Vec3 across = place(tile.columns, 0) - corner, along = place(0, tile.rows) - corner;
+  for (size_t j = 0; j < fraction.size(); ++j) {
+    const Vec3 start = corner + fraction[j] * along;
+    for (size_t i = 0; i < fraction.size(); ++i) {
+      W_m2(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+          irradiance_at_W_m2(start + fraction[i] * across);
+    }
+  }
 }
 
 ArrivingLight GatherLamp::arriving(const Vec3& at_body_m) const {

@@ -29,7 +29,7 @@ Gathering::Gathering(const TraceableScene& scene, const RigidTransform& lab_from
     const Ball whole = plane_.ball_of({0, 0, side.grid.width, side.grid.height});
     occluders[lamp] = in_shaft(whole, lamps_[lamp], all);
   });
-  const std::vector<BinTile> squares = tiles();
+  const std::vector<BinTile> squares = squares_of(side.grid);
   sights_.resize(squares.size());
   parallel_for(squares.size(), threads, [&](size_t t) {
     for (uint32_t lamp = 0; lamp < lamps_.size(); ++lamp) {
@@ -61,18 +61,6 @@ void Gathering::make_table(const DiscLight& light, int threads) {
   if (!table) return;
   const auto shared = std::make_shared<const IrradianceTable>(*std::move(table));
   for (GatherLamp* lamp : served) lamp->use(shared);
-}
-
-std::vector<BinTile> Gathering::tiles() const {
-  const SurfaceGrid& grid = plane_.grid();
-  std::vector<BinTile> squares;
-  for (int row = 0; row < grid.height; row += tile_side) {
-    for (int column = 0; column < grid.width; column += tile_side) {
-      squares.push_back({column, row, std::min(tile_side, grid.width - column),
-                         std::min(tile_side, grid.height - row)});
-    }
-  }
-  return squares;
 }
 
 std::vector<uint32_t> Gathering::in_shaft(const Ball& ball, const GatherLamp& lamp,

@@ -41,8 +41,6 @@ struct TileSight {
 // The surface, the lamps and the bodies between them, at one attitude.
 class Gathering {
  public:
-  static constexpr int tile_side = 16;  // bins
-
   // With `tables`, lights that illuminate many bins get a table of their irradiance.
   Gathering(const TraceableScene& scene, const RigidTransform& lab_from_body,
             std::span<const Beam> beams, const GatherSide& side, int threads, bool tables);
@@ -54,7 +52,6 @@ class Gathering {
 
  private:
   void make_table(const DiscLight& light, int threads);
-  std::vector<BinTile> tiles() const;
   std::vector<uint32_t> in_shaft(const Ball& ball, const GatherLamp& lamp,
                                  std::span<const uint32_t> candidates) const;
   void descend(const BinTile& tile, uint32_t lamp, std::span<const uint32_t> candidates,
