@@ -33,7 +33,7 @@ class FactorTable {
   // within these heights or light reaches the side. Equal bits with any `threads`.
   static std::optional<FactorTable> make(const DiscLight& light, const Function& factors,
                                          double low_m, double high_m, int threads);
-  static constexpr double tolerance = Count == 2 ? 1e-7 : 1e-6;
+  static constexpr double tolerance = Count == 2 ? 3e-8 : 1e-6;
 
   // Largest difference that was found, half-way between steps.
   double error() const { return error_; }
