@@ -126,7 +126,7 @@ template <int Count>
 std::optional<FactorTable<Count>> FactorTable<Count>::make(const DiscLight& light,
                                                            const Function& factors, double low_m,
                                                            double high_m, int threads) {
-  constexpr size_t fewest_steps = 128, most_steps = 512, fewest_rows = 16;
+  constexpr size_t fewest_steps = 256, most_steps = 512, fewest_rows = 24;
   auto kinks = kinks_of(light, low_m, high_m);
   if (!kinks) return std::nullopt;
   FactorTable table(low_m, high_m, *std::move(kinks));

@@ -139,21 +139,25 @@ BinPatches bin_patches(const Scene& scene, const SurfaceGrid& grid) {
   for (const SurfaceFace& face : faces) area += face.area_body_m2;
   all.normal = area.normalized();
   const BinContent content(grid, faces);
-  std::vector<SurfacePatch> whole(grid.bins());
   std::vector<bool> in_part(grid.bins());
+  SurfacePatch whole;
   for (size_t bin = 0; bin < grid.bins(); ++bin) {
     in_part[bin] = content.instance[bin] != BinContent::none &&
-                   !fill_whole(grid, all, bin, content.instance[bin], whole[bin]);
+                   !fill_whole(grid, all, bin, content.instance[bin], whole);
   }
   std::vector<CellPiece> pieces;
   if (std::find(in_part.begin(), in_part.end(), true) != in_part.end()) {
     for (const SurfaceFace& face : faces) add_pieces(grid, face, in_part, pieces);
   }
   const std::vector<uint32_t> begin = sort_by_bin(pieces, grid.bins());
+  all.patches.reserve(grid.bins());
   for (size_t bin = 0; bin < grid.bins(); ++bin) {
     all.first.push_back(static_cast<uint32_t>(all.patches.size()));
     if (content.instance[bin] == BinContent::none) continue;
-    if (!in_part[bin]) all.patches.push_back(whole[bin]);
+    if (!in_part[bin]) {
+      fill_whole(grid, all, bin, content.instance[bin], whole);
+      all.patches.push_back(whole);
+    }
     for (uint32_t p = begin[bin]; p < begin[bin + 1]; ++p) all.patches.push_back(pieces[p].patch);
   }
   all.first.push_back(static_cast<uint32_t>(all.patches.size()));

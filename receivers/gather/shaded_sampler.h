@@ -196,9 +196,9 @@ class ShadedSampler {
   void add_ray(const Vec3& at, const Vec3& from) {
     const Vec3 start = at + ray_offset_m_ * lamp_.normal_emitter();
     const Vec3 between = from - start;
-    const double length = between.norm();
+    const double length = between.norm(), per_length = 1.0 / length;
     const Vec3 origin = body_from_emitter_ * start + scene_from_emitter_m_;
-    const Vec3 direction = body_from_emitter_ * (between / length);
+    const Vec3 direction = body_from_emitter_ * (per_length * between);
     ShadowRay& ray = shadow_[count_++];
     for (int k = 0; k < 3; ++k) {
       ray.origin_m[k] = static_cast<float>(origin[k]);
