@@ -77,6 +77,8 @@ struct UniformAperture {
   // Where the relative intensity jumps or changes its law, rising; the last is where it ends, 0 for
   // collimated light.
   std::vector<double> edges_rad;
+
+  bool operator==(const UniformAperture&) const = default;
 };
 
 // An emitter placed in the laboratory.

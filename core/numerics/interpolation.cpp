@@ -51,7 +51,7 @@ Eigen::MatrixXd chebyshev_coefficients(size_t n) {
   return coefficients;
 }
 
-Eigen::MatrixXd chebyshev_cell_means(size_t n, size_t cells) {
+Eigen::MatrixXd chebyshev_term_means(size_t n, size_t cells) {
   const auto points = static_cast<Eigen::Index>(n), parts = static_cast<Eigen::Index>(cells);
   Eigen::MatrixXd means(parts, points);
   const double width = 2.0 / static_cast<double>(cells);
@@ -64,7 +64,7 @@ Eigen::MatrixXd chebyshev_cell_means(size_t n, size_t cells) {
     }
     before = std::move(after);
   }
-  return means * chebyshev_coefficients(n);
+  return means;
 }
 
 namespace {

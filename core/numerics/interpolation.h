@@ -24,9 +24,8 @@ double chebyshev_weight(size_t n, size_t k, double angle_rad);
 // rising, as weights of these values.
 Eigen::MatrixXd chebyshev_coefficients(size_t n);
 
-// Row c gives the mean over the c-th of `cells` even parts of [0, 1] of the polynomial through
-// values at the n points, as weights of these values.
-Eigen::MatrixXd chebyshev_cell_means(size_t n, size_t cells);
+// Row c gives the means over the c-th of `cells` even parts of [0, 1] of T_0 … T_{n − 1} of [0, 1].
+Eigen::MatrixXd chebyshev_term_means(size_t n, size_t cells);
 
 // Cubic Hermite interpolation, and slopes for it with which it rises and falls only where its data
 // do.

@@ -14,6 +14,7 @@ class AngularTable {
  public:
   // `edges_rad` as in UniformAperture, at least one, the last > 0.
   AngularTable(const Emitter& emitter, const std::vector<double>& edges_rad);
+  bool operator==(const AngularTable&) const = default;
 
   // Intensity per flux [1/sr]; zero beyond the last edge. Interpolated to 1e-7 of the largest of
   // its interval between two edges.
@@ -48,6 +49,7 @@ class AngularTable {
   struct Segment {
     double low, high, per_step;
     std::vector<double> value, within;
+    bool operator==(const Segment&) const = default;
 
     // The cubic through the four nearest values.
     double intensity(double rise) const {

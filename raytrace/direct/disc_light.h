@@ -48,6 +48,11 @@ class DiscLight {
  public:
   DiscLight(const Emitter& emitter, UniformAperture aperture);
 
+  // Gives the same light in the same directions, to all digits.
+  bool same_as(const DiscLight& other) const {
+    return aperture_ == other.aperture_ && angles_ == other.angles_;
+  }
+
   const Emitter& emitter() const { return emitter_; }
   double radius_m() const { return aperture_.radius_m; }
   double exitance_W_m2() const { return aperture_.exitance_W_m2; }

@@ -9,27 +9,90 @@
 namespace photorque {
 namespace {
 
-constexpr double root_half = 0.70710678118654752440;
+constexpr double negligible = 1e-8;
 
-// Terms of a series whose next falls by `ratio`, `most` at most: heights on a scale of their
-// middle.
-size_t degrees_for(double ratio, size_t most) {
-  constexpr double negligible = 1e-8;
+// Terms of a series whose next falls by `ratio`: heights on a scale of their middle.
+size_t degrees_for(double ratio) {
+  constexpr size_t most = 8;
   if (ratio < 1e-9) return 1;
   const double wanted = 1.0 + std::log(negligible) / std::log(std::min(ratio, 0.5));
   return std::min(static_cast<size_t>(wanted) + 1, most);
 }
 
+// Row i gives the value at the i-th of `count` even places of [0, 1], both ends among them, of the
+// polynomial through values at n Chebyshev points, rising.
+Eigen::MatrixXd values_at_even_places(size_t n, size_t count) {
+  const auto places = static_cast<Eigen::Index>(count), terms = static_cast<Eigen::Index>(n);
+  Eigen::MatrixXd term(places, terms);
+  for (Eigen::Index i = 0; i < places; ++i) {
+    const double x = count > 1 ? 2.0 * static_cast<double>(i) / (count - 1.0) - 1.0 : 0.0;
+    term(i, 0) = 1.0;
+    if (terms > 1) term(i, 1) = x;
+    for (Eigen::Index k = 2; k < terms; ++k) term(i, k) = 2.0 * x * term(i, k - 1) - term(i, k - 2);
+  }
+  return term * chebyshev_coefficients(n);
+}
+
 }  // namespace
 
 template <int Count>
-FactorTable<Count>::FactorTable(double low_m, double high_m, std::vector<Kink> kinks, size_t steps)
-    : middle_m_(0.5 * (low_m + high_m)),
-      half_range_m_(0.5 * (high_m - low_m)),
-      degrees_(degrees_for(half_range_m_ / middle_m_, max_degrees)),
-      steps_(steps),
-      kinks_(std::move(kinks)),
-      nodes_(2 * (kinks_.size() - 1) * (steps + 1)) {}
+class FactorTable<Count>::Series {
+ public:
+  // As many points of the root as the light needs; none if too many.
+  static std::optional<Series> of(const FactorTable& table, const Function& factors, int threads) {
+    constexpr size_t fewest = 24, most = 96;
+    const size_t degrees =
+        degrees_for((table.high_m_ - table.low_m_) / (table.high_m_ + table.low_m_));
+    for (size_t points = fewest; points <= most; points *= 2) {
+      const Series one(table, factors, points, 1, threads);
+      if (!one.converged()) continue;
+      if (degrees == 1) return one;
+      return Series(table, factors, points, degrees, threads);
+    }
+    return std::nullopt;
+  }
+
+  // The factor of one half at even steps and heights.
+  Eigen::MatrixXd values(size_t half, size_t factor, const Eigen::MatrixXd& at_steps,
+                         const Eigen::MatrixXd& at_rows) const {
+    return at_steps * value_[half * Count + factor] * at_rows.transpose();
+  }
+  size_t points() const { return points_; }
+  size_t degrees() const { return degrees_; }
+
+ private:
+  Series(const FactorTable& table, const Function& factors, size_t points, size_t degrees,
+         int threads)
+      : points_(points),
+        degrees_(degrees),
+        value_(table.halves() * Count, Eigen::MatrixXd(static_cast<Eigen::Index>(points),
+                                                       static_cast<Eigen::Index>(degrees))) {
+    parallel_for(table.halves() * points * degrees, threads, [&](size_t n) {
+      const size_t half = n / (points * degrees), i = n / degrees % points, j = n % degrees;
+      const double h =
+          table.low_m_ + chebyshev_fraction(degrees, j) * (table.high_m_ - table.low_m_);
+      const Factors here = factors(table.distance_m(half, chebyshev_fraction(points, i), h), h);
+      for (size_t f = 0; f < Count; ++f) {
+        value_[half * Count + f](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+            here[static_cast<Eigen::Index>(f)];
+      }
+    });
+  }
+
+  // The last terms of the series in the root are small, at the first height.
+  bool converged() const {
+    const Eigen::MatrixXd last = chebyshev_coefficients(points_).bottomRows(3);
+    double largest = 0.0, left = 0.0;
+    for (const Eigen::MatrixXd& value : value_) {
+      largest = std::max(largest, value.cwiseAbs().maxCoeff());
+      left = std::max(left, (last * value.col(0)).cwiseAbs().maxCoeff());
+    }
+    return left <= negligible * largest;
+  }
+
+  size_t points_, degrees_;
+  std::vector<Eigen::MatrixXd> value_;  // by half and factor: points of the root by heights
+};
 
 // Empty if they cross within the range of heights, or if the light extends to the side.
 template <int Count>
@@ -63,61 +126,59 @@ template <int Count>
 std::optional<FactorTable<Count>> FactorTable<Count>::make(const DiscLight& light,
                                                            const Function& factors, double low_m,
                                                            double high_m, int threads) {
-  const auto kinks = kinks_of(light, low_m, high_m);
+  constexpr size_t fewest_steps = 256, most_steps = 512, fewest_rows = 24;
+  auto kinks = kinks_of(light, low_m, high_m);
   if (!kinks) return std::nullopt;
-  const double middle_m = 0.5 * (low_m + high_m);
-  std::optional<FactorTable> coarser;
-  for (size_t steps = fewest_steps; steps <= most_steps; steps *= 2) {
-    FactorTable table(low_m, high_m, *kinks, steps);
-    table.fill(factors, coarser ? &*coarser : nullptr, threads);
+  FactorTable table(low_m, high_m, *std::move(kinks));
+  const auto series = Series::of(table, factors, threads);
+  if (!series) return std::nullopt;
+  size_t rows = fewest_rows;
+  for (size_t steps = fewest_steps; steps <= most_steps; steps *= 2, rows *= 2) {
+    table.fill(*series, steps, series->degrees() == 1 ? 1 : rows + 1);
     if (table.agrees_with(factors)) return table;
-    // Cubics gain four powers of two with every halving of the steps.
-    const double most_gain =
-        std::pow(static_cast<double>(most_steps) / static_cast<double>(steps), 4.0);
-    if (table.error_ > 2.0 * most_gain * tolerance * light.typical_W_m2(middle_m)) break;
-    coarser = std::move(table);
   }
   return std::nullopt;
 }
 
 template <int Count>
-double FactorTable<Count>::distance_m(size_t half, double place, double height_m) const {
+double FactorTable<Count>::distance_m(size_t half, double fraction, double height_m) const {
   const double from = kinks_[half / 2].at(height_m), to = kinks_[half / 2 + 1].at(height_m);
-  const double root = root_half * place / static_cast<double>(steps_);
-  return half % 2 == 0 ? from + root * root * (to - from) : to - root * root * (to - from);
+  const double part = 0.5 * fraction * fraction;
+  return half % 2 == 0 ? from + part * (to - from) : to - part * (to - from);
 }
 
 template <int Count>
-void FactorTable<Count>::fill(const Function& factors, const FactorTable* coarser, int threads) {
-  parallel_for(nodes_.size(), threads, [&](size_t n) {
-    const size_t half = n / (steps_ + 1), place = n % (steps_ + 1);
-    Node& node = nodes_[n];
-    if (coarser != nullptr && place % 2 == 0) {
-      node = coarser->nodes_[half * (coarser->steps_ + 1) + place / 2];
-      return;
+void FactorTable<Count>::fill(const Series& series, size_t steps, size_t rows) {
+  steps_ = steps;
+  rows_ = rows;
+  rows_per_m_ = (static_cast<double>(rows) - 1.0) / (high_m_ - low_m_);
+  values_.assign(halves() * rows * (steps + 1) * Count, 0.0);
+  const Eigen::MatrixXd at_steps = values_at_even_places(series.points(), steps + 1);
+  const Eigen::MatrixXd at_rows = values_at_even_places(series.degrees(), rows);
+  for (size_t half = 0; half < halves(); ++half) {
+    double* first = &values_[half * rows * (steps + 1) * Count];
+    for (size_t f = 0; f < Count; ++f) {
+      Eigen::Map<Eigen::MatrixXd, 0, Eigen::Stride<Eigen::Dynamic, Count>>(
+          first + f, static_cast<Eigen::Index>(steps + 1), static_cast<Eigen::Index>(rows),
+          {static_cast<Eigen::Index>(Count * (steps + 1)), Count}) =
+          series.values(half, f, at_steps, at_rows);
     }
-    node.setZero();
-    for (size_t j = 0; j < degrees_; ++j) {
-      const double x = chebyshev_point(degrees_, j);
-      const double h = middle_m_ + half_range_m_ * x;
-      const Factors here = factors(distance_m(half, static_cast<double>(place), h), h);
-      for (size_t k = 0; k < degrees_; ++k) {
-        const double weight = chebyshev_weight(degrees_, k, std::acos(x));
-        node.row(static_cast<Eigen::Index>(k)) += weight * here.transpose();
-      }
-    }
-  });
+  }
 }
 
 template <int Count>
 bool FactorTable<Count>::agrees_with(const Function& factors) {
-  constexpr size_t stride = 7;  // intervals between two that are looked at
+  constexpr size_t tests = 19;  // per half
   double largest = 0.0, worst = 0.0;
-  for (const double x : {-0.97, 0.31}) {
-    const double h = middle_m_ + half_range_m_ * x;
-    for (size_t half = 0; half < 2 * (kinks_.size() - 1); ++half) {
-      for (size_t step = 0; step < steps_; step += stride) {
-        const double d = distance_m(half, static_cast<double>(step) + 0.5, h);
+  // In the middle of the first interval of heights, where the cubic is worst, and of another.
+  const size_t intervals = std::max<size_t>(rows_ - 1, 1);
+  for (const size_t interval : {size_t{0}, 2 * intervals / 3}) {
+    const double h = low_m_ + (static_cast<double>(interval) + 0.5) /
+                                  static_cast<double>(intervals) * (high_m_ - low_m_);
+    for (size_t half = 0; half < halves(); ++half) {
+      for (size_t test = 0; test < tests; ++test) {
+        const double step = static_cast<double>(test * steps_ / tests) + 0.5;
+        const double d = distance_m(half, step / static_cast<double>(steps_), h);
         const Factors truth = factors(d, h);
         largest = std::max(largest, truth[0]);
         worst = std::max(worst, (at(d, h) - truth).abs().maxCoeff());
@@ -126,45 +187,6 @@ bool FactorTable<Count>::agrees_with(const Function& factors) {
   }
   error_ = worst;
   return worst <= tolerance * largest;
-}
-
-template <int Count>
-typename FactorTable<Count>::Factors FactorTable<Count>::at(double distance_m,
-                                                            double height_m) const {
-  const double h = height_m, d = distance_m;
-  if (d >= kinks_.back().at(h)) return Factors::Zero();
-  size_t piece = 0;
-  while (d >= kinks_[piece + 1].at(h)) ++piece;
-  const double from = kinks_[piece].at(h), to = kinks_[piece + 1].at(h);
-  const double along = (d - from) / (to - from);
-  const bool near = along < 0.5;
-  const double place = std::sqrt(2.0 * (near ? along : 1.0 - along)) * static_cast<double>(steps_);
-
-  // The cubic through four neighbours.
-  const auto first = std::min(static_cast<size_t>(std::max(place - 1.0, 0.0)), steps_ - 3);
-  const double t = place - static_cast<double>(first) - 1.0;
-  const double left = t + 1.0, right = t - 1.0, far = t - 2.0;
-  const std::array<double, 4> weight = {-t * right * far / 6.0, left * right * far / 2.0,
-                                        -left * t * far / 2.0, left * t * right / 6.0};
-  const Node* node = &nodes_[(2 * piece + (near ? 0 : 1)) * (steps_ + 1) + first];
-  Factors factor = Factors::Zero();
-  if (degrees_ == 1) {
-    for (Eigen::Index f = 0; f < Count; ++f) {
-      for (size_t i = 0; i < 4; ++i) factor[f] += weight[i] * node[i](0, f);
-    }
-    return factor;
-  }
-  const Node series =
-      weight[0] * node[0] + weight[1] * node[1] + weight[2] * node[2] + weight[3] * node[3];
-  const double x = (h - middle_m_) / half_range_m_;
-  double term = 1.0, next = x;
-  for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(degrees_); ++k) {
-    for (Eigen::Index f = 0; f < Count; ++f) factor[f] += term * series(k, f);
-    const double after = 2.0 * x * next - term;
-    term = next;
-    next = after;
-  }
-  return factor;
 }
 
 template class FactorTable<2>;

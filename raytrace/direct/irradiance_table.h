@@ -3,11 +3,14 @@
 //
 // Its factors have kinks only where the circle that an edge of the beam draws touches the rim of
 // the aperture, at d = |R ± h tan θ|. Between two of these, powers of half integers of the distance
-// to them remain, which its square root makes smooth: cubics in the root over even steps, with
-// coefficients that are Chebyshev series in h.
+// to them remain, which its square root makes smooth: the table holds values at even steps of the
+// root and of h, and cubics lie between them. The values come from few of the light's integrals, by
+// Chebyshev series in root and height.
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -30,40 +33,86 @@ class FactorTable {
   // within these heights or light reaches the side. Equal bits with any `threads`.
   static std::optional<FactorTable> make(const DiscLight& light, const Function& factors,
                                          double low_m, double high_m, int threads);
-  static constexpr double tolerance = Count == 2 ? 1e-7 : 1e-6;
-
-  static constexpr int max_degrees = 8;  // of the series in h
+  static constexpr double tolerance = Count == 2 ? 3e-8 : 1e-6;
 
   // Largest difference that was found, half-way between steps.
   double error() const { return error_; }
   // For these heights; zero where no light comes.
-  Factors at(double distance_m, double height_m) const;
+  Factors at(double distance_m, double height_m) const {
+    const double h = height_m, d = distance_m;
+    if (d >= kinks_.back().at(h)) return Factors::Zero();
+    size_t piece = 0;
+    while (d >= kinks_[piece + 1].at(h)) ++piece;
+    const double from = kinks_[piece].at(h), to = kinks_[piece + 1].at(h);
+    const double along = (d - from) / (to - from);
+    const bool near = along < 0.5;
+    const double place =
+        std::sqrt(2.0 * (near ? along : 1.0 - along)) * static_cast<double>(steps_);
+    const Cubic across(place, steps_);
+    const size_t row = Count * (steps_ + 1);
+    const double* first =
+        &values_[(2 * piece + (near ? 0 : 1)) * rows_ * row + across.first * Count];
+    Four four;
+    if (rows_ == 1) {
+      four = Eigen::Map<const Four>(first);
+    } else {
+      const Cubic along_h((h - low_m_) * rows_per_m_, rows_ - 1);
+      first += along_h.first * row;
+      four = along_h.weight[0] * Eigen::Map<const Four>(first) +
+             along_h.weight[1] * Eigen::Map<const Four>(first + row) +
+             along_h.weight[2] * Eigen::Map<const Four>(first + 2 * row) +
+             along_h.weight[3] * Eigen::Map<const Four>(first + 3 * row);
+    }
+    return across.weight[0] * four.template segment<Count>(0) +
+           across.weight[1] * four.template segment<Count>(Count) +
+           across.weight[2] * four.template segment<Count>(2 * Count) +
+           across.weight[3] * four.template segment<Count>(3 * Count);
+  }
 
  private:
-  static constexpr size_t fewest_steps = 128, most_steps = 512;  // per half of a piece
+  using Four = Eigen::Array<double, 4 * Count, 1>;  // the factors at four neighbours
 
+  // Weights of four neighbours among values at the places 0 … `last` (≥ 3) of the cubic through
+  // them.
+  struct Cubic {
+    size_t first;
+    std::array<double, 4> weight;
+
+    Cubic(double place, size_t last)
+        : first(static_cast<size_t>(
+              std::clamp(static_cast<int>(place - 1.0), 0, static_cast<int>(last) - 3))) {
+      const double t = place - static_cast<double>(first) - 1.0;
+      const double left = t + 1.0, right = t - 1.0, far = t - 2.0;
+      weight = {-t * right * far / 6.0, left * right * far / 2.0, -left * t * far / 2.0,
+                left * t * right / 6.0};
+    }
+  };
   // A distance from the axis that moves with the height.
   struct Kink {
     double at_zero_m, slope;
     double at(double height_m) const { return at_zero_m + slope * height_m; }
   };
-  using Node = Eigen::Array<double, max_degrees, Count>;  // coefficients
+  // The factors at Chebyshev points: of the root by column, of the height by row, each half a
+  // block; and the values of the series' terms at the steps of a half.
+  class Series;
 
-  FactorTable(double low_m, double high_m, std::vector<Kink> kinks, size_t steps);
+  FactorTable(double low_m, double high_m, std::vector<Kink> kinks)
+      : low_m_(low_m), high_m_(high_m), kinks_(std::move(kinks)) {}
   static std::optional<std::vector<Kink>> kinks_of(const DiscLight& light, double low_m,
                                                    double high_m);
-  // `coarser` has half as many steps, or is null.
-  void fill(const Function& factors, const FactorTable* coarser, int threads);
+  size_t halves() const { return 2 * (kinks_.size() - 1); }
+  void fill(const Series& series, size_t steps, size_t rows);
   bool agrees_with(const Function& factors);
-  // The distance of a place in the table: node `place` (may be between two) of half 2 · piece or
-  // 2 · piece + 1.
-  double distance_m(size_t half, double place, double height_m) const;
+  // The distance of a place in the table, a fraction of half 2 · piece or 2 · piece + 1.
+  double distance_m(size_t half, double fraction, double height_m) const;
 
-  double middle_m_, half_range_m_;  // of the heights
-  size_t degrees_, steps_;
+  double low_m_, high_m_;  // of the heights
+  size_t steps_ = 0;       // per half of a piece
+  size_t rows_ = 1;        // heights
+  double rows_per_m_ = 0.0;
   double error_ = 0.0;
-  std::vector<Kink> kinks_;  // rising, from the axis to where the light ends
-  std::vector<Node> nodes_;  // half by half, steps_ + 1 each
+  std::vector<Kink> kinks_;     // rising, from the axis to where the light ends
+  std::vector<double> values_;  // by half, height, place and factor
 };
 
 extern template class FactorTable<2>;

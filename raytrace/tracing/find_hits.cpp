@@ -41,9 +41,13 @@ void intersect_packets(const TraceableScene::Data& scene, size_t rays, Coherence
 
 // Records → columns; the columns are padded to a whole packet with copies of the last ray.
 void load_rays(const RayList& rays, HitBuffer& buffer) {
+  constexpr size_t ahead = 32;  // rays in another order come from anywhere in the batch
   size_t i = 0;
   std::array<const float*, 8> rows;
   for (; i + 8 <= rays.size(); i += 8) {
+    if (i + ahead + 8 <= rays.size()) {
+      for (size_t k = 0; k < 8; ++k) __builtin_prefetch(rays[i + ahead + k].origin_m);
+    }
     for (size_t k = 0; k < 8; ++k) rows[k] = rays[i + k].origin_m;
     transpose_8x8(rows, &buffer.ray[0][i], Hits::rows);
   }
@@ -71,14 +75,41 @@ void load_planes(const TraceableScene::Data& scene, HitBuffer& buffer) {
   }
 }
 
-// Whether all hits are on the same side of the same instance, as most neighbours are.
+// Whether all hits are on the same instance, as most neighbours are.
+bool on_one_instance(const Hits& hits) {
+  uint32_t differences = 0;
+  for (int i = 0; i < hits.count; ++i) differences |= hits.instance[i] ^ hits.instance[0];
+  return differences == 0;
+}
+
 bool on_one_side(const Hits& hits) {
   uint32_t differences = 0;
   for (int i = 0; i < hits.count; ++i) {
-    differences |= (hits.instance[i] ^ hits.instance[0]) |
-                   static_cast<uint32_t>(hits.front[i] ^ hits.front[0]);
+    differences |= static_cast<uint32_t>(hits.front[i] ^ hits.front[0]);
   }
   return differences == 0;
+}
+
+// Where the rays meet the planes of their triangles, in double precision: Embree's own distance is
+// off by up to 5e-7 of the scene's size. `plane(k, i)` gives component k of the normal of hit i,
+// then the offset.
+template <typename Plane>
+void meet_planes(const Vec3& centre_m, const Plane& plane, HitBuffer& buffer) {
+  Hits& hits = buffer.hits;
+  const auto& ray = buffer.ray;
+  const double cx = centre_m.x(), cy = centre_m.y(), cz = centre_m.z();
+  for (int i = 0; i < hits.count; ++i) {
+    const double ox = ray[0][i], oy = ray[1][i], oz = ray[2][i];
+    const double dx = ray[3][i], dy = ray[4][i], dz = ray[5][i];
+    const double nx = plane(0, i), ny = plane(1, i), nz = plane(2, i);
+    const double facing = nx * dx + ny * dy + nz * dz;
+    const double t = (plane(3, i) - nx * ox - ny * oy - nz * oz) / facing;
+    hits.position_m[0][i] = cx + (ox + t * dx);
+    hits.position_m[1][i] = cy + (oy + t * dy);
+    hits.position_m[2][i] = cz + (oz + t * dz);
+    hits.cosine[i] = std::min(std::abs(facing), 1.0);
+    buffer.facing[i] = static_cast<float>(facing);
+  }
 }
 
 }  // namespace
@@ -121,26 +152,24 @@ void locate_hits(const TraceableScene::Data& scene, int depth, HitBuffer& buffer
   Hits& hits = buffer.hits;
   const auto& ray = buffer.ray;
   std::fill_n(hits.depth.begin(), hits.count, static_cast<uint16_t>(depth));
-  load_planes(scene, buffer);
-  // The hit in double precision from the triangle's plane: Embree's own distance is off by up to
-  // 5e-7 of the scene's size.
-  for (int i = 0; i < hits.count; ++i) {
-    const double ox = ray[0][i], oy = ray[1][i], oz = ray[2][i];
-    const double dx = ray[3][i], dy = ray[4][i], dz = ray[5][i];
-    const double nx = buffer.plane[0][i], ny = buffer.plane[1][i], nz = buffer.plane[2][i];
-    const double facing = nx * dx + ny * dy + nz * dz;
-    const double t = (buffer.plane[3][i] - nx * ox - ny * oy - nz * oz) / facing;
-    hits.position_m[0][i] = scene.centre_m.x() + (ox + t * dx);
-    hits.position_m[1][i] = scene.centre_m.y() + (oy + t * dy);
-    hits.position_m[2][i] = scene.centre_m.z() + (oz + t * dz);
-    hits.cosine[i] = std::min(std::abs(facing), 1.0);
-    buffer.facing[i] = static_cast<float>(facing);
+  const bool one_instance = on_one_instance(hits);
+  if (one_instance && scene.flat[hits.instance[0]] != 0) {
+    const TrianglePlane& plane = scene.plane(hits.instance[0], 0);
+    const std::array<double, 4> same = {plane.normal[0], plane.normal[1], plane.normal[2],
+                                        plane.offset_m};
+    meet_planes(
+        scene.centre_m, [same](size_t k, int) { return same[k]; }, buffer);
+  } else {
+    load_planes(scene, buffer);
+    const auto& planes = buffer.plane;
+    meet_planes(
+        scene.centre_m, [&planes](size_t k, int i) { return planes[k][i]; }, buffer);
   }
   for (int i = 0; i < hits.count; ++i) {
     hits.front[i] = static_cast<uint8_t>(std::bit_cast<uint32_t>(buffer.facing[i]) >> 31);
     buffer.sample[i] = std::bit_cast<uint32_t>(ray[6][i]);
   }
-  buffer.one_side = on_one_side(hits);
+  buffer.one_side = one_instance && on_one_side(hits);
 }
 
 }  // namespace photorque

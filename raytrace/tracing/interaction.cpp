@@ -251,9 +251,14 @@ void book_absorbed(const HitBuffer& buffer, PowerBalanceSums& power_balance) {
 void take_momentum(HitBuffer& buffer) {
   Hits& hits = buffer.hits;
   const auto& direction = buffer.ray;  // columns 3 to 5
-  Hits::Column<double> power_W = hits.incident_W[0];
-  for (int b = 1; b < hits.bands; ++b) {
-    for (int i = 0; i < hits.count; ++i) power_W[i] += hits.incident_W[b][i];
+  Hits::Column<double> all_bands_W;
+  const double* power_W = hits.incident_W[0].data();
+  if (hits.bands > 1) {
+    std::copy_n(power_W, hits.count, all_bands_W.begin());
+    for (int b = 1; b < hits.bands; ++b) {
+      for (int i = 0; i < hits.count; ++i) all_bands_W[i] += hits.incident_W[b][i];
+    }
+    power_W = all_bands_W.data();
   }
   for (int i = 0; i < hits.count; ++i) {
     const double momentum_N = power_W[i] * (1.0 / speed_of_light_m_s);

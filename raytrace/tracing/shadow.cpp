@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "raytrace/tracing/traceable_scene_data.h"
 
@@ -46,6 +48,63 @@ double distance_from_origin(const Polygon& polygon) {
   return left && right ? std::sqrt(nearest2) : 0.0;
 }
 
+Ball ball_about(std::span<const TriangleCorners> triangles) {
+  Eigen::AlignedBox3d box;
+  for (const TriangleCorners& corners : triangles) {
+    for (const Vec3& corner : corners) box.extend(corner);
+  }
+  Ball ball{box.center(), 0.0};
+  for (const TriangleCorners& corners : triangles) {
+    for (const Vec3& corner : corners) {
+      ball.radius_m = std::max(ball.radius_m, (corner - ball.centre_m).norm());
+    }
+  }
+  return ball;
+}
+
+// Every edge is of two triangles that run along it in opposite ways. Corners at the same place are
+// one.
+bool is_closed(std::span<const TriangleCorners> triangles) {
+  using Place = std::array<double, 3>;
+  const auto place = [](const Vec3& p) { return Place{p.x(), p.y(), p.z()}; };
+  std::map<std::pair<Place, Place>, int> edges;  // how often they are run along
+  for (const TriangleCorners& corners : triangles) {
+    for (size_t k = 0; k < 3; ++k) ++edges[{place(corners[k]), place(corners[(k + 1) % 3])}];
+  }
+  return std::all_of(edges.begin(), edges.end(), [&](const auto& edge) {
+    const auto back = edges.find({edge.first.second, edge.first.first});
+    return edge.second == 1 && back != edges.end() && back->second == 1;
+  });
+}
+
+// The half-spaces whose common part is the body with this surface, a little smaller than it; empty
+// if it is not closed and convex, or has many triangles.
+std::vector<Occluder::Face> faces_of_convex(std::span<const TriangleCorners> triangles) {
+  constexpr size_t most = 256;
+  if (triangles.size() > most || !is_closed(triangles)) return {};
+  const Ball ball = ball_about(triangles);
+  const double rounding_m = 1e-6 * ball.radius_m;
+  std::vector<Occluder::Face> faces;
+  for (const TriangleCorners& corners : triangles) {
+    const Vec3 area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    if (!(area.norm() > rounding_m * rounding_m)) return {};
+    Occluder::Face face{area.normalized(), 0.0};
+    if (face.normal.dot(corners[0] - ball.centre_m) < 0.0) face.normal = -face.normal;
+    face.offset_m = face.normal.dot(corners[0]) - rounding_m;
+    for (const TriangleCorners& others : triangles) {
+      for (const Vec3& corner : others) {
+        if (face.normal.dot(corner) > face.offset_m + 2.0 * rounding_m) return {};
+      }
+    }
+    const bool known = std::any_of(faces.begin(), faces.end(), [&](const Occluder::Face& other) {
+      return other.normal.dot(face.normal) > 1.0 - 1e-12 &&
+             std::abs(other.offset_m - face.offset_m) < 0.1 * rounding_m;
+    });
+    if (!known) faces.push_back(face);
+  }
+  return faces;
+}
+
 template <int Width>
 void find_in_packets(const TraceableScene::Data& scene, std::span<const ShadowRay> rays,
                      std::span<uint8_t> lit) {
@@ -77,16 +136,18 @@ void find_in_packets(const TraceableScene::Data& scene, std::span<const ShadowRa
 
 }  // namespace
 
-std::vector<TriangleCorners> triangles_above(const Scene& scene, const Vec3& plane_point_m,
-                                             const Vec3& plane_normal) {
+std::vector<Occluder> occluders_above(const Scene& scene, const Vec3& plane_point_m,
+                                      const Vec3& plane_normal) {
+  constexpr size_t together = 16;  // triangles of parts that are not convex
   // A triangle below this height is in the plane, to single precision.
   const Eigen::AlignedBox3d box = scene.box();
   const double min_m = box.isEmpty() ? 0.0 : 1e-6 * 0.5 * box.diagonal().norm();
-  std::vector<TriangleCorners> above;
+  std::vector<Occluder> occluders;
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
+    std::vector<TriangleCorners> all, above;
     for (const auto& triangle : mesh.triangles) {
-      TriangleCorners corners;
+      TriangleCorners& corners = all.emplace_back();
       bool reaches = false;
       for (size_t k = 0; k < 3; ++k) {
         corners[k] = instance.body_from_mesh * mesh.vertices_m[triangle[k]];
@@ -94,11 +155,18 @@ std::vector<TriangleCorners> triangles_above(const Scene& scene, const Vec3& pla
       }
       if (reaches) above.push_back(corners);
     }
+    if (above.empty()) continue;
+    std::vector<Occluder::Face> faces = faces_of_convex(all);
+    const size_t most = faces.empty() ? together : above.size();
+    for (size_t first = 0; first < above.size(); first += most) {
+      const auto some = std::span(above).subspan(first, std::min(most, above.size() - first));
+      occluders.push_back({{some.begin(), some.end()}, ball_about(some), faces});
+    }
   }
-  return above;
+  return occluders;
 }
 
-Shaft::Shaft(const Ball& from, const Ball& to) : start_m_(from.centre_m) {
+Shaft::Shaft(const Ball& from, const Ball& to) : start_m_(from.centre_m), end_(to) {
   const Vec3 between = to.centre_m - from.centre_m;
   const double length = between.norm();
   axis_ = length > 0.0 ? Vec3(between / length) : Vec3::UnitZ();
@@ -106,6 +174,8 @@ Shaft::Shaft(const Ball& from, const Ball& to) : start_m_(from.centre_m) {
   aside_ = axis_.cross(across_);
   low_m_ = -from.radius_m;
   high_m_ = length + to.radius_m;
+  first_m_ = from.radius_m;
+  last_m_ = length - to.radius_m;
   // The cone about both balls; where one holds the other, the larger ball's cylinder.
   const double slope = length > 0.0 ? (to.radius_m - from.radius_m) / length : 1.0;
   if (std::abs(slope) < 0.7) {
@@ -137,6 +207,46 @@ bool Shaft::may_meet(const TriangleCorners& triangle) const {
     widest = std::max(widest, radius_m_ + widening_ * polygon.corner[i].z());
   }
   return polygon.count > 0 && distance_from_origin(polygon) <= widest;
+}
+
+bool Shaft::may_meet(const Ball& ball) const {
+  const Vec3 from_start = ball.centre_m - start_m_;
+  const double along = axis_.dot(from_start), r = ball.radius_m;
+  if (along + r < low_m_ || along - r > high_m_) return false;
+  const double widest = radius_m_ + std::max(widening_ * std::max(along - r, low_m_),
+                                             widening_ * std::min(along + r, high_m_));
+  const double reach = widest + r;
+  return (from_start - along * axis_).squaredNorm() <= reach * reach;
+}
+
+bool Shaft::may_meet(const Occluder& occluder) const {
+  return may_meet(occluder.ball) &&
+         std::any_of(occluder.triangles.begin(), occluder.triangles.end(),
+                     [&](const TriangleCorners& triangle) { return may_meet(triangle); });
+}
+
+// A disc at a place along the axis is inside a half-space if a linear inequality of the place
+// holds.
+bool Shaft::is_blocked_by(const Occluder& occluder) const {
+  if (occluder.faces.empty()) return false;
+  double low = first_m_, high = last_m_;
+  bool outside = false;
+  for (const Occluder::Face& face : occluder.faces) {
+    const double beyond_m = face.normal.dot(end_.centre_m) - end_.radius_m - face.offset_m;
+    outside = outside || beyond_m > 1e-3 * occluder.ball.radius_m;
+    const double cosine = face.normal.dot(axis_);
+    const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+    const double gap = face.offset_m - face.normal.dot(start_m_) - radius_m_ * sine;
+    const double growth = cosine + widening_ * sine;  // gap ≥ growth · place
+    if (growth > 0.0) {
+      high = std::min(high, gap / growth);
+    } else if (growth < 0.0) {
+      low = std::max(low, gap / growth);
+    } else if (gap < 0.0) {
+      return false;
+    }
+  }
+  return outside && low <= high;
 }
 
 void find_shadows(const TraceableScene& scene, std::span<const ShadowRay> rays,

@@ -1,5 +1,5 @@
-// Occlusion between a flat patch of surface and an aperture: proofs that nothing does, and shadow
-// rays where something may.
+// Occlusion between a flat patch of surface and an aperture: proofs that nothing is in between, or
+// that something is in the way of everything, and shadow rays elsewhere.
 #pragma once
 
 #include <array>
@@ -13,15 +13,28 @@ namespace photorque {
 
 using TriangleCorners = std::array<Vec3, 3>;  // body frame [m]
 
-// The triangles of a scene that can shade a plane: all that reach above it.
-std::vector<TriangleCorners> triangles_above(const Scene& scene, const Vec3& plane_point_m,
-                                             const Vec3& plane_normal);
-
 // A sphere with its inside, in the body frame.
 struct Ball {
   Vec3 centre_m;
   double radius_m;
 };
+
+// Triangles of one part of the scene, near each other.
+struct Occluder {
+  // The half-space of points p with normal · p ≤ offset_m.
+  struct Face {
+    Vec3 normal;
+    double offset_m;
+  };
+
+  std::vector<TriangleCorners> triangles;
+  Ball ball;                // holds them
+  std::vector<Face> faces;  // of a closed convex body, whose surface they are; else empty
+};
+
+// What can shade a plane: the triangles of a scene that reach above it.
+std::vector<Occluder> occluders_above(const Scene& scene, const Vec3& plane_point_m,
+                                      const Vec3& plane_normal);
 
 // The convex hull of two balls: all straight lines between them.
 class Shaft {
@@ -32,10 +45,19 @@ class Shaft {
   // between the planes that end the shaft, seen along its axis, is further away from the axis than
   // the shaft is wide at its widest there.
   bool may_meet(const TriangleCorners& triangle) const;
+  bool may_meet(const Occluder& occluder) const;
+  // True proves that every straight line from a point of one ball to a point of the other goes
+  // through the surface of the closed convex body: a disc across the shaft is inside it, and the
+  // second ball is outside.
+  bool is_blocked_by(const Occluder& occluder) const;
 
  private:
+  bool may_meet(const Ball& ball) const;
+
   Vec3 start_m_, axis_, across_, aside_;
+  Ball end_;
   double low_m_, high_m_;       // along the axis, from start_m_
+  double first_m_, last_m_;     // between the balls, likewise; none where last_m_ < first_m_
   double radius_m_, widening_;  // of the shaft: radius_m_ + widening_ · along, within the ends
 };
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/errors.h"
 #include "raytrace/tracing/traceable_scene_data.h"
@@ -45,6 +46,34 @@ bool is_black(const OpticalSurface& surface, int bands) {
                      [](double fraction) { return fraction == 1.0; });
 }
 
+// Gives all triangles of a flat part the plane of the largest. Returns whether the part is flat.
+bool flatten(std::span<const Vec3> vertices_m, const Mesh& mesh, double scene_radius_m,
+             std::span<TrianglePlane> planes) {
+  const double rounding_m = 1e-12 * scene_radius_m;
+  size_t largest = 0;
+  double most_m2 = 0.0;
+  for (size_t i = 0; i < planes.size(); ++i) {
+    const auto& [a, b, c] = mesh.triangles[i];
+    const Vec3 edge = vertices_m[b] - vertices_m[a];
+    const double area_m2 = edge.cross(vertices_m[c] - vertices_m[a]).norm();
+    if (area_m2 > most_m2) {
+      most_m2 = area_m2;
+      largest = i;
+    }
+  }
+  const TrianglePlane plane = planes[largest];
+  const Vec3 normal(plane.normal[0], plane.normal[1], plane.normal[2]);
+  for (size_t i = 0; i < planes.size(); ++i) {
+    const TrianglePlane& other = planes[i];
+    if (normal.dot(Vec3(other.normal[0], other.normal[1], other.normal[2])) < 0.0) return false;
+    for (const uint32_t vertex : mesh.triangles[i]) {
+      if (std::abs(normal.dot(vertices_m[vertex]) - plane.offset_m) > rounding_m) return false;
+    }
+  }
+  std::fill(planes.begin(), planes.end(), plane);
+  return true;
+}
+
 // Adds one instance to Embree in single precision and its planes in double precision.
 void add_instance(TraceableScene::Data& data, const Instance& instance) {
   const Mesh& mesh = data.scene.meshes[instance.mesh];
@@ -81,6 +110,9 @@ void add_instance(TraceableScene::Data& data, const Instance& instance) {
     const Vec3 normal = length > 0.0 ? Vec3(cross / (mirrored ? -length : length)) : Vec3::UnitZ();
     data.planes.push_back({{normal.x(), normal.y(), normal.z()}, normal.dot(placed[a])});
   }
+  const bool flat = flatten(placed, mesh, data.radius_m,
+                            std::span(data.planes).subspan(data.first_triangle.back()));
+  data.flat.push_back(flat ? 1 : 0);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(data.embree, geometry);  // its id is the instance's index: both count from 0
   rtcReleaseGeometry(geometry);

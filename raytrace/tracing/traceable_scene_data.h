@@ -28,6 +28,7 @@ struct TraceableScene::Data {
   int packet_width = 8;                  // rays per packet that this machine's Embree runs natively
   std::vector<uint32_t> first_triangle;  // per instance, into `planes`
   std::vector<TrianglePlane> planes;
+  std::vector<uint8_t> flat;  // 1: all triangles of the instance have one plane, to all digits
   // Properties that hits need often, numbered by side().
   std::array<std::vector<double>, max_bands> absorbed_fraction;  // [band][side], at every angle
   std::vector<uint8_t> black;  // 1: the side absorbs everything and does nothing else

@@ -1,6 +1,7 @@
 #include "receivers/gather/gather.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include "core/errors.h"
@@ -59,13 +60,17 @@ Gathered gather_on(const Gathering& gathering, const FluxMapReceiver& map,
                    const GatherOptions& options) {
   constexpr int max_points = 1 << 14;
   const FluxEntries flux(gathering.plane(), map);
-  const OpenLight open_light(gathering.plane(), flux, Gathering::tile_side);
+  const OpenLight open_light(gathering.plane(), flux);
   const std::vector<TileSight>& sights = gathering.sights();
   std::vector<double> open_W(map.direct_entries(), 0.0), bound_W(map.direct_entries(), 0.0);
   std::vector<size_t> open(sights.size(), 0);
   parallel_for(sights.size(), options.threads, [&](size_t t) {
+    std::map<BinTile, OpenLight::Lamps> tiles;
     for (const OpenTile& tile : sights[t].open) {
-      open[t] += open_light.add(tile.tile, tile.ball, gathering.lamp(tile.lamp), {open_W, bound_W});
+      tiles[tile.tile].push_back(&gathering.lamp(tile.lamp));
+    }
+    for (const auto& [tile, lamps] : tiles) {
+      open[t] += open_light.add(tile, lamps, {open_W, bound_W});
     }
   });
   Gathered result;

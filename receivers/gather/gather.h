@@ -1,10 +1,10 @@
 // Direct light on a flat surface, and its torque, gathered from the surface's side.
 //
 // Between a bin and an aperture either provably nothing stands, and the light is a quadrature
-// (raytrace/direct/disc_light.h) without noise, or something may, and shadow rays to scrambled
-// Sobol points of aperture and bin are weighed. The proof is by shafts: the convex hull of two
-// balls about the bins and about the part of the aperture that can light them, tested against
-// triangles, for smaller and smaller groups of bins.
+// (raytrace/direct/disc_light.h) without noise, or a convex body provably stands before all of the
+// aperture, or shadow rays to scrambled Sobol points of aperture and bin are weighed. The proofs
+// are by shafts: the convex hull of two balls about the bins and about the part of the aperture
+// that can light them, tested against bodies and triangles, for smaller and smaller groups of bins.
 //
 // Source of the idea: E. A. Haines, J. R. Wallace, "Shaft Culling for Efficient Ray-Cast Radiosity"
 // (1991).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace photorque {
 
@@ -36,6 +37,26 @@ Vec3 FirstContact::by_law(const Vec3& direction, const Vec3& normal) const {
   const Bsdf& bsdf = *surface_.bsdf;
   const double lit_emission = front_ ? bsdf.front_emission : 1.0 - bsdf.front_emission;
   return kept - bsdf.reemitted * absorbed * (2.0 * lit_emission - 1.0) * lambertian_mean * normal;
+}
+
+std::vector<std::shared_ptr<const DiscLight>> lights_of(std::span<const Beam> beams) {
+  std::map<const Emitter*, std::shared_ptr<const DiscLight>> known;
+  std::vector<std::shared_ptr<const DiscLight>> different, lights;
+  for (const Beam& beam : beams) {
+    auto& light = known[beam.emitter.get()];
+    if (!light) {
+      light = std::make_shared<const DiscLight>(*beam.emitter, *beam.aperture);
+      const auto same = std::find_if(different.begin(), different.end(),
+                                     [&](const auto& other) { return light->same_as(*other); });
+      if (same != different.end()) {
+        light = *same;
+      } else {
+        different.push_back(light);
+      }
+    }
+    lights.push_back(light);
+  }
+  return lights;
 }
 
 PlacedLamp::PlacedLamp(const Beam& beam, std::shared_ptr<const DiscLight> light,

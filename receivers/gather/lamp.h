@@ -3,6 +3,8 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "raytrace/direct/disc_light.h"
 #include "raytrace/scene.h"
@@ -49,6 +51,9 @@ class FirstContact {
   int bands_;
   double specular_ = 0.0, diffuse_ = 0.0, transmitted_ = 0.0;
 };
+
+// The light of each beam; beams that shine alike share one, and its tables.
+std::vector<std::shared_ptr<const DiscLight>> lights_of(std::span<const Beam> beams);
 
 // Where the light of a beam can come from and get to.
 class PlacedLamp {

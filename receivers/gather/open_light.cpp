@@ -22,77 +22,129 @@ Integral<double> checked_mean(const Function& f) {
 
 void FluxEntries::add(double power_W, const GatherLamp& lamp, size_t bin, uint32_t instance,
                       std::span<double> entries) const {
-  const OpticalSurface& surface = plane_.surface(instance);
   for (size_t band = 0; band < static_cast<size_t>(map_.bands().count()); ++band) {
-    const size_t at = map_.entry(bin, band);
-    const double in_band_W = power_W * lamp.fraction()[band];
-    entries[at] += in_band_W;
-    entries[at + 1] += in_band_W * surface.absorbed[band];
+    add(power_W * lamp.fraction()[band], band, bin, instance, entries);
   }
 }
 
-OpenLight::OpenLight(const GatherPlane& plane, const FluxEntries& flux, int tile_side)
-    : plane_(plane), flux_(flux), tiles_(plane.grid(), tile_side) {}
+OpenLight::OpenLight(const GatherPlane& plane, const FluxEntries& flux)
+    : plane_(plane), flux_(flux), tiles_(plane.grid()) {}
 
-size_t OpenLight::add(const BinTile& tile, const Ball& ball, const GatherLamp& lamp,
-                      const OpenEntries& entries) const {
-  Sides sides;
-  return add(tile, ball, lamp, sides, entries);
+size_t OpenLight::add(const BinTile& tile, const Lamps& lamps, const OpenEntries& entries) const {
+  LampSides sides;
+  return add(tile, lamps, sides, entries);
 }
 
-size_t OpenLight::add(const BinTile& tile, const Ball& ball, const GatherLamp& lamp, Sides& sides,
+size_t OpenLight::add(const BinTile& tile, const Lamps& lamps, LampSides& sides,
                       const OpenEntries& entries) const {
-  const double tolerance_W_m2 = tolerance * lamp.typical_W_m2(ball);
-  const double turns = 2.0 * ball.radius_m / lamp.scale_m(ball);
-  if (lamp.smooth_over(ball)) {
-    for (const size_t nodes : tiles_.attempts(tile, turns)) {
-      const TileMeans means =
-          tiles_.interpolate<double>(tile, nodes, [&](double column, double row) {
-            return lamp.irradiance_W_m2(plane_.point_m(column, row));
-          });
-      if (means.error > tolerance_W_m2) continue;
-      return add_smooth(tile, means, lamp, tolerance_W_m2, entries);
+  const Ball ball = plane_.ball_of(tile);
+  std::map<std::vector<size_t>, Lamps> smooth;  // by attempts
+  Lamps rest;
+  for (const GatherLamp* lamp : lamps) {
+    std::vector<size_t> attempts;
+    if (lamp->smooth_over(ball)) {
+      attempts = tiles_.attempts(tile, 2.0 * ball.radius_m / lamp->scale_m(ball));
     }
-  }
-  if (tile.count() == 1) {
-    const size_t bin = plane_.bin_at(tile.column, tile.row);
-    const auto patches = plane_.patches().of(bin);
-    for (const SurfacePatch& patch : patches) {
-      const Integral<double> power =
-          plane_.whole(bin) ? power_W(tile.column, tile.row, lamp, tolerance_W_m2, sides)
-                            : power_W(patch, lamp, tolerance_W_m2);
-      add_patch(power, patch, bin, lamp, entries);
-    }
-    return patches.empty() ? 0 : 1;
+    (attempts.empty() ? rest : smooth[attempts]).push_back(lamp);
   }
   size_t open = 0;
+  for (const auto& [attempts, some] : smooth) {
+    if (const auto means = interpolate(tile, ball, attempts, some)) {
+      open += add_smooth(tile, ball, *means, some, entries);
+    } else {
+      rest.insert(rest.end(), some.begin(), some.end());
+    }
+  }
+  if (rest.empty()) return open;
+  if (tile.count() == 1) {
+    for (const GatherLamp* lamp : rest) open += add_bin(tile, ball, *lamp, sides[lamp], entries);
+    return open;
+  }
   const auto [low, high] = tile.halves();
   for (const BinTile& half : {low, high}) {
+    Lamps lit;
     const Ball half_ball = plane_.ball_of(half);
-    if (!lamp.misses(half_ball)) open += add(half, half_ball, lamp, sides, entries);
+    std::copy_if(rest.begin(), rest.end(), std::back_inserter(lit),
+                 [&](const GatherLamp* lamp) { return !lamp->misses(half_ball); });
+    if (!lit.empty()) open += add(half, lit, sides, entries);
   }
   return open;
 }
 
-size_t OpenLight::add_smooth(const BinTile& tile, const TileMeans& means, const GatherLamp& lamp,
-                             double tolerance_W_m2, const OpenEntries& entries) const {
+std::optional<OpenLight::BandMeans> OpenLight::interpolate(const BinTile& tile, const Ball& ball,
+                                                           std::span<const size_t> attempts,
+                                                           const Lamps& lamps) const {
+  double tolerance_W_m2 = 0.0;
+  for (const GatherLamp* lamp : lamps) tolerance_W_m2 += tolerance * lamp->typical_W_m2(ball);
+  const auto bands = static_cast<size_t>(plane_.bands().count());
+  for (const size_t nodes : attempts) {
+    const auto points = static_cast<Eigen::Index>(nodes);
+    Eigen::MatrixXd one(points, points);
+    BandMeans means(bands, {Eigen::MatrixXd::Zero(points, points), 0.0});
+    for (const GatherLamp* lamp : lamps) {
+      lamp->fill_irradiance(plane_, tile, tiles_.fractions(nodes), one);
+      for (size_t band = 0; band < bands; ++band) {
+        means[band].value += lamp->fraction()[band] * one;
+      }
+    }
+    double error = 0.0;
+    for (auto& band : means) {
+      band.value = tiles_.means_of(tile, band.value, band.error);
+      error += band.error;
+    }
+    if (error > tolerance_W_m2) continue;
+    for (const GatherLamp* lamp : lamps) {
+      for (size_t band = 0; band < bands; ++band) {
+        means[band].error += lamp->fraction()[band] * lamp->table_error_W_m2();
+      }
+    }
+    return means;
+  }
+  return std::nullopt;
+}
+
+size_t OpenLight::add_smooth(const BinTile& tile, const Ball& ball, const BandMeans& means,
+                             const Lamps& lamps, const OpenEntries& entries) const {
   size_t open = 0;
   for (int row = 0; row < tile.rows; ++row) {
     for (int column = 0; column < tile.columns; ++column) {
       const size_t bin = plane_.bin_at(tile.column + column, tile.row + row);
       const auto patches = plane_.patches().of(bin);
-      for (const SurfacePatch& patch : patches) {
-        const bool whole = patches.size() == 1 && !patch.triangle;
-        const Integral<double> power =
-            whole ? Integral<double>{patch.area_m2 * means.of(column, row),
-                                     patch.area_m2 * (means.error + lamp.table_error_W_m2())}
-                  : power_on_smooth_W(patch, lamp, tolerance_W_m2);
-        add_patch(power, patch, bin, lamp, entries);
+      if (patches.empty()) continue;
+      open += lamps.size();
+      if (plane_.whole(bin)) {
+        const SurfacePatch& patch = patches[0];
+        for (size_t band = 0; band < means.size(); ++band) {
+          const double power_W = patch.area_m2 * std::max(means[band].value(column, row), 0.0);
+          flux_.add(power_W, band, bin, patch.instance, entries.power_W);
+          flux_.add(patch.area_m2 * means[band].error, band, bin, patch.instance, entries.bound_W);
+        }
+        continue;
       }
-      open += patches.empty() ? 0 : 1;
+      for (const SurfacePatch& patch : patches) {
+        for (const GatherLamp* lamp : lamps) {
+          const double tolerance_W_m2 = tolerance * lamp->typical_W_m2(ball);
+          add_patch(power_on_smooth_W(patch, *lamp, tolerance_W_m2), patch, bin, *lamp, entries);
+        }
+      }
     }
   }
   return open;
+}
+
+// A single bin, by its outline.
+size_t OpenLight::add_bin(const BinTile& tile, const Ball& ball, const GatherLamp& lamp,
+                          Sides& sides, const OpenEntries& entries) const {
+  const size_t bin = plane_.bin_at(tile.column, tile.row);
+  const auto patches = plane_.patches().of(bin);
+  const double tolerance_W_m2 = tolerance * lamp.typical_W_m2(ball);
+  for (const SurfacePatch& patch : patches) {
+    const Integral<double> power = plane_.whole(bin)
+                                       ? power_W(tile.column, tile.row, lamp, tolerance_W_m2, sides)
+                                       : power_W(patch, lamp, tolerance_W_m2);
+    add_patch(power, patch, bin, lamp, entries);
+  }
+  return patches.empty() ? 0 : 1;
 }
 
 // Power on a patch of a smooth tile.

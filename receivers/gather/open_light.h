@@ -1,14 +1,18 @@
 // Light on bins that nothing can shade, by quadrature. For the files of this folder only.
 //
-// Where the irradiance is smooth over a tile of bins, it is the polynomial through its values at
-// Chebyshev points, whose last coefficients bound its error; where they are too large, or an edge
-// of a beam crosses the tile, the tile is halved. Single bins that remain are integrated along the
-// outline of the surface in the bin (raytrace/direct/disc_light.h), which edges cut at known
-// points.
+// Where the irradiance of lamps is smooth over a tile of bins, their sum is the polynomial through
+// its values at Chebyshev points, whose last coefficients bound its error; where they are too
+// large, or an edge of a beam crosses the tile, the tile is halved. Single bins that remain are
+// integrated along the outline of the surface in the bin (raytrace/direct/disc_light.h), which
+// edges cut at known points.
 #pragma once
 
+#include <map>
+#include <optional>
 #include <span>
 #include <unordered_map>
+#include <vector>
+
 #include "receivers/flux_map.h"
 #include "receivers/gather/quadrature.h"
 
@@ -19,7 +23,14 @@ class FluxEntries {
  public:
   FluxEntries(const GatherPlane& plane, const FluxMapReceiver& map) : plane_(plane), map_(map) {}
 
-  // Adds a power of a lamp, band by band, and the part that an instance's surface absorbs.
+  // Adds the power in a band, and the part of it that an instance's surface absorbs.
+  void add(double power_W, size_t band, size_t bin, uint32_t instance,
+           std::span<double> entries) const {
+    const size_t at = map_.entry(bin, band);
+    entries[at] += power_W;
+    entries[at + 1] += power_W * plane_.surface(instance).absorbed[band];
+  }
+  // Adds a power of a lamp, band by band.
   void add(double power_W, const GatherLamp& lamp, size_t bin, uint32_t instance,
            std::span<double> entries) const;
 
@@ -40,25 +51,32 @@ class OpenLight {
   // the lamp's light).
   static constexpr double tolerance = 3e-7;
 
-  // The tiles have at most `tile_side` bins a side. `plane` and `flux` must outlive this.
-  OpenLight(const GatherPlane& plane, const FluxEntries& flux, int tile_side);
+  using Lamps = std::vector<const GatherLamp*>;
 
-  // Adds the light of a lamp on all bins of a tile to `entries`, see FluxEntries.
-  // `ball` holds the tile. Returns the number of bins with a surface.
-  size_t add(const BinTile& tile, const Ball& ball, const GatherLamp& lamp,
-             const OpenEntries& entries) const;
+  // `plane` and `flux` must outlive this.
+  OpenLight(const GatherPlane& plane, const FluxEntries& flux);
+
+  // Adds the light of some lamps on all bins of a tile to `entries`, see FluxEntries. Returns the
+  // number of pairs of a bin with a surface and a lamp.
+  size_t add(const BinTile& tile, const Lamps& lamps, const OpenEntries& entries) const;
 
  private:
   // Contributions of the sides of bins to their power, each for the two bins that share it; see
-  // DiscLight::along_edge_W(). Of one lamp.
+  // DiscLight::along_edge_W(). By lamp.
   using Sides = std::unordered_map<uint64_t, Integral<double>>;
+  using LampSides = std::map<const GatherLamp*, Sides>;
 
-  using TileMeans = ChebyshevTiles::Means<double>;
+  // Mean irradiance on the bins of a tile in each band, column by row, with errors.
+  using BandMeans = std::vector<Integral<Eigen::MatrixXd>>;
 
-  size_t add(const BinTile& tile, const Ball& ball, const GatherLamp& lamp, Sides& sides,
+  size_t add(const BinTile& tile, const Lamps& lamps, LampSides& sides,
              const OpenEntries& entries) const;
-  size_t add_smooth(const BinTile& tile, const TileMeans& means, const GatherLamp& lamp,
-                    double tolerance_W_m2, const OpenEntries& entries) const;
+  std::optional<BandMeans> interpolate(const BinTile& tile, const Ball& ball,
+                                       std::span<const size_t> attempts, const Lamps& lamps) const;
+  size_t add_smooth(const BinTile& tile, const Ball& ball, const BandMeans& means,
+                    const Lamps& lamps, const OpenEntries& entries) const;
+  size_t add_bin(const BinTile& tile, const Ball& ball, const GatherLamp& lamp, Sides& sides,
+                 const OpenEntries& entries) const;
   Integral<double> power_on_smooth_W(const SurfacePatch& patch, const GatherLamp& lamp,
                                      double tolerance_W_m2) const;
   Integral<double> power_W(const SurfacePatch& patch, const GatherLamp& lamp,

@@ -22,18 +22,43 @@ Vec2 cell_of(const SurfaceGrid& grid, const Vec3& position_m) {
       (grid.v_axis_body.dot(position_m) - grid.v_low) / (grid.v_high - grid.v_low) * grid.height};
 }
 
-// A fan of triangles for every piece of a face.
-void add_pieces(const SurfaceGrid& grid, const SurfaceFace& face, std::vector<CellPiece>& pieces) {
+// What instances are in each bin.
+struct BinContent {
+  static constexpr uint32_t none = ~0u, several = none - 1;
+  std::vector<uint32_t> instance;  // by bin
+
+  BinContent(const SurfaceGrid& grid, std::span<const SurfaceFace> faces)
+      : instance(grid.bins(), none) {
+    for (const SurfaceFace& face : faces) {
+      clip_face(grid, face, [&](size_t bin, std::span<const Vec2>) {
+        uint32_t& here = instance[bin];
+        here = here == none || here == face.instance ? face.instance : several;
+      });
+    }
+  }
+
+  template <typename Add>  // (bin, weights of the corners of a convex polygon)
+  static void clip_face(const SurfaceGrid& grid, const SurfaceFace& face, const Add& add) {
+    std::array<Vec2, 3> corners;
+    for (size_t k = 0; k < 3; ++k) corners[k] = cell_of(grid, face.corner_body_m[k]);
+    clip_to_cells(corners, grid.width, grid.height, [&](int column, int row, auto polygon) {
+      const size_t bin =
+          static_cast<size_t>(row) * static_cast<size_t>(grid.width) + static_cast<size_t>(column);
+      if (grid.area_m2[bin] > 0.0) add(bin, polygon);
+    });
+  }
+};
+
+// A fan of triangles for every piece of a face in the bins that are `wanted`.
+void add_pieces(const SurfaceGrid& grid, const SurfaceFace& face, const std::vector<bool>& wanted,
+                std::vector<CellPiece>& pieces) {
   // No structured binding: Clang 14 captures none.
   const Vec3 &a = face.corner_body_m[0], &b = face.corner_body_m[1], &c = face.corner_body_m[2];
   const auto place = [&](const Vec2& weight) {
     return Vec3(a + weight.x() * (b - a) + weight.y() * (c - a));
   };
-  const std::array<Vec2, 3> corners = {cell_of(grid, a), cell_of(grid, b), cell_of(grid, c)};
-  clip_to_cells(corners, grid.width, grid.height, [&](int column, int row, auto polygon) {
-    const size_t bin =
-        static_cast<size_t>(row) * static_cast<size_t>(grid.width) + static_cast<size_t>(column);
-    if (!(grid.area_m2[bin] > 0.0)) return;
+  BinContent::clip_face(grid, face, [&](size_t bin, std::span<const Vec2> polygon) {
+    if (!wanted[bin]) return;
     const Vec3 origin = place(polygon[0]);
     for (size_t i = 2; i < polygon.size(); ++i) {
       const Vec3 edge1 = place(polygon[i - 1]) - origin, edge2 = place(polygon[i]) - origin;
@@ -57,9 +82,10 @@ std::vector<uint32_t> sort_by_bin(std::vector<CellPiece>& pieces, size_t bins) {
   return begin;
 }
 
-// The whole bin as one parallelogram, if one instance fills it once.
-bool fill_whole(const SurfaceGrid& grid, const BinPatches& plane, size_t bin,
-                std::span<const CellPiece> pieces, SurfacePatch& whole) {
+// The whole bin as one parallelogram, if its only instance fills it once.
+bool fill_whole(const SurfaceGrid& grid, const BinPatches& plane, size_t bin, uint32_t instance,
+                SurfacePatch& whole) {
+  if (instance >= BinContent::several) return false;
   const double du = (grid.u_high - grid.u_low) / grid.width;
   const double dv = (grid.v_high - grid.v_low) / grid.height;
   // The plane of the faces may be inclined to the plane of the grid.
@@ -68,10 +94,7 @@ bool fill_whole(const SurfaceGrid& grid, const BinPatches& plane, size_t bin,
     return Vec3(axis - plane.normal.dot(axis) / lean * grid.normal_body);
   };
   const double full_m2 = du * dv / std::abs(lean);
-  const bool same = std::all_of(pieces.begin(), pieces.end(), [&](const CellPiece& piece) {
-    return piece.patch.instance == pieces[0].patch.instance;
-  });
-  if (!same || std::abs(grid.area_m2[bin] - full_m2) > 1e-9 * full_m2) return false;
+  if (std::abs(grid.area_m2[bin] - full_m2) > 1e-9 * full_m2) return false;
   const auto width = static_cast<size_t>(grid.width);
   const size_t column = bin % width, row = bin / width;
   const double u = grid.u_low + du * static_cast<double>(column);
@@ -82,7 +105,7 @@ bool fill_whole(const SurfaceGrid& grid, const BinPatches& plane, size_t bin,
            du * along(grid.u_axis_body),
            dv * along(grid.v_axis_body),
            full_m2,
-           pieces[0].patch.instance,
+           instance,
            false};
   return true;
 }
@@ -113,23 +136,29 @@ BinPatches bin_patches(const Scene& scene, const SurfaceGrid& grid) {
   BinPatches all;
   all.point_m = faces[0].corner_body_m[0];
   Vec3 area = Vec3::Zero();
-  std::vector<CellPiece> pieces;
-  for (const SurfaceFace& face : faces) {
-    area += face.area_body_m2;
-    add_pieces(grid, face, pieces);
-  }
+  for (const SurfaceFace& face : faces) area += face.area_body_m2;
   all.normal = area.normalized();
+  const BinContent content(grid, faces);
+  std::vector<bool> in_part(grid.bins());
+  SurfacePatch whole;
+  for (size_t bin = 0; bin < grid.bins(); ++bin) {
+    in_part[bin] = content.instance[bin] != BinContent::none &&
+                   !fill_whole(grid, all, bin, content.instance[bin], whole);
+  }
+  std::vector<CellPiece> pieces;
+  if (std::find(in_part.begin(), in_part.end(), true) != in_part.end()) {
+    for (const SurfaceFace& face : faces) add_pieces(grid, face, in_part, pieces);
+  }
   const std::vector<uint32_t> begin = sort_by_bin(pieces, grid.bins());
+  all.patches.reserve(grid.bins());
   for (size_t bin = 0; bin < grid.bins(); ++bin) {
     all.first.push_back(static_cast<uint32_t>(all.patches.size()));
-    if (begin[bin] == begin[bin + 1]) continue;
-    const auto here = std::span(pieces).subspan(begin[bin], begin[bin + 1] - begin[bin]);
-    SurfacePatch whole;
-    if (fill_whole(grid, all, bin, here, whole)) {
+    if (content.instance[bin] == BinContent::none) continue;
+    if (!in_part[bin]) {
+      fill_whole(grid, all, bin, content.instance[bin], whole);
       all.patches.push_back(whole);
-    } else {
-      for (const CellPiece& piece : here) all.patches.push_back(piece.patch);
     }
+    for (uint32_t p = begin[bin]; p < begin[bin + 1]; ++p) all.patches.push_back(pieces[p].patch);
   }
   all.first.push_back(static_cast<uint32_t>(all.patches.size()));
   return all;
@@ -147,6 +176,21 @@ std::pair<BinTile, BinTile> BinTile::halves() const {
     high.rows -= low.rows;
   }
   return {low, high};
+}
+
+std::vector<BinTile> squares_of(const SurfaceGrid& grid) {
+  constexpr int most = 32;
+  const auto parts = [](int bins) { return (bins + most - 1) / most; };
+  const auto begin = [&](int bins, int part) { return bins * part / parts(bins); };
+  std::vector<BinTile> squares;
+  for (int j = 0; j < parts(grid.height); ++j) {
+    for (int i = 0; i < parts(grid.width); ++i) {
+      const int column = begin(grid.width, i), row = begin(grid.height, j);
+      squares.push_back(
+          {column, row, begin(grid.width, i + 1) - column, begin(grid.height, j + 1) - row});
+    }
+  }
+  return squares;
 }
 
 GatherPlane::GatherPlane(const TraceableScene& scene, const SurfaceGrid& grid, const Bands& bands,
@@ -195,6 +239,22 @@ std::pair<double, double> GatherLamp::heights_m(const GatherPlane& plane) const 
     }
   }
   return heights;
+}
+
+void GatherLamp::fill_irradiance(const GatherPlane& plane, const BinTile& tile,
+                                 std::span<const double> fraction, Eigen::MatrixXd& W_m2) const {
+  const auto place = [&](int columns, int rows) {
+    return emitter_from_body().point(plane.point_m(tile.column + columns, tile.row + rows));
+  };
+  const Vec3 corner = place(0, 0);
+  const Vec3 across = place(tile.columns, 0) - corner, along = place(0, tile.rows) - corner;
+  for (size_t j = 0; j < fraction.size(); ++j) {
+    const Vec3 start = corner + fraction[j] * along;
+    for (size_t i = 0; i < fraction.size(); ++i) {
+      W_m2(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+          irradiance_at_W_m2(start + fraction[i] * across);
+    }
+  }
 }
 
 ArrivingLight GatherLamp::arriving(const Vec3& at_body_m) const {

@@ -2,6 +2,7 @@
 // the lamps over it. For the files of this folder only.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -50,10 +51,14 @@ BinPatches bin_patches(const Scene& scene, const SurfaceGrid& grid);
 struct BinTile {
   int column, row, columns, rows;
 
+  auto operator<=>(const BinTile&) const = default;
   int count() const { return columns * rows; }
   // Two halves of a tile of at least two bins.
   std::pair<BinTile, BinTile> halves() const;
 };
+
+// A grid cut into squares of at most 32 bins a side, of even sizes: the items of parallel work.
+std::vector<BinTile> squares_of(const SurfaceGrid& grid);
 
 // One side of the flat surface under a grid. Body frame.
 class GatherPlane {
@@ -108,10 +113,12 @@ class GatherLamp : public PlacedLamp {
   const Vec3& normal_emitter() const { return normal_emitter_; }  // of the lit side
   // Irradiance without shadow at a point of the plane.
   double irradiance_W_m2(const Vec3& at_body_m) const {
-    const Vec3 at = emitter_from_body().point(at_body_m);
-    return table_ ? table_->irradiance_W_m2(at, normal_emitter_)
-                  : light().irradiance_W_m2(at, normal_emitter_);
+    return irradiance_at_W_m2(emitter_from_body().point(at_body_m));
   }
+  // Irradiance without shadow on a tile at places (column, row) in [0, 1]² of all pairs of
+  // `fraction`.
+  void fill_irradiance(const GatherPlane& plane, const BinTile& tile,
+                       std::span<const double> fraction, Eigen::MatrixXd& W_m2) const;
   // Irradiance and flow of momentum without shadow at a point of the plane, body frame.
   ArrivingLight arriving(const Vec3& at_body_m) const;
   // Error of irradiance_W_m2(), as far as it is the table's.
@@ -136,6 +143,11 @@ class GatherLamp : public PlacedLamp {
   bool misses(const Ball& ball) const;
 
  private:
+  double irradiance_at_W_m2(const Vec3& at_m) const {  // emitter's frame
+    return table_ ? table_->irradiance_W_m2(at_m, normal_emitter_)
+                  : light().irradiance_W_m2(at_m, normal_emitter_);
+  }
+
   std::shared_ptr<const IrradianceTable> table_;  // may be null
   Vec3 normal_emitter_;
   bool lights_front_ = false;

@@ -23,7 +23,7 @@ double remainder_of(const Eigen::MatrixXd& highest) {
 
 }  // namespace
 
-ChebyshevTiles::ChebyshevTiles(const SurfaceGrid& grid, int tile_side) {
+ChebyshevTiles::ChebyshevTiles(const SurfaceGrid& grid) {
   // All sizes of tiles that halving leads to.
   std::set<int> sizes;
   const std::function<void(int)> halve = [&](int side) {
@@ -31,39 +31,41 @@ ChebyshevTiles::ChebyshevTiles(const SurfaceGrid& grid, int tile_side) {
     halve(side / 2);
     halve(side - side / 2);
   };
-  for (const int bins : {grid.width, grid.height}) {
-    halve(std::min(bins, tile_side));
-    if (bins > tile_side && bins % tile_side > 0) halve(bins % tile_side);
+  for (const BinTile& square : squares_of(grid)) {
+    halve(square.columns);
+    halve(square.rows);
   }
-  for (const int side : sizes) {
-    for (size_t nodes = min_nodes; nodes <= max_nodes; ++nodes) {
-      const auto cells = static_cast<size_t>(side);
-      rules_[{nodes, cells}] = {chebyshev_cell_means(nodes, cells),
-                                chebyshev_coefficients(nodes).bottomRows(4)};
+  for (size_t nodes = step; nodes <= max_nodes; nodes += step) {
+    Rule& rule = rules_[nodes];
+    const Eigen::MatrixXd coefficients = chebyshev_coefficients(nodes);
+    rule.high_coefficients = coefficients.bottomRows(4);
+    for (size_t i = 0; i < nodes; ++i) rule.fraction.push_back(chebyshev_fraction(nodes, i));
+    for (const int side : sizes) {
+      rule.cell_means[side] = chebyshev_term_means(nodes, static_cast<size_t>(side)) * coefficients;
     }
   }
 }
 
 std::vector<size_t> ChebyshevTiles::attempts(const BinTile& tile, double scales) const {
-  constexpr size_t most_in_bin = 8, step = 2, tries = 3;
+  constexpr size_t most_in_bin = 8, tries = 3;
   const auto count = static_cast<double>(tile.count());
   const size_t most = tile.count() == 1
                           ? most_in_bin
                           : std::min(max_nodes, static_cast<size_t>(4.0 * std::sqrt(count)));
-  const auto fewest = min_nodes + static_cast<size_t>(std::min(3.0 * scales, 100.0));
+  const auto wanted = static_cast<size_t>(4.0 + std::min(3.0 * scales, 100.0));
   std::vector<size_t> nodes;
-  for (size_t n = fewest; n <= most && nodes.size() < tries; n += step) nodes.push_back(n);
+  for (size_t n = (wanted + step - 1) / step * step; n <= most && nodes.size() < tries; n += step) {
+    nodes.push_back(n);
+  }
   return nodes;
 }
 
 Eigen::MatrixXd ChebyshevTiles::means_of(const BinTile& tile, const Eigen::MatrixXd& values,
                                          double& error) const {
-  const auto nodes = static_cast<size_t>(values.rows());
-  const Rule& across = rules_.at({nodes, static_cast<size_t>(tile.columns)});
-  const Rule& along = rules_.at({nodes, static_cast<size_t>(tile.rows)});
-  error += remainder_of(across.high_coefficients * values) +
-           remainder_of(along.high_coefficients * values.transpose());
-  return across.cell_means * values * along.cell_means.transpose();
+  const Rule& rule = rules_.at(static_cast<size_t>(values.rows()));
+  error += remainder_of(rule.high_coefficients * values) +
+           remainder_of(rule.high_coefficients * values.transpose());
+  return rule.cell_means.at(tile.columns) * values * rule.cell_means.at(tile.rows).transpose();
 }
 
 }  // namespace photorque

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
+#include <set>
 
 #include "core/parallel.h"
 
@@ -12,31 +12,22 @@ namespace photorque {
 Gathering::Gathering(const TraceableScene& scene, const RigidTransform& lab_from_body,
                      std::span<const Beam> beams, const GatherSide& side, int threads, bool tables)
     : plane_(scene, side.grid, side.bands, side.side),
-      triangles_(triangles_above(scene.scene(), plane_.patches().point_m, plane_.normal())) {
+      occluders_(occluders_above(scene.scene(), plane_.patches().point_m, plane_.normal())) {
   const RigidTransform body_from_lab = lab_from_body.inverse();
-  // The LEDs of an array share one emitter and its tables.
-  std::map<const Emitter*, std::shared_ptr<const DiscLight>> lights;
-  for (const Beam& beam : beams) {
-    auto& light = lights[beam.emitter.get()];
-    if (!light) light = std::make_shared<DiscLight>(*beam.emitter, *beam.aperture);
-    lamps_.emplace_back(beam, light, body_from_lab, plane_);
+  const auto lights = lights_of(beams);
+  for (size_t i = 0; i < beams.size(); ++i) {
+    lamps_.emplace_back(beams[i], lights[i], body_from_lab, plane_);
   }
-  for (const auto& [emitter, light] : lights) {
-    if (tables) make_table(*light, threads);
+  if (tables) {
+    for (const auto& light : std::set(lights.begin(), lights.end())) make_table(*light, threads);
   }
-  // The bodies that may shade any bin, for every lamp.
-  std::vector<uint32_t> all(triangles_.size());
+  std::vector<uint32_t> all(occluders_.size());
   std::iota(all.begin(), all.end(), 0u);
-  std::vector<std::vector<uint32_t>> occluders(lamps_.size());
-  parallel_for(lamps_.size(), threads, [&](size_t lamp) {
-    const Ball whole = plane_.ball_of({0, 0, side.grid.width, side.grid.height});
-    occluders[lamp] = in_shaft(whole, lamps_[lamp], all);
-  });
-  const std::vector<BinTile> squares = tiles();
+  const std::vector<BinTile> squares = squares_of(side.grid);
   sights_.resize(squares.size());
   parallel_for(squares.size(), threads, [&](size_t t) {
     for (uint32_t lamp = 0; lamp < lamps_.size(); ++lamp) {
-      descend(squares[t], lamp, occluders[lamp], sights_[t]);
+      descend(squares[t], lamp, all, sights_[t]);
     }
   });
 }
@@ -66,36 +57,20 @@ void Gathering::make_table(const DiscLight& light, int threads) {
   for (GatherLamp* lamp : served) lamp->use(shared);
 }
 
-std::vector<BinTile> Gathering::tiles() const {
-  const SurfaceGrid& grid = plane_.grid();
-  std::vector<BinTile> squares;
-  for (int row = 0; row < grid.height; row += tile_side) {
-    for (int column = 0; column < grid.width; column += tile_side) {
-      squares.push_back({column, row, std::min(tile_side, grid.width - column),
-                         std::min(tile_side, grid.height - row)});
-    }
-  }
-  return squares;
-}
-
-std::vector<uint32_t> Gathering::in_shaft(const Ball& ball, const GatherLamp& lamp,
-                                          std::span<const uint32_t> candidates) const {
-  std::vector<uint32_t> kept;
-  if (candidates.empty()) return kept;
-  const Shaft shaft(ball, lamp.aperture_ball(ball));
-  for (const uint32_t t : candidates) {
-    if (shaft.may_meet(triangles_[t])) kept.push_back(t);
-  }
-  return kept;
-}
-
-// Splits a tile until nothing can shade it, or it is one bin.
+// Splits a tile until nothing can shade it, or something shades all of it, or it is one bin.
 void Gathering::descend(const BinTile& tile, uint32_t index, std::span<const uint32_t> candidates,
                         TileSight& sight) const {
   const GatherLamp& lamp = lamps_[index];
   const Ball ball = plane_.ball_of(tile);
   if (lamp.misses(ball)) return;
-  const std::vector<uint32_t> occluders = in_shaft(ball, lamp, candidates);
+  std::vector<uint32_t> occluders;
+  if (!candidates.empty()) {
+    const Shaft shaft(ball, lamp.aperture_ball(ball));
+    for (const uint32_t candidate : candidates) {
+      if (shaft.is_blocked_by(occluders_[candidate])) return;
+      if (shaft.may_meet(occluders_[candidate])) occluders.push_back(candidate);
+    }
+  }
   if (lamp.lights_front() && occluders.empty()) {
     sight.open.push_back({tile, ball, index});
     return;

@@ -41,8 +41,6 @@ struct TileSight {
 // The surface, the lamps and the bodies between them, at one attitude.
 class Gathering {
  public:
-  static constexpr int tile_side = 16;  // bins
-
   // With `tables`, lights that illuminate many bins get a table of their irradiance.
   Gathering(const TraceableScene& scene, const RigidTransform& lab_from_body,
             std::span<const Beam> beams, const GatherSide& side, int threads, bool tables);
@@ -54,14 +52,11 @@ class Gathering {
 
  private:
   void make_table(const DiscLight& light, int threads);
-  std::vector<BinTile> tiles() const;
-  std::vector<uint32_t> in_shaft(const Ball& ball, const GatherLamp& lamp,
-                                 std::span<const uint32_t> candidates) const;
   void descend(const BinTile& tile, uint32_t lamp, std::span<const uint32_t> candidates,
                TileSight& sight) const;
 
   GatherPlane plane_;
-  std::vector<TriangleCorners> triangles_;
+  std::vector<Occluder> occluders_;
   std::vector<GatherLamp> lamps_;
   std::vector<TileSight> sights_;
 };
@@ -92,16 +87,20 @@ template <typename Quantity>
 class ShadedSampler {
  public:
   ShadedSampler(const GatherPlane& plane, const GatherLamp& lamp, const Quantity& quantity,
-                size_t points, std::span<double> entries)
+                size_t points, std::span<const ShadedPair> pairs)
       : plane_(plane),
         lamp_(lamp),
         quantity_(quantity),
         points_(points),
-        entries_(entries),
         ray_offset_m_(shadow_ray_offset_m(plane.scene())),
-        body_from_emitter_(lamp.body_from_emitter().rotation.toRotationMatrix()) {}
+        body_from_emitter_(lamp.body_from_emitter().rotation.toRotationMatrix()),
+        scene_from_emitter_m_(lamp.body_from_emitter().translation_m -
+                              scene_centre_m(plane.scene())) {
+    for (const ShadedPair& pair : pairs) place(pair.bin);
+  }
 
-  uint64_t run(std::span<const ShadedPair> pairs, const SobolStream& stream) {
+  // Samples all pairs once with the points of `stream`. Returns the number of rays.
+  uint64_t run(const SobolStream& stream, std::span<double> entries) {
     std::array<uint32_t*, sobol_dimensions> out;
     for (size_t k = 0; k < sobol_dimensions; ++k) out[k] = samples_.bits[k].data();
     // Several bins share a block of points, or one bin takes several blocks.
@@ -109,53 +108,61 @@ class ShadedSampler {
     const size_t per_block = ray_block / in_block, blocks = points_ / in_block;
     uint64_t rays = 0;
     uint32_t block = 0;
-    for (size_t begin = 0; begin < pairs.size(); begin += per_block) {
-      const auto some = pairs.subspan(begin, std::min(per_block, pairs.size() - begin));
+    for (size_t begin = 0; begin < bins_.size(); begin += per_block) {
+      const auto some = std::span(bins_).subspan(begin, std::min(per_block, bins_.size() - begin));
       for (size_t pass = 0; pass < blocks; ++pass, ++block) {
         sobol_points(stream, block * ray_block, out);
         lamp_.light().emitter().emit(samples_, emitted_);
         count_ = 0;
-        for (size_t p = 0; p < some.size(); ++p) add_lines(some[p].bin, p * in_block, in_block);
+        for (size_t p = 0; p < some.size(); ++p) add_lines(some[p], p * in_block, in_block);
         rays += count_;
-        finish();
+        finish(entries);
       }
     }
     return rays;
   }
 
  private:
-  void place(size_t bin) {
-    placed_.clear();
+  // A bin, and its patches among `placed_`.
+  struct Bin {
+    uint32_t bin, first, end;
+    double area_m2;  // per point
+    bool directed;
+  };
+
+  void place(uint32_t bin) {
     const double area_m2 = plane_.grid().area_m2[bin];
-    const Mat3 rotation = lamp_.emitter_from_body().rotation.toRotationMatrix();
+    const Mat3 rotation = body_from_emitter_.transpose();
+    const auto first = static_cast<uint32_t>(placed_.size());
     for (const SurfacePatch& patch : plane_.patches().of(bin)) {
       placed_.push_back(
           {&patch, rotation * patch.origin_m + lamp_.emitter_from_body().translation_m,
            rotation * patch.edge1_m, rotation * patch.edge2_m, patch.area_m2 / area_m2});
     }
+    bins_.push_back({bin, first, static_cast<uint32_t>(placed_.size()),
+                     area_m2 / static_cast<double>(points_),
+                     lamp_.sampled_by_direction(placed_[first].origin_m.z())});
   }
 
-  const PlacedPatch& pick(double& s) const {
-    for (const PlacedPatch& placed : placed_) {
-      if (s < placed.fraction || &placed == &placed_.back()) {
-        s = std::min(s / placed.fraction, 1.0);
-        return placed;
+  const PlacedPatch& pick(const Bin& bin, double& s) const {
+    for (uint32_t p = bin.first; p + 1 < bin.end; ++p) {
+      if (s < placed_[p].fraction) {
+        s /= placed_[p].fraction;
+        return placed_[p];
       }
-      s -= placed.fraction;
+      s -= placed_[p].fraction;
     }
-    return placed_.back();
+    s = std::min(s / placed_[bin.end - 1].fraction, 1.0);
+    return placed_[bin.end - 1];
   }
 
   // Lines of one bin, from `count` points of the block.
-  void add_lines(size_t bin, size_t first, size_t count) {
-    place(bin);
-    const double area_m2 = plane_.grid().area_m2[bin] / static_cast<double>(points_);
-    const bool directed = lamp_.sampled_by_direction(placed_[0].origin_m.z());
-    const size_t dimension = directed ? 0 : 2;
+  void add_lines(const Bin& bin, size_t first, size_t count) {
+    const size_t dimension = bin.directed ? 0 : 2;
     for (size_t i = first; i < first + count; ++i) {
       double s = sobol_fraction(samples_.bits[dimension][i]);
       double t = sobol_fraction(samples_.bits[dimension + 1][i]);
-      const PlacedPatch& placed = placed_.size() == 1 ? placed_[0] : pick(s);
+      const PlacedPatch& placed = bin.end - bin.first == 1 ? placed_[bin.first] : pick(bin, s);
       if (placed.patch->triangle) {
         const double root = std::sqrt(s);
         s = root * (1.0 - t);
@@ -163,12 +170,12 @@ class ShadedSampler {
       }
       const Vec3 at = placed.origin_m + s * placed.edge1_m + t * placed.edge2_m;
       Vec3 from;
-      const double density = directed ? weigh_direction(i, at, from) : weigh_point(i, at, from);
+      const double density = bin.directed ? weigh_direction(i, at, from) : weigh_point(i, at, from);
       if (!(density > 0.0)) continue;
-      bin_[count_] = static_cast<uint32_t>(bin);
+      bin_[count_] = bin.bin;
       instance_[count_] = placed.patch->instance;
       contribution_[count_] =
-          quantity_.of({density * area_m2, at, from, placed.patch->instance}, lamp_);
+          quantity_.of({density * bin.area_m2, at, from, placed.patch->instance}, lamp_);
       add_ray(at, from);
     }
   }
@@ -189,10 +196,9 @@ class ShadedSampler {
   void add_ray(const Vec3& at, const Vec3& from) {
     const Vec3 start = at + ray_offset_m_ * lamp_.normal_emitter();
     const Vec3 between = from - start;
-    const double length = between.norm();
-    const Vec3 origin = body_from_emitter_ * start + lamp_.body_from_emitter().translation_m -
-                        scene_centre_m(plane_.scene());
-    const Vec3 direction = body_from_emitter_ * (between / length);
+    const double length = between.norm(), per_length = 1.0 / length;
+    const Vec3 origin = body_from_emitter_ * start + scene_from_emitter_m_;
+    const Vec3 direction = body_from_emitter_ * (per_length * between);
     ShadowRay& ray = shadow_[count_++];
     for (int k = 0; k < 3; ++k) {
       ray.origin_m[k] = static_cast<float>(origin[k]);
@@ -202,7 +208,7 @@ class ShadedSampler {
   }
 
   // Traces the lines; what neighbours bring to the same bin is added at once.
-  void finish() {
+  void finish(std::span<double> entries) {
     find_shadows(plane_.scene(), std::span(shadow_).first(count_), lit_);
     for (size_t i = 0; i < count_;) {
       typename Quantity::Value sum = contribution_[i] * 0.0;
@@ -213,7 +219,7 @@ class ShadedSampler {
         sum += contribution_[i];
         any = true;
       }
-      if (any) quantity_.add(sum, lamp_, bin_[begin], instance_[begin], entries_);
+      if (any) quantity_.add(sum, lamp_, bin_[begin], instance_[begin], entries);
     }
   }
 
@@ -221,9 +227,10 @@ class ShadedSampler {
   const GatherLamp& lamp_;
   const Quantity& quantity_;
   size_t points_;
-  std::span<double> entries_;
   double ray_offset_m_;
   Mat3 body_from_emitter_;
+  Vec3 scene_from_emitter_m_;
+  std::vector<Bin> bins_;
   std::vector<PlacedPatch> placed_;
   SampleBlock samples_;
   RayBlock emitted_;
@@ -249,14 +256,14 @@ std::vector<double> sample_shaded(const Gathering& gathering, const Quantity& qu
     for (size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
       const uint32_t lamp = pairs[begin].lamp;
       while (end < pairs.size() && pairs[end].lamp == lamp) ++end;
+      ShadedSampler<Quantity> sampler(gathering.plane(), gathering.lamp(lamp), quantity,
+                                      static_cast<size_t>(points),
+                                      std::span(pairs).subspan(begin, end - begin));
       for (int r = 0; r < options.replicates; ++r) {
         const uint64_t which = hash_words(hash_words(lamp, tile), static_cast<uint64_t>(r));
-        const auto entries =
-            std::span(sums).subspan(static_cast<size_t>(r) * open.size(), open.size());
-        ShadedSampler<Quantity> sampler(gathering.plane(), gathering.lamp(lamp), quantity,
-                                        static_cast<size_t>(points), entries);
         counted[tile] +=
-            sampler.run(std::span(pairs).subspan(begin, end - begin), {options.seed, which, 0});
+            sampler.run({options.seed, which, 0},
+                        std::span(sums).subspan(static_cast<size_t>(r) * open.size(), open.size()));
       }
     }
   });

@@ -59,7 +59,7 @@ class Torque {
 class OpenTorque {
  public:
   OpenTorque(const GatherPlane& plane, const Torque& torque)
-      : plane_(plane), torque_(torque), tiles_(plane.grid(), Gathering::tile_side) {
+      : plane_(plane), torque_(torque), tiles_(plane.grid()) {
     for (const int column : {0, plane.grid().width}) {
       for (const int row : {0, plane.grid().height}) {
         arm_m_ = std::max(arm_m_, (plane.point_m(column, row) - torque.about_m()).norm());
@@ -76,14 +76,15 @@ class OpenTorque {
     const double turns = 2.0 * ball.radius_m / lamp.scale_m(ball);
     if (const auto instance = only_instance(tile); instance && lamp.smooth_over(ball)) {
       for (const size_t nodes : tiles_.attempts(tile, turns)) {
-        const auto means = tiles_.interpolate<Vec3>(tile, nodes, [&](double column, double row) {
-          return torque_.density_N_m(plane_.point_m(column, row), lamp, *instance);
-        });
-        if (means.error > tolerance_N_m) continue;
+        double error = 0.0;
+        const std::array<Eigen::MatrixXd, torque_axes> means =
+            means_of(tile, nodes, lamp, *instance, error);
+        if (error > tolerance_N_m) continue;
         for (int row = 0; row < tile.rows; ++row) {
           for (int column = 0; column < tile.columns; ++column) {
             const size_t bin = plane_.bin_at(tile.column + column, tile.row + row);
-            add_bin(bin, means.of(column, row), means.error, torque_N_m, bound_N_m);
+            const Vec3 mean(means[0](column, row), means[1](column, row), means[2](column, row));
+            add_bin(bin, mean, error, torque_N_m, bound_N_m);
           }
         }
         return static_cast<size_t>(tile.count());
@@ -101,6 +102,29 @@ class OpenTorque {
 
  private:
   static constexpr double tolerance = 1e-6;
+
+  // Mean torques per area over the bins of a tile, and the error of all.
+  std::array<Eigen::MatrixXd, torque_axes> means_of(const BinTile& tile, size_t nodes,
+                                                    const GatherLamp& lamp, uint32_t instance,
+                                                    double& error) const {
+    const auto points = static_cast<Eigen::Index>(nodes);
+    const std::vector<double>& fraction = tiles_.fractions(nodes);
+    std::array<Eigen::MatrixXd, torque_axes> values;
+    for (auto& axis : values) axis.resize(points, points);
+    for (Eigen::Index j = 0; j < points; ++j) {
+      for (Eigen::Index i = 0; i < points; ++i) {
+        const Vec3 at_m =
+            plane_.point_m(tile.column + tile.columns * fraction[static_cast<size_t>(i)],
+                           tile.row + tile.rows * fraction[static_cast<size_t>(j)]);
+        const Vec3 density = torque_.density_N_m(at_m, lamp, instance);
+        for (size_t k = 0; k < torque_axes; ++k) {
+          values[k](i, j) = density[static_cast<Eigen::Index>(k)];
+        }
+      }
+    }
+    for (auto& axis : values) axis = tiles_.means_of(tile, axis, error);
+    return values;
+  }
 
   // The instance of a tile, if all of its bins are completely on one instance.
   std::optional<uint32_t> only_instance(const BinTile& tile) const {

@@ -79,7 +79,7 @@ TEST(Chebyshev, CellMeansOfAPolynomialAreExact) {
   };
   Eigen::VectorXd values(static_cast<Eigen::Index>(n));
   for (size_t i = 0; i < n; ++i) values(static_cast<Eigen::Index>(i)) = f(chebyshev_fraction(n, i));
-  const Eigen::VectorXd means = chebyshev_cell_means(n, cells) * values;
+  const Eigen::VectorXd means = chebyshev_term_means(n, cells) * chebyshev_coefficients(n) * values;
   for (size_t c = 0; c < cells; ++c) {
     const double low = static_cast<double>(c) / cells, high = static_cast<double>(c + 1) / cells;
     EXPECT_NEAR(means(static_cast<Eigen::Index>(c)), (whole(high) - whole(low)) / (high - low),

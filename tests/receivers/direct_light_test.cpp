@@ -8,6 +8,7 @@
 #include "raytrace/direct/disc_light.h"
 #include "raytrace/direct/irradiance_table.h"
 #include "raytrace/tracing/shadow.h"
+#include "tests/raytrace/test_scenes.h"
 #include "tests/receivers/gather_lamps.h"
 
 namespace photorque {
@@ -140,5 +141,50 @@ TEST(Shaft, NeverLosesATriangleThatALineCrosses) {
   EXPECT_EQ(crossed, 20000);
   EXPECT_GT(spared, 12000);  // it does leave out most of what is far away
 }
+
+// All lines between two balls that a convex body blocks go into it; a lamp within it is not
+// blocked.
+TEST(Shaft, BlocksOnlyWhatGoesThroughTheBody) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  const auto point = [&](double scale) {
+    return Vec3(scale * normal(random), scale * normal(random), scale * normal(random));
+  };
+  int blocked = 0, missed = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 low = point(0.5), high = low + point(1.0).cwiseAbs() + Vec3::Constant(0.05);
+    Scene scene;
+    fixtures::add(scene, fixtures::box(low, high), grey_surface("s", 0, 0), "box");
+    const auto occluders = occluders_above(scene, Vec3(0, 0, -100), Vec3::UnitZ());
+    ASSERT_EQ(occluders.size(), 1u);
+    ASSERT_EQ(occluders[0].faces.size(), 6u);
+    const Ball from{point(1.0), 0.2 * uniform(random)}, to{point(1.5), 0.2 * uniform(random)};
+    if (!Shaft(from, to).is_blocked_by(occluders[0])) {
+      ++missed;
+      continue;
+    }
+    ++blocked;
+    EXPECT_TRUE(Shaft(from, to).may_meet(occluders[0]));
+    const Eigen::AlignedBox3d box(low, high);
+    EXPECT_FALSE(box.contains(to.centre_m));
+    for (int k = 0; k < 20; ++k) {
+      const Vec3 a = from.centre_m + from.radius_m * point(1.0).normalized();
+      const Vec3 b = to.centre_m + to.radius_m * point(1.0).normalized();
+      // The part of the line within the three slabs.
+      double first = 0.0, last = 1.0;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double to_low = (low[axis] - a[axis]) / (b[axis] - a[axis]);
+        const double to_high = (high[axis] - a[axis]) / (b[axis] - a[axis]);
+        first = std::max(first, std::min(to_low, to_high));
+        last = std::min(last, std::max(to_low, to_high));
+      }
+      EXPECT_LT(first, last);
+    }
+  }
+  EXPECT_GT(blocked, 300);
+  EXPECT_GT(missed, 10000);
+}
+
 }  // namespace
 }  // namespace photorque

@@ -283,29 +283,29 @@ Gathered sum_of(std::vector<Item>& items, const WrenchReceiver& receiver, int re
 
 std::unique_ptr<const WrenchGather> WrenchGather::make(const TraceableScene& scene,
                                                        std::span<const Beam> beams) {
-  std::map<const Emitter*, std::unique_ptr<BodyLight>> lights;
   for (const Beam& beam : beams) {
     if (!beam.aperture) return nullptr;
-    auto& light = lights[beam.emitter.get()];
-    if (light) continue;
-    const auto disc = std::make_shared<DiscLight>(*beam.emitter, *beam.aperture);
-    if (!disc->parallel() && !disc->fades_out()) return nullptr;
-    light = std::make_unique<BodyLight>(disc);
+  }
+  auto lights = lights_of(beams);
+  for (const auto& light : lights) {
+    if (!light->parallel() && !light->fades_out()) return nullptr;
   }
   return std::unique_ptr<const WrenchGather>(new WrenchGather(scene, beams, std::move(lights)));
 }
 
 WrenchGather::WrenchGather(const TraceableScene& scene, std::span<const Beam> beams,
-                           std::map<const Emitter*, std::unique_ptr<BodyLight>> lights)
+                           std::vector<std::shared_ptr<const DiscLight>> lights)
     : scene_(scene),
       beams_(beams.begin(), beams.end()),
       facets_(scene.scene()),
       lights_(std::move(lights)) {
   // Tables serve all attitudes: the body turns about the lab's origin.
   const double radius_m = scene.scene().radius_m();
-  for (const Beam& beam : beams_) {
-    const double height_m = beam.lab_from_emitter.inverse().point(Vec3::Zero()).z();
-    lights_.at(beam.emitter.get())->reach(height_m - radius_m, height_m + radius_m);
+  for (size_t i = 0; i < beams_.size(); ++i) {
+    const double height_m = beams_[i].lab_from_emitter.inverse().point(Vec3::Zero()).z();
+    auto& tables = tables_[lights_[i].get()];
+    if (!tables) tables = std::make_unique<BodyLight>(lights_[i]);
+    tables->reach(height_m - radius_m, height_m + radius_m);
   }
 }
 
@@ -314,9 +314,9 @@ Gathered WrenchGather::wrench(const RigidTransform& lab_from_body, const WrenchR
   const Scene& scene = scene_.scene();
   const Vec3& about_m = receiver.about_body_m();
   std::vector<BodyLamp> lamps;
-  for (const Beam& beam : beams_) {
-    lamps.emplace_back(beam, *lights_.at(beam.emitter.get()), lab_from_body.inverse(), scene.bands,
-                       scene_diameter_m(scene_));
+  for (size_t i = 0; i < beams_.size(); ++i) {
+    lamps.emplace_back(beams_[i], *tables_.at(lights_[i].get()), lab_from_body.inverse(),
+                       scene.bands, scene_diameter_m(scene_));
   }
   std::vector<Item> items;
   for (uint32_t lamp = 0; lamp < lamps.size(); ++lamp) {

@@ -33,12 +33,13 @@ class WrenchGather {
 
  private:
   WrenchGather(const TraceableScene& scene, std::span<const Beam> beams,
-               std::map<const Emitter*, std::unique_ptr<BodyLight>> lights);
+               std::vector<std::shared_ptr<const DiscLight>> lights);
 
   const TraceableScene& scene_;
   std::vector<Beam> beams_;
   Facets facets_;
-  std::map<const Emitter*, std::unique_ptr<BodyLight>> lights_;
+  std::vector<std::shared_ptr<const DiscLight>> lights_;  // one per beam
+  std::map<const DiscLight*, std::unique_ptr<BodyLight>> tables_;
 };
 
 }  // namespace photorque
