@@ -6,7 +6,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>

@@ -1,7 +1,5 @@
 #include "diagnosis/attitude/domain.h"
 
-#include <algorithm>
-
 #include "attitude/estimation/fit.h"
 #include "core/parallel.h"
 #include "diagnosis/attitude/effects/screen.h"

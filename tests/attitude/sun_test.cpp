@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "attitude/environment/environment.h"
-#include "attitude/environment/epoch.h"
 #include "core/errors.h"
 #include "scenes/experiment/toml.h"
 #include "tests/attitude/disturbance_bench.h"

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
-#include <random>
 
 #include "attitude/estimation/fit.h"
 #include "attitude/propagation/run.h"

@@ -8,7 +8,6 @@
 
 #include "diagnosis/attitude/diagnose.h"
 #include "scenes/experiment/toml.h"
-#include "tests/diagnosis/named.h"
 
 namespace photorque {
 

@@ -13,7 +13,6 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/diagnose.h"
-#include "scenes/experiment/toml.h"
 #include "tests/diagnosis/machine_bench.h"
 
 namespace photorque {

@@ -1,7 +1,6 @@
 // Recordings of a rigid body under gravity and drag, integrated here and nowhere else.
 #pragma once
 
-#include <cmath>
 #include <functional>
 #include <random>
 

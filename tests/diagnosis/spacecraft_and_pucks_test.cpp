@@ -12,7 +12,6 @@
 #include "core/constants.h"
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/guess/guess.h"
-#include "scenes/experiment/toml.h"
 #include "tests/diagnosis/machine_bench.h"
 
 namespace photorque {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 
-#include "core/constants.h"
 #include "core/numerics/random.h"
 
 namespace photorque {

@@ -1,7 +1,6 @@
 // The published curves and parameters of cwhanse/ivcurves.
 #pragma once
 
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>

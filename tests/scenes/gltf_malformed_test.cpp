@@ -1,7 +1,6 @@
 // Files that are wrong: the corpus of the Khronos validator, and mistakes made one at a time.
 #include <filesystem>
 #include <fstream>
-#include <set>
 
 #include "gltf_test_model.h"
 #include "tests/outside.h"

@@ -1,5 +1,4 @@
 // Laws of reading glTF: frames, transforms, layouts of the same geometry, names.
-#include "core/constants.h"
 #include "gltf_test_model.h"
 
 namespace photorque {

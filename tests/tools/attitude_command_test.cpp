@@ -1,11 +1,9 @@
 // The commands budget, propagate and balance as a user meets them.
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <sstream>
 
 #include "tests/outside.h"
 #include "tests/tools/command_test.h"

@@ -4,7 +4,6 @@
 #include <set>
 
 #include "tests/tools/command_test.h"
-#include "tools/keys/registry.h"
 
 namespace photorque {
 namespace {

@@ -1,6 +1,5 @@
 // The program as a user meets it: exit statuses, messages, files.
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "tests/tools/command_test.h"

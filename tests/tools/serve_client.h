@@ -10,7 +10,6 @@
 
 #include <array>
 #include <chrono>
-#include <cstring>
 #include <functional>
 #include <thread>
 #include <vector>

@@ -1,7 +1,6 @@
 // `serve` as its clients meet it: what it sends, when commands act, and that a run in lockstep is
 // the one that `propagate` computes.
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 

@@ -2,7 +2,6 @@
 // Sun takes P = E A cos θ; about a point h below it the light turns it with E A h sin θ cos θ / c.
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "core/constants.h"
 #include "scenes/experiment/document.h"
