@@ -2,6 +2,7 @@
 
 #include "attitude/estimation/fit.h"
 #include "core/parallel.h"
+#include "diagnosis/attitude/effects/scan.h"
 #include "diagnosis/attitude/effects/screen.h"
 #include "diagnosis/attitude/holdout.h"
 

@@ -13,6 +13,7 @@
 #include "core/errors.h"
 #include "tests/attitude/settings_bench.h"
 #include "tests/outside.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -43,12 +44,7 @@ Recording read(const std::string& text, const RecordingOptions& options = {}) {
 
 std::string complaint(const std::string& text, const RecordingOptions& options = {}) {
   const File file(text);
-  try {
-    read_recording(file.path(), options);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "none";
+  return refusal_of([&] { read_recording(file.path(), options); });
 }
 
 const std::vector<double>& cells_of(const Recording& recording, std::string_view name) {
@@ -313,7 +309,7 @@ TEST(Recording, DecimalCommasAreReadWhereTheyDoNotSeparateCells) {
   EXPECT_THAT(complaint("t_s,gyro_x_rad_s\n0,0,1,5\n0,1,2,5\n0,2,2,5\n"),
               HasSubstr(":2: found a row of 4 cells, expected 2, as in the header"));
   // A cell that only looks like a number is left out like any other.
-  EXPECT_EQ(complaint("t_s;a\n0;1\n1;x,5\n2;1,2,3\n3;2\n"), "none");
+  EXPECT_EQ(complaint("t_s;a\n0;1\n1;x,5\n2;1,2,3\n3;2\n"), "");
 }
 
 TEST(Recording, WhereMostRowsAreWrongTheFirstIsNamed) {
@@ -351,14 +347,9 @@ TEST(Recording, DamagedCompressedFilesAreRefused) {
 TEST(Commands, MustBeInOrderAndCommandSomething) {
   const auto complaint_of = [](const std::string& text) -> std::string {
     const File file(text);
-    try {
-      read_command_file(file.path());
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "none";
+    return refusal_of([&] { read_command_file(file.path()); });
   };
-  EXPECT_EQ(complaint_of("t_s,command_x_N_m\n0,1\n1,0\n"), "none");
+  EXPECT_EQ(complaint_of("t_s,command_x_N_m\n0,1\n1,0\n"), "");
   EXPECT_THAT(complaint_of("t_s,command_x_N_m\n0,1\n2,0\n1,0\n"),
               HasSubstr(":4: t_s: found times that do not rise"));
   EXPECT_THAT(complaint_of("t_s,command_x_N_m\n0,1\n1,0\n1,2\n"), HasSubstr(":4: t_s"));

@@ -1,4 +1,5 @@
 // Time series, floor spectra and wrench tables: numbers made smooth.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,6 +11,7 @@
 #include "attitude/environment/time_series.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -87,15 +89,10 @@ TEST(TimeSeries, NamesTheLineThatIsWrong) {
   const SeriesFile text("text.csv", "t_s,a,b,c\n0,1,2,3\n1,x,2,3\n");
   const SeriesFile order("order.csv", "t_s,a,b,c\n0,1,2,3\n0,1,2,3\n");
   const auto message = [](const std::filesystem::path& path) {
-    try {
-      read_time_series(path, {"a", "b", "c"}, TimeSeries::Outside::hold);
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return refusal_of([&] { read_time_series(path, {"a", "b", "c"}, TimeSeries::Outside::hold); });
   };
-  EXPECT_NE(message(text.path()).find("text.csv:3"), std::string::npos) << message(text.path());
-  EXPECT_NE(message(order.path()).find("order.csv:3"), std::string::npos) << message(order.path());
+  EXPECT_THAT(message(text.path()), testing::HasSubstr("text.csv:3"));
+  EXPECT_THAT(message(order.path()), testing::HasSubstr("order.csv:3"));
 }
 
 const std::vector<SpectrumPoint> floor_spectrum = {

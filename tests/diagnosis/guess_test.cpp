@@ -19,6 +19,7 @@
 #include "diagnosis/guess/guess.h"
 #include "scenes/experiment/toml.h"
 #include "tests/diagnosis/machine_bench.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -262,12 +263,7 @@ TEST_F(Guess, AClockThatCountsMilliseconds) {
 
 TEST_F(Guess, FilesThatCannotBeReadNameTheCure) {
   const auto refusal = [&](const std::string& text) -> std::string {
-    try {
-      guess_columns(write("bad.csv", text));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return refusal_of([&] { guess_columns(write("bad.csv", text)); });
   };
   EXPECT_THAT(refusal("0,0;1,5;2\n0,1;1,6;3\n"), HasSubstr("sed -i '1i t_s;x_m;y_m' bad.csv"));
   EXPECT_THAT(refusal("0,1\n0.1,2\n"), HasSubstr("a line above them that names the columns"));

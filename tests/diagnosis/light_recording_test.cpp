@@ -1,4 +1,5 @@
 // Readers of scans, sweeps and runs: recognised by their headers, with dropped rows counted.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 
 #include "core/errors.h"
 #include "diagnosis/light/model/recording.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -115,14 +117,8 @@ TEST(LightRecordings, NumbersOfSweepsBeyondAllCountingAreLeftOut) {
 TEST(LightRecordings, RowsOfAnotherLengthThanTheHeaderAreNamedWhereMostAre) {
   const fs::path path =
       light_file("commas.csv", "voltage_V,current_A\n1,2\n0,5,0,2\n0,6,0,2\n0,7,0,2\n");
-  try {
-    read_light_recording(path, {});
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find(":3: found a row of 4 cells, expected 2"),
-              std::string::npos)
-        << error.what();
-  }
+  EXPECT_THAT(refusal_of([&] { read_light_recording(path, {}); }),
+              testing::HasSubstr(":3: found a row of 4 cells, expected 2"));
 }
 
 // A scan at a tilt without its heading was taken to be at the experiment's attitude.
@@ -133,12 +129,11 @@ TEST(LightRecordings, PartsOfAnAttitudeAreRefused) {
     const auto cells = static_cast<int>(std::ranges::count(header, ','));
     std::string row = "0.1,0.2,300";
     for (int i = 2; i < cells; ++i) row += ",0.5";
-    try {
-      read_light_recording(light_file("part.csv", header + "\n" + row + "\n"), {});
-      ADD_FAILURE() << columns;
-    } catch (const InputError& e) {
-      EXPECT_NE(std::string(e.what()).find("alone of an attitude"), std::string::npos) << e.what();
-    }
+    EXPECT_THAT(refusal_of([&] {
+                  read_light_recording(light_file("part.csv", header + "\n" + row + "\n"), {});
+                }),
+                testing::HasSubstr("alone of an attitude"))
+        << columns;
   }
 }
 

@@ -5,6 +5,7 @@
 #include "gltf_test_model.h"
 #include "raytrace/surfaces/bsdf.h"
 #include "scenes/surfaces/settings.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -19,17 +20,8 @@ const std::string small_table =
     "scatter_deg, incidence_deg,azimuth_deg,brdf_1_sr,sigma\r\n"
     "0,60,0,0.3,0\r\n60,60,0,0.2,0\r\n0,0,0,0.1,0\r\n60,0,0,0.3,0\r\n";
 
-std::string message_from(const std::function<void()>& read) {
-  try {
-    read();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
 std::string brdf_error(const std::string& text) {
-  return message_from([&] { read_brdf(text, "scan.csv"); });
+  return refusal_of([&] { read_brdf(text, "scan.csv"); });
 }
 
 std::string with_text(std::string text, const std::string& old_text, const std::string& new_text) {
@@ -126,18 +118,18 @@ TEST(MeasuredMaterial, MeasurementOverFewAnglesIsReported) {
 
 TEST(MeasuredMaterial, ThatShinesOrIsMissingIsRefused) {
   const Settings plain = material_with({{"brdf_file", {"scan.csv"}}});
-  EXPECT_EQ(message_from([&] {
+  EXPECT_EQ(refusal_of([&] {
               painted_with(plain, "incidence_deg,scatter_deg,azimuth_deg,brdf_1_sr\n0,0,0,0.35\n");
             }),
             "lab.toml:4: material[0].brdf_file: found a reflectance of 1.1 at 0 deg, expected at "
             "most 1 at every angle, or a brdf_scale");
-  EXPECT_EQ(message_from([&] {
+  EXPECT_EQ(refusal_of([&] {
               painted_with(material_with({{"brdf_file", {"scam.csv"}}}), "");
             }),
             "lab.toml:4: material[0].brdf_file: found \"scam.csv\", expected an existing file, "
             "relative to "
             "the folder of the experiment");
-  EXPECT_THAT(message_from([&] {
+  EXPECT_THAT(refusal_of([&] {
                 painted_with(material_with({{"brdf_file", {"scan.csv"}}, {"absorptance", {1.0}}}),
                              small_table);
               }),

@@ -14,6 +14,7 @@
 #include "receivers/flux_map.h"
 #include "scenes/experiment/experiment.h"
 #include "scenes/gltf/writer.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -212,12 +213,8 @@ TEST(GltfLights, AProfileOfABufferViewIsRead) {
 }
 
 std::string refusal(const json& file, const std::string& source) {
-  try {
-    read_experiment(folder_with(file, "[[source]]\n" + source) / "lamps.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of(
+      [&] { read_experiment(folder_with(file, "[[source]]\n" + source) / "lamps.toml"); });
 }
 
 TEST(GltfLights, WrongLightsNameTheirPlace) {

@@ -19,7 +19,7 @@ class PaperCommand : public CommandTest {
     const Outcome got = run("power " + paper_experiment + " --quiet --out " + out +
                             " --set attitude.tilt_deg=" + std::to_string(tilt_deg) + more);
     EXPECT_EQ(got.status, 0) << got.err;
-    EXPECT_EQ(got.out.find("WARNING"), std::string::npos) << got.out;
+    EXPECT_THAT(got.out, testing::Not(testing::HasSubstr("WARNING")));
     return json::parse(file_text(out + "/summary.json"));
   }
   static double figure(const json& summary, const std::string& name) {
