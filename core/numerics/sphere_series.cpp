@@ -1,6 +1,8 @@
 #include "core/numerics/sphere_series.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/numerics/linear.h"
 

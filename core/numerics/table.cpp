@@ -1,8 +1,12 @@
 #include "core/numerics/table.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
+
+#include "core/constants.h"
+#include "core/errors.h"
 
 namespace photorque {
 

@@ -10,10 +10,12 @@
 // then it is read by get_or(), or by get() behind has().
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/settings/keys.h"

@@ -27,10 +27,10 @@ class Boundaries : public CommandTest {
 TEST_F(Boundaries, PicturesHaveALeastFieldOfView) {
   const std::string experiment = plate("lamp", "[camera]\nwidth = 32\nheight = 24\n");
   for (const char* angle : {"1e-300", "1e-30", "179.5"}) {
-    const Outcome outcome = run("render " + experiment +
-                                " --set camera.field_of_view_deg=" + angle + " --out " + at("o"));
-    EXPECT_EQ(outcome.status, 2) << angle;
-    EXPECT_THAT(outcome.err, testing::HasSubstr("field_of_view_deg")) << angle;
+    EXPECT_THAT(refused("render " + experiment + " --set camera.field_of_view_deg=" + angle +
+                        " --out " + at("o")),
+                testing::HasSubstr("field_of_view_deg"))
+        << angle;
   }
   EXPECT_EQ(
       run("render " + experiment + " --set camera.field_of_view_deg=0.001 --out " + at("o")).status,
@@ -45,8 +45,7 @@ TEST_F(Boundaries, NamesReachTerminalsAndTablesClean) {
             "[array]\nreceiver = \"solar_array\"\ncells = [2, 2]\n[[published]]\n"
             "quantity = \"array_power_W\"\nvalue = 1\nsource = \"" +
                 name + "\"\n");
-  const Outcome outcome = run("power " + experiment + " --verbose --out " + at("o"));
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Outcome outcome = succeed("power " + experiment + " --verbose --out " + at("o"));
   EXPECT_THAT(outcome.out, testing::HasSubstr("PWNED"));
   const auto is_raw = [](unsigned char c) {
     return (c < 0x20 && c != '\n' && c != '\t') || c == 0x7f;
@@ -70,30 +69,22 @@ TEST_F(Boundaries, ErrorsReachTerminalsCleanAndShort) {
         "trace " + experiment + " --set \"" + name + "=1\"",
         "trace " + experiment + " --set \"source[0].name='" + name + "'\"",
         "trace " + experiment + " --out \"/etc/" + name + "\""}) {
-    const Outcome outcome = run(command);
-    EXPECT_EQ(outcome.status, 2) << command;
-    EXPECT_EQ(clean_text(outcome.err), outcome.err.substr(0, outcome.err.size() - 1) + " ")
-        << command;
+    const std::string outcome = refused(command);
+    EXPECT_EQ(clean_text(outcome), outcome.substr(0, outcome.size() - 1) + " ") << command;
   }
-  const Outcome twice = run("check " + experiment + " --set receiver[0].bins=[0,0]");
-  EXPECT_EQ(twice.status, 2);
-  EXPECT_EQ(std::ranges::count(twice.err, '\n'), 1) << twice.err;
+  refused("check " + experiment + " --set receiver[0].bins=[0,0]");
   std::string unknown;
   for (int i = 0; i < 2000; ++i) unknown += "[t" + std::to_string(i) + "]\n";
-  const Outcome many = run("check " + plate("lamp", unknown));
-  EXPECT_EQ(many.status, 2);
-  EXPECT_THAT(many.err, testing::HasSubstr("more mistakes"));
-  EXPECT_LT(std::ranges::count(many.err, '\n'), 60);
+  EXPECT_THAT(refused("check " + plate("lamp", unknown), 51), testing::HasSubstr("more mistakes"));
 }
 
 // 88 W of light over 5e-324 were infinitely many watts in losses.csv, with exit status 0.
 TEST_F(Boundaries, EfficienciesKeepResultsFinite) {
   const std::string experiment =
       plate("lamp", "[array]\nreceiver = \"solar_array\"\ncells = [2, 2]\n");
-  const Outcome outcome = run("power " + experiment +
-                              " --set array.chain.wall_plug_efficiency=5e-324 --out " + at("o"));
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, testing::HasSubstr("wall_plug_efficiency"));
+  EXPECT_THAT(refused("power " + experiment +
+                      " --set array.chain.wall_plug_efficiency=5e-324 --out " + at("o")),
+              testing::HasSubstr("wall_plug_efficiency"));
 }
 
 // The address space ends before the libraries of pictures are loaded, or (at 620 MB) would end
@@ -144,11 +135,10 @@ TEST_F(Boundaries, ASmallStackIsRefused) {
 // Integrals over the aperture of a lamp had a tolerance of zero, and no end.
 TEST_F(Boundaries, NumbersBelowAllSizesAreRefused) {
   const std::string walls = std::string(PHOTORQUE_SOURCE_DIR) + "/tests/data/keys/walls.toml";
-  const Outcome outcome = run("check " + walls + " --set source[0].power_W=5e-324");
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, testing::HasSubstr("power_W"));
-  EXPECT_THAT(outcome.err, testing::HasSubstr("1e-100"));
-  EXPECT_EQ(run("check " + walls + " --set source[0].power_W=1e-100").status, 0);
+  const std::string outcome = refused("check " + walls + " --set source[0].power_W=5e-324");
+  EXPECT_THAT(outcome, testing::HasSubstr("power_W"));
+  EXPECT_THAT(outcome, testing::HasSubstr("1e-100"));
+  succeed("check " + walls + " --set source[0].power_W=1e-100");
 }
 
 // The last resort: faults that would end the program by a signal.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -42,6 +43,19 @@ class CommandTest : public ::testing::Test {
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_text(at("stdout")),
             file_text(at("stderr"))};
+  }
+  // One that succeeds.
+  Outcome succeed(const std::string& arguments) const {
+    Outcome got = run(arguments);
+    EXPECT_EQ(got.status, 0) << arguments << '\n' << got.err;
+    return got;
+  }
+  // The lines, usually one, of one that is refused.
+  std::string refused(const std::string& arguments, int lines = 1) const {
+    const Outcome got = run(arguments);
+    EXPECT_EQ(got.status, 2) << arguments << '\n' << got.err;
+    EXPECT_EQ(std::ranges::count(got.err, '\n'), lines) << arguments << '\n' << got.err;
+    return got.err;
   }
   // The path of a file in the test's folder.
   std::string at(const std::string& name) const { return (folder_ / name).string(); }

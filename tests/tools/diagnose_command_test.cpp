@@ -46,8 +46,7 @@ noise_rad_s = 2e-4
 duration_s = 30
 initial_rate_rad_s = [0.01, 0.02, 0.05]
 )");
-    const Outcome propagated = run("propagate " + experiment_ + " --quiet -o " + at("propagated"));
-    ASSERT_EQ(propagated.status, 0) << propagated.err;
+    succeed("propagate " + experiment_ + " --quiet -o " + at("propagated"));
     recording_ = at("propagated/recording.csv");
   }
 
@@ -55,42 +54,33 @@ initial_rate_rad_s = [0.01, 0.02, 0.05]
 };
 
 TEST_F(DiagnoseCommand, ImprovedExperimentsFindTheirFiles) {
-  const Outcome found = run("diagnose " + experiment_ + " --recording " + recording_ +
-                            " --quiet --out " + at("deep/down/answer"));
-  ASSERT_EQ(found.status, 0) << found.err;
+  succeed("diagnose " + experiment_ + " --recording " + recording_ + " --quiet --out " +
+          at("deep/down/answer"));
   EXPECT_THAT(file_text(at("deep/down/answer/improved.toml")), HasSubstr("../../../sun.csv"));
-  const Outcome again =
-      run("propagate " + at("deep/down/answer/improved.toml") + " --quiet --out " + at("again"));
-  EXPECT_EQ(again.status, 0) << again.err;
+  succeed("propagate " + at("deep/down/answer/improved.toml") + " --quiet --out " + at("again"));
 }
 
 TEST_F(DiagnoseCommand, ImprovedExperimentsHaveTheChangesOfTheCommandLine) {
-  const Outcome found = run("diagnose " + experiment_ + " --recording " + recording_ +
-                            " --set platform.mass_kg=12 --set environment.gravity_m_s2=0 --quiet "
-                            "--out " +
-                            at("answer"));
-  ASSERT_EQ(found.status, 0) << found.err;
+  succeed("diagnose " + experiment_ + " --recording " + recording_ +
+          " --set platform.mass_kg=12 --set environment.gravity_m_s2=0 --quiet "
+          "--out " +
+          at("answer"));
   const std::string improved = file_text(at("answer/improved.toml"));
   EXPECT_THAT(improved, HasSubstr("mass_kg = 12"));
   EXPECT_THAT(improved, HasSubstr("gravity_m_s2 = 0"));
-  const Outcome again =
-      run("propagate " + at("answer/improved.toml") + " --quiet --out " + at("again"));
-  EXPECT_EQ(again.status, 0) << again.err;
+  succeed("propagate " + at("answer/improved.toml") + " --quiet --out " + at("again"));
 }
 
 TEST_F(DiagnoseCommand, FiguresAreWrittenInTheFormatsThatAreAskedFor) {
   const std::string command = "diagnose " + experiment_ + " --recording " + recording_ +
                               " --quiet --style paper --out " + at("answer");
-  ASSERT_EQ(run(command).status, 0);
+  succeed(command);
   EXPECT_FALSE(std::filesystem::exists(at("answer/gyro_z_rad_s.svg")));
-  const Outcome drawn = run(command + " --format svg,pdf");
-  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  succeed(command + " --format svg,pdf");
   EXPECT_TRUE(std::filesystem::exists(at("answer/diagnosis.json")));
   EXPECT_THAT(file_text(at("answer/gyro_z_rad_s.svg")), HasSubstr("nominal model"));
   EXPECT_THAT(file_text(at("answer/gyro_z_rad_s.pdf")), HasSubstr("%PDF-"));
-  const Outcome refused = run(command + " --format jpg");
-  EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.err, HasSubstr("found \"jpg\", expected"));
+  EXPECT_THAT(refused(command + " --format jpg"), HasSubstr("found \"jpg\", expected"));
 }
 
 TEST_F(DiagnoseCommand, RecordingsOfTwoKindsAreListedByName) {
@@ -102,10 +92,9 @@ TEST_F(DiagnoseCommand, RecordingsOfTwoKindsAreListedByName) {
     EXPECT_EQ(found.status, 2);
     EXPECT_THAT(found.err, HasSubstr("curve.csv: found a recording of light"));
   }
-  const Outcome list = run("diagnose " + experiment_ + " --recording " + recording_ + " " + curve +
-                           " --out " + at("answer"));
-  EXPECT_EQ(list.status, 2);
-  EXPECT_THAT(list.err, HasSubstr("repeat --recording before each of several"));
+  EXPECT_THAT(refused("diagnose " + experiment_ + " --recording " + recording_ + " " + curve +
+                      " --out " + at("answer")),
+              HasSubstr("repeat --recording before each of several"));
 }
 
 // A plate that turns under a lamp straight above it, on a platform that nothing else acts on: what
@@ -209,9 +198,7 @@ initial_rate_rad_s = [0, 0, 0.05]
 }
 
 TEST_F(DiagnoseCommand, AnExperimentWithoutACommandIsReported) {
-  const Outcome alone = run(experiment_);
-  EXPECT_EQ(alone.status, 2);
-  EXPECT_THAT(alone.err, HasSubstr("expected a command before it"));
+  EXPECT_THAT(refused(experiment_), HasSubstr("expected a command before it"));
 }
 
 }  // namespace

@@ -16,13 +16,12 @@ class GuessCommand : public CommandTest {
  protected:
   // A guess from a recording, then a diagnosis with it as it stands.
   nlohmann::json diagnosed(const fs::path& recording) const {
-    const Outcome guess = run("diagnose --guess " + recording.string() + " --out " + at("guess"));
-    EXPECT_EQ(guess.status, 0) << guess.err;
+    succeed("diagnose --guess " + recording.string() + " --out " + at("guess"));
     fs::path name = recording.filename();
     while (name.has_extension()) name = name.stem();
-    const Outcome got = run("diagnose " + at("guess/" + name.string() + ".toml") + " --recording " +
-                            recording.string() + " --json --quiet --out " + at("out"));
-    EXPECT_EQ(got.status, 0) << got.err;
+    const Outcome got =
+        succeed("diagnose " + at("guess/" + name.string() + ".toml") + " --recording " +
+                recording.string() + " --json --quiet --out " + at("out"));
     fs::remove_all(at("guess"));
     return got.status == 0 ? nlohmann::json::parse(got.out) : nlohmann::json();
   }
@@ -49,18 +48,16 @@ TEST_F(GuessCommand, PrintsItsFilesAndKeepsChangedOnes) {
   std::string rows = "t_s,angle_deg\n";
   for (int i = 0; i < 100; ++i) rows += std::to_string(i) + "," + std::to_string(i * i) + "\n";
   const std::string recording = write("disc.csv", rows);
-  const Outcome first = run("diagnose --guess " + recording + " --out " + at("guess"));
-  ASSERT_EQ(first.status, 0) << first.err;
+  const Outcome first = succeed("diagnose --guess " + recording + " --out " + at("guess"));
   const std::string text = file_text(at("guess/disc.toml"));
   EXPECT_THAT(text, HasSubstr("topology = \"one_axis\""));
   EXPECT_EQ(first.out.substr(0, text.size()), text);
   EXPECT_THAT(first.out, HasSubstr("# photorque diagnose " + at("guess/disc.toml")));
   // A repeated guess is no loss; what was confirmed would be.
-  EXPECT_EQ(run("diagnose --guess " + recording + " --out " + at("guess")).status, 0);
+  succeed("diagnose --guess " + recording + " --out " + at("guess"));
   write("guess/disc.toml", text + "# confirmed\n");
-  const Outcome again = run("diagnose --guess " + recording + " --out " + at("guess"));
-  EXPECT_EQ(again.status, 2);
-  EXPECT_THAT(again.err, HasSubstr("another file of this name"));
+  EXPECT_THAT(refused("diagnose --guess " + recording + " --out " + at("guess")),
+              HasSubstr("another file of this name"));
   EXPECT_THAT(file_text(at("guess/disc.toml")), HasSubstr("# confirmed"));
 }
 

@@ -71,8 +71,7 @@ TEST_F(Optimise, LeansThePlateTowardsTheSun) {
       std::sin(10.5 * degree_rad) * std::sin(25 * degree_rad) * std::cos(40 * degree_rad);
   EXPECT_NEAR(figure("nominal_power_on_plate_W"), full_W * nominal, 1e-4 * full_W);
   EXPECT_TRUE(std::filesystem::exists(at("out/search.png")));
-  const Outcome again = run("trace " + at("out/best.toml") + " --out " + at("again"));
-  ASSERT_EQ(again.status, 0) << again.err;
+  succeed("trace " + at("out/best.toml") + " --out " + at("again"));
   EXPECT_EQ(summary("again")["power_on_plate_W"]["value"].get<double>(),
             figure("best_power_on_plate_W"));
 }

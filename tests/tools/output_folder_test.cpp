@@ -61,9 +61,8 @@ TEST_F(OutputFolders, ThatAreFilesAreFoundBeforeTheWork) {
   write("taken", "mine");
   const auto begin = Clock::now();
   for (const std::string out : {"taken", "taken/below"}) {
-    const Outcome got = run("trace " + lit_platform + endless + " --out " + at(out));
-    EXPECT_EQ(got.status, 2);
-    EXPECT_THAT(got.err, HasSubstr("--out: found"));
+    EXPECT_THAT(refused("trace " + lit_platform + endless + " --out " + at(out)),
+                HasSubstr("--out: found"));
   }
   EXPECT_LT(seconds_since(begin), 10.0);
   EXPECT_EQ(file_text(at("taken")), "mine");
@@ -76,9 +75,8 @@ TEST_F(OutputFolders, ResultsThatReplaceTheInputAreRejectedBeforeTheRun) {
   write("o/again.toml", text);
   write("o/files.json", R"({"schema": "photorque.files/1",
                             "commands": {"trace": {"files": ["again.toml"]}}})");
-  const Outcome got = run("trace " + at("o/again.toml") + endless + " --out " + at("o"));
-  EXPECT_EQ(got.status, 2);
-  EXPECT_THAT(got.err, HasSubstr("whose again.toml the run would replace"));
+  EXPECT_THAT(refused("trace " + at("o/again.toml") + endless + " --out " + at("o")),
+              HasSubstr("whose again.toml the run would replace"));
   EXPECT_EQ(file_text(at("o/again.toml")), text);
 }
 
@@ -106,15 +104,13 @@ TEST_F(OutputFolders, AFullStandardOutputIsNamed) {
 
 TEST_F(OutputFolders, ThatCannotBeWrittenAreFoundBeforeTheWork) {
   fs::create_directory_symlink("loop", at("loop"));
-  const Outcome loop = run("trace " + lit_platform + endless + " --out " + at("loop"));
-  EXPECT_EQ(loop.status, 2);
-  EXPECT_THAT(loop.err, HasSubstr("expected a folder that can be made"));
+  EXPECT_THAT(refused("trace " + lit_platform + endless + " --out " + at("loop")),
+              HasSubstr("expected a folder that can be made"));
   fs::create_directories(at("locked"));
   fs::permissions(at("locked"), fs::perms::owner_read | fs::perms::owner_exec);
   if (::access(at("locked").c_str(), W_OK) == 0) GTEST_SKIP() << "the superuser may write anywhere";
-  const Outcome locked = run("trace " + lit_platform + endless + " --out " + at("locked"));
-  EXPECT_EQ(locked.status, 2);
-  EXPECT_THAT(locked.err, HasSubstr("a folder that is not writable"));
+  EXPECT_THAT(refused("trace " + lit_platform + endless + " --out " + at("locked")),
+              HasSubstr("a folder that is not writable"));
 }
 
 TEST_F(OutputFolders, AreNotLeftBehindByRunsThatAreRefused) {
@@ -134,9 +130,9 @@ TEST_F(OutputFolders, OfTheSystemAreRefused) {
   for (const std::string& out :
        {std::string("/"), std::string("//"), std::string("/usr/bin"), std::string("/usr/bin/../.."),
         std::string("/dev"), std::string("/tmp"), at("link"), at("link") + "/photorque"}) {
-    const Outcome got = run("trace " + lit_platform + endless + " --out " + out);
-    EXPECT_EQ(got.status, 2) << out;
-    EXPECT_THAT(got.err, HasSubstr("--out: found a folder of the system")) << out;
+    EXPECT_THAT(refused("trace " + lit_platform + endless + " --out " + out),
+                HasSubstr("--out: found a folder of the system"))
+        << out;
   }
 }
 
@@ -144,9 +140,8 @@ TEST_F(OutputFolders, OfTheSystemAreRefused) {
 TEST_F(OutputFolders, OfOtherUsersAreRefused) {
   fs::create_directories(at("theirs"));
   if (::chown(at("theirs").c_str(), 12345, 12345) != 0) GTEST_SKIP() << "no right to give away";
-  const Outcome got = run("trace " + lit_platform + endless + " --out " + at("theirs"));
-  EXPECT_EQ(got.status, 2);
-  EXPECT_THAT(got.err, HasSubstr("--out: found a folder of user 12345"));
+  EXPECT_THAT(refused("trace " + lit_platform + endless + " --out " + at("theirs")),
+              HasSubstr("--out: found a folder of user 12345"));
   EXPECT_TRUE(fs::is_empty(at("theirs")));
 }
 
@@ -160,7 +155,7 @@ TEST_F(OutputFolders, BelongToOneRunAtATime) {
   EXPECT_EQ(second.status, 2);
   EXPECT_THAT(second.err, HasSubstr("a folder that another run is writing into"));
   // A killed run holds no lock.
-  EXPECT_EQ(run("trace " + lit_platform + quick + " --out " + at("o")).status, 0);
+  succeed("trace " + lit_platform + quick + " --out " + at("o"));
 }
 
 TEST_F(OutputFolders, AreLeftCleanBySignalsWithinASecond) {
@@ -204,8 +199,7 @@ TEST_F(OutputFolders, AreFreeAsSoonAsARunWasStopped) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     ::kill(child, SIGINT);
     ::waitpid(child, nullptr, 0);
-    const Outcome next = run("trace " + lit_platform + " --set trace.rays=4096 --out " + at("o"));
-    EXPECT_EQ(next.status, 0) << next.err;
+    succeed("trace " + lit_platform + " --set trace.rays=4096 --out " + at("o"));
   }
 }
 
@@ -217,7 +211,7 @@ TEST_F(OutputFolders, AreClearedOfFilesOfKilledRuns) {
   const std::string own = std::to_string(::getpid());
   name.replace(name.find(own), own.size(), std::to_string(child));
   fs::create_directories(fs::path(at("o")) / name);
-  ASSERT_EQ(run("trace " + lit_platform + quick + " --out " + at("o")).status, 0);
+  succeed("trace " + lit_platform + quick + " --out " + at("o"));
   EXPECT_THAT(hidden("o"), testing::IsEmpty());
 }
 
@@ -226,7 +220,7 @@ TEST_F(OutputFolders, AndExperimentsMayHaveNamesThatAreNotUtf8) {
   const fs::path scenes = fs::path(lit_platform).parent_path();
   fs::copy(scenes / "stasis.gltf", at("stasis.gltf"));
   write("stand_g\xFC.toml", file_text(lit_platform));
-  ASSERT_EQ(run("trace " + at("stand_g\xFC.toml") + quick + " --out " + at("o\xFC")).status, 0);
+  succeed("trace " + at("stand_g\xFC.toml") + quick + " --out " + at("o\xFC"));
   for (const std::string file : {"files.json", "summary.json"}) {
     EXPECT_THAT(file_text(at("o\xFC/" + file)), HasSubstr("stand_g\xEF\xBF\xBD.toml")) << file;
   }
@@ -234,10 +228,10 @@ TEST_F(OutputFolders, AndExperimentsMayHaveNamesThatAreNotUtf8) {
 
 TEST_F(OutputFolders, HoldFilesOfTheLastRunAlone) {
   const std::string rays = " --set trace.arriving_rays=4096";
-  ASSERT_EQ(run("trace " + lit_platform + quick + rays + " --out " + at("o")).status, 0);
+  succeed("trace " + lit_platform + quick + rays + " --out " + at("o"));
   write("o/mine.csv", "mine");
   ASSERT_TRUE(fs::exists(at("o/rays_solar_array.tm25ray")));
-  ASSERT_EQ(run("trace " + lit_platform + quick + " --out " + at("o")).status, 0);
+  succeed("trace " + lit_platform + quick + " --out " + at("o"));
   EXPECT_FALSE(fs::exists(at("o/rays_solar_array.tm25ray")));
   EXPECT_TRUE(fs::exists(at("o/mine.csv")));
 }

@@ -16,9 +16,8 @@ class PaperCommand : public CommandTest {
  protected:
   json power_at(int tilt_deg, const std::string& more = "") const {
     const std::string out = at("out_" + std::to_string(tilt_deg));
-    const Outcome got = run("power " + paper_experiment + " --quiet --out " + out +
-                            " --set attitude.tilt_deg=" + std::to_string(tilt_deg) + more);
-    EXPECT_EQ(got.status, 0) << got.err;
+    const Outcome got = succeed("power " + paper_experiment + " --quiet --out " + out +
+                                " --set attitude.tilt_deg=" + std::to_string(tilt_deg) + more);
     EXPECT_THAT(got.out, testing::Not(testing::HasSubstr("WARNING")));
     return json::parse(file_text(out + "/summary.json"));
   }

@@ -150,8 +150,7 @@ TEST_F(SweepDesigns, TheBestKeepsToTheConstraintsAndRunsAsItStands) {
   EXPECT_THAT(got.out, HasSubstr("Best: design 3 of 4"));
   EXPECT_EQ(figure("best_design"), 3.0);
   EXPECT_NEAR(figure("nominal_power_on_plate_W"), power_W(10.5), near_fraction * power_W(0));
-  const Outcome again = run("trace " + at("out/best.toml") + " --out " + at("again"));
-  ASSERT_EQ(again.status, 0) << again.err;
+  succeed("trace " + at("out/best.toml") + " --out " + at("again"));
   const json one = json::parse(file_text(at("again/summary.json")));
   EXPECT_EQ(one["power_on_plate_W"]["value"].get<double>(), figure("best_power_on_plate_W"));
   EXPECT_EQ(query(at("out/designs.sqlite"),

@@ -89,7 +89,7 @@ class Threads : public CommandTest, public ::testing::WithParamInterface<Command
     if (GetParam().name != "balance") return;
     const std::string flight = "propagate " + (scenes / "stasis" / "attitude.toml").string() +
                                " --set propagate.duration_s=60 --out " + at("flight");
-    ASSERT_EQ(run(flight).status, 0);
+    succeed(flight);
     fs::copy(at("flight/recording.csv"), at("recording.csv"));
   }
 
@@ -122,8 +122,7 @@ TEST_P(Threads, OfAnyNumberGiveTheSameFiles) {
   std::map<std::string, std::string> first;
   for (const std::string threads : {"1", "2", "7"}) {
     fs::remove_all(at("out"));
-    const Outcome got = run(arguments() + " --quiet --threads " + threads + " --out " + at("out"));
-    ASSERT_EQ(got.status, 0) << got.err;
+    succeed(arguments() + " --quiet --threads " + threads + " --out " + at("out"));
     const std::map<std::string, std::string> now = results();
     if (first.empty()) first = now;
     ASSERT_EQ(now.size(), first.size());
