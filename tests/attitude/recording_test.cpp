@@ -6,12 +6,12 @@
 
 #include <cmath>
 #include <fstream>
-#include <random>
 
 #include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "tests/attitude/settings_bench.h"
+#include "tests/noise.h"
 #include "tests/outside.h"
 #include "tests/refusal.h"
 
@@ -60,14 +60,13 @@ TEST(Recording, TimesOverCenturiesAreRefused) {
 
 TEST(Recording, WrittenAndReadBackIsTheSameToTheBit) {
   Recording recording;
-  std::mt19937_64 engine(3);
-  std::normal_distribution<double> normal;
+  Noise normal(3);
   for (const char* name : {"gyro_x_rad_s", "battery_current_A", "anything_else"}) {
     recording.channels.push_back({name, {}});
   }
   for (int i = 0; i < 500; ++i) {
     recording.time_s.push_back(0.1 * i);
-    for (Channel& channel : recording.channels) channel.values.push_back(normal(engine));
+    for (Channel& channel : recording.channels) channel.values.push_back(normal());
   }
   recording.channels[2].values[7] = NAN;
   for (const char* ending : {".csv", ".csv.gz"}) {
@@ -182,15 +181,14 @@ TEST(Recording, FlippedAndBadQuaternionsAreMended) {
 
 // Spikes go; noise, steps and fast motion stay.
 TEST(Recording, OutliersAreFoundAndNothingElse) {
-  std::mt19937_64 engine(5);
-  std::normal_distribution<double> noise(0.0, 2e-4);
+  Noise noise(5, 2e-4);
   std::string text = "t_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s\n";
   for (int i = 0; i < 2000; ++i) {
     const double t = 0.01 * i;
     const double spike = i % 500 == 123 ? 0.5 : 0.0;
-    const double x = std::sin(3 * t) + spike + noise(engine);
-    const double y = (t < 10 ? 0.1 : -0.2) + noise(engine);
-    const double z = 20 * std::sin(15 * t) + noise(engine);
+    const double x = std::sin(3 * t) + spike + noise();
+    const double y = (t < 10 ? 0.1 : -0.2) + noise();
+    const double z = 20 * std::sin(15 * t) + noise();
     text += std::to_string(t) + "," + std::to_string(x) + "," + std::to_string(y) + "," +
             std::to_string(z) + "\n";
   }
@@ -209,21 +207,20 @@ TEST(Recording, OutliersAreFoundAndNothingElse) {
 // reading for 2 s about y. What moves without noise and comes to rest is no fault, nor is an axis
 // that the instrument does not have.
 TEST(Recording, ReadingsOfASensorThatStandsStillAreLeftOut) {
-  std::mt19937_64 engine(9);
-  std::normal_distribution<double> noise(0.0, 2e-4);
+  Noise noise(9, 2e-4);
   const std::string header = "t_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s\n";
   std::string faulty = header, sound = header;
   double y = 0.0;
   for (int i = 0; i < 2000; ++i) {
     const double t = 0.01 * i;
-    const double x = std::min(0.1, 0.12 * std::sin(0.5 * t) + noise(engine));
-    if (i <= 500 || i > 700) y = 0.03 * std::cos(t) + noise(engine);
+    const double x = std::min(0.1, 0.12 * std::sin(0.5 * t) + noise());
+    if (i <= 500 || i > 700) y = 0.03 * std::cos(t) + noise();
     const auto row = [&](double a, double b, double c) {
       return std::to_string(t) + "," + std::to_string(a) + "," + std::to_string(b) + "," +
              std::to_string(c) + "\n";
     };
     faulty += row(x, y, 0.1);
-    sound += row(0.05 + noise(engine), t < 5.0 ? 0.1 * std::exp(-t) : 0.0, 0.0);
+    sound += row(0.05 + noise(), t < 5.0 ? 0.1 * std::exp(-t) : 0.0, 0.0);
   }
   const Recording r = read(faulty);
   for (size_t i = 0; i < 2000; ++i) {
@@ -251,10 +248,9 @@ TEST(Recording, ReadingsOfASensorThatStandsStillAreLeftOut) {
 }
 
 TEST(Recording, JitterAndIntervalAreMeasured) {
-  std::mt19937_64 engine(7);
-  std::normal_distribution<double> jitter(0.0, 1e-3);
+  Noise jitter(7, 1e-3);
   std::string text = "t_s,gyro_x_rad_s\n";
-  for (int i = 0; i < 5000; ++i) text += std::to_string(0.1 * i + jitter(engine)) + ",0\n";
+  for (int i = 0; i < 5000; ++i) text += std::to_string(0.1 * i + jitter()) + ",0\n";
   const RecordingReport report = read(text).report;
   EXPECT_NEAR(report.median_interval_s, 0.1, 2e-4);
   // The difference of two jittered times.

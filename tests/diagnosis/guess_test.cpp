@@ -19,6 +19,7 @@
 #include "diagnosis/guess/guess.h"
 #include "scenes/experiment/toml.h"
 #include "tests/diagnosis/machine_bench.h"
+#include "tests/noise.h"
 #include "tests/refusal.h"
 
 namespace photorque {
@@ -72,8 +73,7 @@ Recording thrown(const Mat3& inertia_kg_m2, const Vec3& rate_rad_s, double noise
   Recording recording;
   recording.channels = {{"gyro_x_rad_s", {}}, {"gyro_y_rad_s", {}}, {"gyro_z_rad_s", {}}};
   if (wheel_kg_m2 > 0.0) recording.channels.push_back({"wheel_z_rad_s", {}});
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  Noise normal(seed);
   sample(
       propagator, rows, [&](size_t i) { return interval_s * static_cast<double>(i); },
       [&](const Samples& samples) {
@@ -82,7 +82,7 @@ Recording thrown(const Mat3& inertia_kg_m2, const Vec3& rate_rad_s, double noise
           recording.time_s.push_back(time_s);
           for (size_t k = 0; k < 3; ++k) {
             recording.channels[k].values.push_back(samples.y[component::rate + k][lane] +
-                                                   noise_rad_s * normal(random));
+                                                   noise_rad_s * normal());
           }
           if (wheel_kg_m2 > 0.0) recording.channels[3].values.push_back(wheel_rad_s2 * time_s);
         }
@@ -347,13 +347,12 @@ TEST_F(Guess, ADrivenPendulumIsNoSpring) {
 TEST_F(Guess, AVideoOfAPendulumShowsItsPivot) {
   constexpr double length_m = 0.62, pivot_x_m = 0.31, pivot_y_m = -0.05, interval_s = 1.0 / 30.0;
   const std::vector<double> angle_rad = Swing{15.8, 0.0, 0.06, 0.0}.from(0.5, interval_s, 400);
-  std::mt19937_64 random(9);
-  std::normal_distribution<double> noise(0.0, 5e-4);
+  Noise noise(9, 5e-4);
   std::string text = "t\tx\ty\n";
   for (size_t i = 0; i < angle_rad.size(); ++i) {
     text += written("%.5f\t%.5f\t%.5f\n", interval_s * static_cast<double>(i),
-                    pivot_x_m + length_m * std::sin(angle_rad[i]) + noise(random),
-                    pivot_y_m + length_m * std::cos(angle_rad[i]) + noise(random));
+                    pivot_x_m + length_m * std::sin(angle_rad[i]) + noise(),
+                    pivot_y_m + length_m * std::cos(angle_rad[i]) + noise());
   }
   const fs::path file = write("video.txt", text);
   const std::string toml = guess_experiment({file}, ".");
@@ -374,13 +373,11 @@ TEST_F(Guess, AVideoOfAPendulumShowsItsPivot) {
 
 // A straight track is part of any large circle.
 TEST_F(Guess, ATrackIsNoCircle) {
-  std::mt19937_64 random(10);
-  std::normal_distribution<double> noise(0.0, 1e-3);
+  Noise noise(10, 1e-3);
   std::string text = "t_s,x_m,y_m\n";
   for (int i = 0; i < 300; ++i) {
     const double along = 0.4 * std::cos(0.2 * i);
-    text +=
-        written("%.2f,%.4f,%.4f\n", 0.05 * i, along + noise(random), 0.1 * along + noise(random));
+    text += written("%.2f,%.4f,%.4f\n", 0.05 * i, along + noise(), 0.1 * along + noise());
   }
   const std::string toml = guess_experiment({write("track.csv", text)}, ".");
   EXPECT_THAT(toml, AllOf(HasSubstr("topology = \"planar\""), Not(HasSubstr("pivot_m"))));
@@ -410,14 +407,13 @@ TEST_F(Guess, ATorsionPendulumTurnsAboutAnUprightAxis) {
   constexpr double k = 10.5, c = 0.3, released_s = 0.4, noise_rad = 0.003;
   const double omega = std::sqrt(k - 0.25 * c * c);
   for (const double interval_s : {0.03, 0.1}) {
-    std::mt19937_64 random(5);
-    std::normal_distribution<double> noise(0.0, noise_rad);
+    Noise noise(5, noise_rad);
     std::vector<double> angle_rad;
     for (int i = 0; i < 300; ++i) {
       const double t = std::max(0.0, interval_s * i - released_s);
       angle_rad.push_back(2.2 * std::exp(-0.5 * c * t) *
                               (std::cos(omega * t) + 0.5 * c / omega * std::sin(omega * t)) +
-                          noise(random));
+                          noise());
     }
     const fs::path file = write("wheel.csv", angles_text(angle_rad, interval_s));
     EXPECT_THAT(guess_experiment({file}, "."),
@@ -429,14 +425,13 @@ TEST_F(Guess, ATorsionPendulumTurnsAboutAnUprightAxis) {
 // Three rates of a telephone on a pendulum: those across the axis are small, and none has a mean.
 TEST_F(Guess, APendulumIsNoFreeBodyByItsRates) {
   constexpr double omega = 3.1, c = 0.05;
-  std::mt19937_64 random(6);
-  std::normal_distribution<double> noise(0.0, 0.004);
+  Noise noise(6, 0.004);
   std::string text = "Time (s),Gyroscope x (rad/s),Gyroscope y (rad/s),Gyroscope z (rad/s)\n";
   for (int i = 0; i < 1500; ++i) {
     const double t = 0.02 * i,
                  rate_rad_s = 0.6 * std::exp(-0.5 * c * t) * std::sin(omega * t + 0.7);
-    text += written("%.9g,%.9g,%.9g,%.9g\n", t, 0.06 * rate_rad_s + noise(random),
-                    -0.08 * rate_rad_s + noise(random), rate_rad_s + 0.002 + noise(random));
+    text += written("%.9g,%.9g,%.9g,%.9g\n", t, 0.06 * rate_rad_s + noise(),
+                    -0.08 * rate_rad_s + noise(), rate_rad_s + 0.002 + noise());
   }
   EXPECT_THAT(guess_experiment({write("phone.csv", text)}, "."),
               AllOf(HasSubstr("topology = \"one_axis\""), HasSubstr("axis = \"x\""),

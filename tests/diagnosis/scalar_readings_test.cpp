@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 #include "attitude/estimation/conventions.h"
 #include "attitude/estimation/segments.h"
 #include "attitude/recordings/columns.h"
 #include "scenes/experiment/toml.h"
 #include "tests/diagnosis/rigid_body_recording.h"
+#include "tests/noise.h"
 
 namespace photorque {
 namespace {
@@ -225,14 +225,13 @@ Recording length_of_rate(double drag_N_m_s2, uint64_t seed) {
     const Vec3 torque = -drag_N_m_s2 * w.norm() * w - w.cross(momentum);
     return Vec3(torque.cwiseQuotient(inertia));
   };
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise(0.0, noise_rad_s);
+  Noise noise(seed, noise_rad_s);
   Recording recording;
   recording.channels = {{"rate_magnitude_rad_s", {}}};
   Vec3 w(2.0, 3.0, 0.7);
   for (int row = 0; row < rows; ++row) {
     recording.time_s.push_back(interval_s * row);
-    recording.channels[0].values.push_back(w.norm() + noise(random));
+    recording.channels[0].values.push_back(w.norm() + noise());
     for (int k = 0; k < steps; ++k) {
       constexpr double h = interval_s / steps;
       const Vec3 a = slope(w), b = slope(w + 0.5 * h * a), c = slope(w + 0.5 * h * b),
@@ -284,8 +283,7 @@ TEST(ScalarReadings, AnAccelerometerOfAFreeBodyDependsOnItsPosition) {
   const auto turning = [&](const Vec3& w) {
     return Vec3((-w.cross(Vec3(inertia.cwiseProduct(w)))).cwiseQuotient(inertia));
   };
-  std::mt19937_64 random(8);
-  std::normal_distribution<double> normal;
+  Noise normal(8);
   Recording recording;
   for (const char* name : {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s", "accel_x_m_s2",
                            "accel_y_m_s2", "accel_z_m_s2"}) {
@@ -296,9 +294,8 @@ TEST(ScalarReadings, AnAccelerometerOfAFreeBodyDependsOnItsPosition) {
     recording.time_s.push_back(interval_s * row);
     const Vec3 force = turning(w).cross(place_m) + w.cross(w.cross(place_m));
     for (int k = 0; k < 3; ++k) {
-      recording.channels[static_cast<size_t>(k)].values.push_back(w[k] + 2e-3 * normal(random));
-      recording.channels[static_cast<size_t>(3 + k)].values.push_back(force[k] +
-                                                                      5e-3 * normal(random));
+      recording.channels[static_cast<size_t>(k)].values.push_back(w[k] + 2e-3 * normal());
+      recording.channels[static_cast<size_t>(3 + k)].values.push_back(force[k] + 5e-3 * normal());
     }
     const double h = interval_s;
     const Vec3 a = turning(w), b = turning(w + 0.5 * h * a), c = turning(w + 0.5 * h * b),

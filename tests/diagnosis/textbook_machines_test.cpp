@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "attitude/estimation/segments.h"
 #include "core/constants.h"
 #include "tests/diagnosis/machine_bench.h"
+#include "tests/noise.h"
 
 namespace photorque {
 namespace {
@@ -23,9 +23,8 @@ std::string about(const std::string& axis, const std::string& noise) {
 }
 
 Channel noisy(const std::string& name, std::vector<double> values, double sigma, uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise(0.0, sigma);
-  for (double& value : values) value += noise(random);
+  Noise noise(seed, sigma);
+  for (double& value : values) value += noise();
   return {name, std::move(values)};
 }
 
@@ -154,10 +153,9 @@ TEST(TextbookMachines, ACartOnASpringByOneCoordinate) {
 std::vector<double> drifting(double sigma, double scale_s, double interval_s, size_t rows,
                              uint64_t seed) {
   const double kept = std::exp(-interval_s / scale_s);
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> fresh(0.0, sigma * std::sqrt(1.0 - kept * kept));
+  Noise fresh(seed, sigma * std::sqrt(1.0 - kept * kept));
   std::vector<double> all = {0.0};
-  while (all.size() < rows) all.push_back(kept * all.back() + fresh(random));
+  while (all.size() < rows) all.push_back(kept * all.back() + fresh());
   return all;
 }
 
