@@ -41,14 +41,6 @@ TEST_F(ArrayCommand, AParameterWithoutAnyErrorIsNotDetermined) {
   EXPECT_THAT(table, testing::Not(HasSubstr("inf")));
 }
 
-// A number of the JSON that --json prints: "name": {"value": …
-double json_value(const std::string& text, const std::string& name) {
-  const size_t at = text.find("\"" + name + "\"");
-  if (at == std::string::npos) return std::nan("");
-  const size_t value = text.find("\"value\":", at);
-  return std::stod(text.substr(value + 8));
-}
-
 // Half-cut module under uneven light: twice the power of one of its two groups.
 TEST_F(ArrayCommand, TwinModulesAreOneCircuit) {
   write("plate.obj",
@@ -103,7 +95,7 @@ TEST_F(ArrayCommand, LightOnTheBackCountsByItsBifaciality) {
         plate(from_below + array, 1000), plate(array, 1000)}) {
     write("plate.toml", text);
     const Outcome got = succeed("power " + at("plate.toml") + " --json --out " + at("out"));
-    power_W.push_back(json_value(got.out, "array_power_W"));
+    power_W.push_back(value(nlohmann::json::parse(got.out), "array_power_W"));
   }
   EXPECT_NEAR(power_W[0], power_W[1], 1e-6 * power_W[1]);
   EXPECT_NEAR(power_W[2], power_W[3], 1e-6 * power_W[3]);
@@ -155,8 +147,8 @@ TEST_F(ArrayCommand, ACurveThatTheMeterClippedIsFitted) {
   const Outcome got = succeed("fit-cell " + at("fit.toml") + " --out " + at("out"));
   EXPECT_THAT(got.out, HasSubstr("where the meter stays at -0.01 A"));
   const Outcome json = run("fit-cell " + at("fit.toml") + " --json --out " + at("out2"));
-  EXPECT_NEAR(json_value(json.out, "ideality"), 1.10, 0.02) << json.out;
-  EXPECT_NEAR(json_value(json.out, "photocurrent_A"), 8.0, 0.01);
+  EXPECT_NEAR(value(nlohmann::json::parse(json.out), "ideality"), 1.10, 0.02) << json.out;
+  EXPECT_NEAR(value(nlohmann::json::parse(json.out), "photocurrent_A"), 8.0, 0.01);
 }
 
 // All curves of a day in one file, by one set of parameters.
@@ -167,13 +159,13 @@ TEST_F(ArrayCommand, ADayOfMeasuredCurvesHasOneSetOfParameters) {
   write("fit.toml", "[fit]\ncurves = [\"day_a.csv.gz\"]\ncells_in_series = 60\n");
   const Outcome got = succeed("fit-cell " + at("fit.toml") + " --json --out " + at("out"));
   // 4 of the 25 are left out: three with a shadow, and that of 11:40, when a cloud came.
-  EXPECT_LT(json_value(got.out, "rms_fraction"), 0.006);
+  EXPECT_LT(value(nlohmann::json::parse(got.out), "rms_fraction"), 0.006);
   const Outcome words = run("fit-cell " + at("fit.toml") + " --out " + at("words"));
   for (const char* curve : {"curve 5:", "curve 6:", "curve 7:", "curve 15:"}) {
     EXPECT_THAT(words.out, HasSubstr(std::string("left out day_a.csv.gz, ") + curve));
   }
   EXPECT_THAT(words.out, HasSubstr("exponential in the light (PVsyst)"));
-  EXPECT_NEAR(json_value(got.out, "ideality"), 1.1, 0.1);
+  EXPECT_NEAR(value(nlohmann::json::parse(got.out), "ideality"), 1.1, 0.1);
   EXPECT_TRUE(fs::exists(at("out/curves.csv")));
 }
 
@@ -196,13 +188,10 @@ TEST_F(ArrayCommand, ASheetWithStandardAndOperatingConditionsIsRead) {
   for (const char* file : {"warm", "moved"}) {
     const Outcome got =
         succeed("fit-cell " + at(std::string(file) + ".toml") + " --json --out " + at(file));
-    const size_t key = got.out.find("\"ideality\"");
-    ASSERT_NE(key, std::string::npos);
     // Neither a number in powers of ten nor an error of any size stands for no leak.
     EXPECT_THAT(got.out, HasSubstr("\"shunt_above_ohm\""));
     EXPECT_THAT(got.out, testing::Not(HasSubstr("\"shunt_ohm\"")));
-    ideality.push_back(
-        std::stod(got.out.substr(got.out.find(':', got.out.find("value", key)) + 1)));
+    ideality.push_back(value(nlohmann::json::parse(got.out), "ideality"));
   }
   EXPECT_NEAR(ideality[0], ideality[1], 1e-4 * ideality[1]);
 }

@@ -43,10 +43,6 @@ moving_mass_kg = 0.25
 lead_mm = 2
 )";
 
-double value(const json& summary, const std::string& name) {
-  return summary.at(name).at("value").get<double>();
-}
-
 // A satellite at rest above a place on the equator, from ten seconds after the first state of its
 // orbit on: by the epoch of the attitude.
 TEST_F(AttitudeCommands, PropagatesInAnOrbitFromMessages) {
@@ -108,8 +104,7 @@ TEST_F(AttitudeCommands, PropagateGivesTheSameFilesAgain) {
   std::vector<std::map<std::string, std::string>> runs;
   for (const std::string name : {"a", "b", "c"}) {
     const std::string seed = name == "c" ? " --seed 2" : "";
-    ASSERT_EQ(run("propagate " + write("p.toml", pendulum) + seed + " --out " + at(name)).status,
-              0);
+    succeed("propagate " + write("p.toml", pendulum) + seed + " --out " + at(name));
     runs.push_back(files(name));
     runs.back().erase("summary.json");  // holds the time it took
   }

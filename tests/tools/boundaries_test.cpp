@@ -32,9 +32,7 @@ TEST_F(Boundaries, PicturesHaveALeastFieldOfView) {
                 testing::HasSubstr("field_of_view_deg"))
         << angle;
   }
-  EXPECT_EQ(
-      run("render " + experiment + " --set camera.field_of_view_deg=0.001 --out " + at("o")).status,
-      0);
+  succeed("render " + experiment + " --set camera.field_of_view_deg=0.001 --out " + at("o"));
 }
 
 // Titles, colours and the like of a terminal are not for names to set, nor formulae in CSV.
@@ -92,16 +90,13 @@ TEST_F(Boundaries, EfficienciesKeepResultsFinite) {
 TEST_F(Boundaries, LittleMemoryIsOneLineAndStatusThree) {
   const std::string experiment = plate("lamp", "");
   for (const int kibibytes : {620000, 450000, 400000}) {
-    const std::string command = "(ulimit -v " + std::to_string(kibibytes) + "; exec " +
-                                PHOTORQUE_BINARY_DIR + "/photorque trace " + experiment +
-                                " --quiet --threads 1 --out " + at("o") + ") 2>" + at("err");
-    const int status = std::system(command.c_str());
-    ASSERT_TRUE(WIFEXITED(status)) << kibibytes;
-    if (WEXITSTATUS(status) == 0) continue;
-    EXPECT_EQ(WEXITSTATUS(status), 3) << kibibytes << file_text(at("err"));
-    EXPECT_THAT(file_text(at("err")),
-                testing::AnyOf(testing::StartsWith("numerical failure: not enough memory"),
-                               testing::HasSubstr("Embree")))
+    const Outcome got =
+        shell("(ulimit -v " + std::to_string(kibibytes) + "; exec " + PHOTORQUE_BINARY_DIR +
+              "/photorque trace " + experiment + " --quiet --threads 1 --out " + at("o") + ")");
+    if (got.status == 0) continue;
+    EXPECT_EQ(got.status, 3) << kibibytes << got.err;
+    EXPECT_THAT(got.err, testing::AnyOf(testing::StartsWith("numerical failure: not enough memory"),
+                                        testing::HasSubstr("Embree")))
         << kibibytes;
   }
 }
@@ -113,23 +108,18 @@ TEST_F(Boundaries, TooFewThreadsAreOneLineAndStatusThree) {
   if (std::system((other + program + " --version >/dev/null 2>&1").c_str()) != 0) {
     GTEST_SKIP() << "no other user can run the program";
   }
-  const std::string command = other + "prlimit --nproc=8 " + program + " trace " +
-                              plate("lamp", "") + " --quiet --out " + at("o") + " 2>" + at("err");
-  const int status = std::system(command.c_str());
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 3);
-  EXPECT_THAT(file_text(at("err")),
-              testing::ContainsRegex("^numerical failure: not enough .*\\(.*-u\\)\n$"));
+  const Outcome got = shell(other + "prlimit --nproc=8 " + program + " trace " + plate("lamp", "") +
+                            " --quiet --out " + at("o"));
+  EXPECT_EQ(got.status, 3);
+  EXPECT_THAT(got.err, testing::ContainsRegex("^numerical failure: not enough .*\\(.*-u\\)\n$"));
 }
 
 TEST_F(Boundaries, ASmallStackIsRefused) {
-  const std::string command = "(ulimit -s 64; exec " + std::string(PHOTORQUE_BINARY_DIR) +
-                              "/photorque trace " + plate("lamp", "") + " --quiet --out " +
-                              at("o") + ") 2>" + at("err");
-  const int status = std::system(command.c_str());
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 2);
-  EXPECT_THAT(file_text(at("err")), testing::HasSubstr("ulimit -s"));
+  const Outcome got =
+      shell("(ulimit -s 64; exec " + std::string(PHOTORQUE_BINARY_DIR) + "/photorque trace " +
+            plate("lamp", "") + " --quiet --out " + at("o") + ")");
+  EXPECT_EQ(got.status, 2);
+  EXPECT_THAT(got.err, testing::HasSubstr("ulimit -s"));
 }
 
 // Integrals over the aperture of a lamp had a tolerance of zero, and no end.

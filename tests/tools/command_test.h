@@ -6,11 +6,14 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace photorque {
 
@@ -27,6 +30,44 @@ inline std::string file_text(const std::filesystem::path& path) {
   return text.str();
 }
 
+// The rows of a CSV file without its comments; the first is the header.
+inline std::vector<std::vector<std::string>> csv_rows(const std::filesystem::path& path) {
+  std::istringstream in(file_text(path));
+  std::vector<std::vector<std::string>> all;
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream cells(line);
+    all.emplace_back();
+    for (std::string cell; std::getline(cells, cell, ',');) all.back().push_back(cell);
+    if (line.back() == ',') all.back().emplace_back();
+  }
+  return all;
+}
+
+inline std::vector<double> last_row(const std::filesystem::path& path) {
+  std::vector<double> numbers;
+  for (const std::string& cell : csv_rows(path).back()) numbers.push_back(std::stod(cell));
+  return numbers;
+}
+
+// The columns of a CSV file by their names, as numbers; an empty cell is no number.
+inline std::map<std::string, std::vector<double>> csv_table(const std::filesystem::path& path) {
+  const auto all = csv_rows(path);
+  std::map<std::string, std::vector<double>> table;
+  for (size_t r = 1; r < all.size(); ++r) {
+    for (size_t c = 0; c < all[r].size(); ++c) {
+      const std::string& cell = all[r][c];
+      table[all[0][c]].push_back(cell.empty() ? std::nan("") : std::strtod(cell.c_str(), nullptr));
+    }
+  }
+  return table;
+}
+
+// A figure of summary.json.
+inline double value(const nlohmann::json& summary, const std::string& name) {
+  return summary.at(name).at("value").get<double>();
+}
+
 class CommandTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -36,13 +77,15 @@ class CommandTest : public ::testing::Test {
     std::filesystem::create_directories(folder_);
   }
 
-  // `photorque ARGUMENTS`.
-  Outcome run(const std::string& arguments) const {
-    const std::string command = std::string(PHOTORQUE_BINARY_DIR) + "/photorque " + arguments +
-                                " >" + at("stdout") + " 2>" + at("stderr");
-    const int status = std::system(command.c_str());
+  // A command of the shell that ends in the program's arguments, or in a group of commands.
+  Outcome shell(const std::string& command) const {
+    const int status = std::system((command + " >" + at("stdout") + " 2>" + at("stderr")).c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_text(at("stdout")),
             file_text(at("stderr"))};
+  }
+  // `photorque ARGUMENTS`.
+  Outcome run(const std::string& arguments) const {
+    return shell(std::string(PHOTORQUE_BINARY_DIR) + "/photorque " + arguments);
   }
   // One that succeeds.
   Outcome succeed(const std::string& arguments) const {
@@ -63,6 +106,36 @@ class CommandTest : public ::testing::Test {
   std::string write(const std::string& name, const std::string& text) const {
     std::ofstream(at(name)) << text;
     return at(name);
+  }
+  // summary.json of a folder, and a figure of it.
+  nlohmann::json summary(const std::string& folder = "out") const {
+    return nlohmann::json::parse(file_text(at(folder + "/summary.json")));
+  }
+  double figure(const std::string& name, const std::string& folder = "out") const {
+    return value(summary(folder), name);
+  }
+  // A level, black, square plate, its middle at this height over the centre of rotation, and its
+  // buffer in a file beside it.
+  void write_plate(double edge_m = 0.4, double height_m = 0.1) const {
+    std::string bytes;
+    const float h = static_cast<float>(edge_m / 2), y = static_cast<float>(height_m);
+    for (const auto& [x, z] : {std::pair{-h, h}, {h, h}, {h, -h}, {-h, -h}}) {
+      for (const float c : {x, y, z}) bytes.append(reinterpret_cast<const char*>(&c), 4);
+    }
+    for (const uint16_t i : {0, 1, 2, 0, 2, 3}) bytes.append(reinterpret_cast<const char*>(&i), 2);
+    write("plate geometry.bin", bytes);
+    std::ostringstream out;
+    out << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
+        << R"("nodes":[{"mesh":0,"name":"plate"}],)"
+        << R"("materials":[{"name":"black","extras":{"photorque":{"absorptance":1.0,"specular":0.0,"diffuse":0.0,"transmittance":0.0}}}],)"
+        << R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],)"
+        << R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3",)"
+        << "\"min\":[" << -h << "," << y << "," << -h << "],\"max\":[" << h << "," << y << "," << h
+        << "]},"
+        << R"({"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}],)"
+        << R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],)"
+        << R"("buffers":[{"byteLength":60,"uri":"plate%20geometry.bin"}]})";
+    write("plate.gltf", out.str());
   }
   // Every file below a folder by its name.
   std::map<std::string, std::string> files(const std::string& name) const {

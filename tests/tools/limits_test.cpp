@@ -29,8 +29,7 @@ TEST_F(Limits, MapsThatDoNotFitIntoMemoryAreRefusedBeforeTheWork) {
 }
 
 TEST_F(Limits, MemoryIsHeldWhereItIsAllowed) {
-  EXPECT_EQ(run("trace " + stasis_nominal + quick_run + " --max-memory 2 --out " + at("o")).status,
-            0);
+  succeed("trace " + stasis_nominal + quick_run + " --max-memory 2 --out " + at("o"));
 }
 
 TEST_F(Limits, MemoryThatHoldsNoRunOrIsNoNumberIsRefused) {

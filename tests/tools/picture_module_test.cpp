@@ -17,11 +17,7 @@ class PictureModule : public CommandTest {
  protected:
   // The program in a separate folder.
   Outcome run_copy(const std::string& arguments, const std::string& environment = "") const {
-    const std::string command = environment + at("bin/photorque") + " " + arguments + " >" +
-                                at("stdout") + " 2>" + at("stderr");
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_text(at("stdout")),
-            file_text(at("stderr"))};
+    return shell(environment + at("bin/photorque") + " " + arguments);
   }
   void copy_program() const {
     fs::create_directories(at("bin"));

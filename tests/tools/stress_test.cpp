@@ -30,9 +30,6 @@ class Stress : public CommandTest {
               "[trace]\nrays = 65536\n") +
         " --out " + at("o"));
   }
-  json figure(const std::string& name) const {
-    return json::parse(file_text(at("o/summary.json"))).at(name);
-  }
   // The last row of a free body's history, which turns about its z axis.
   std::vector<double> turned(const std::string& rate_rad_s, const std::string& duration_s) const {
     succeed(
@@ -43,11 +40,7 @@ class Stress : public CommandTest {
                   duration_s + "\ninitial_rate_rad_s = [0, 0, " + rate_rad_s +
                   "]\noutput_rate_Hz = 1\n") +
         " --out " + at("o"));
-    const std::string text = file_text(at("o/time_history.csv"));
-    std::istringstream last(text.substr(text.rfind('\n', text.size() - 2) + 1));
-    std::vector<double> row;
-    for (std::string cell; std::getline(last, cell, ',');) row.push_back(std::stod(cell));
-    return row;
+    return last_row(at("o/time_history.csv"));
   }
 };
 
@@ -56,7 +49,7 @@ TEST_F(Stress, SquaresOfAMicrometreAndOfTenThousandKilometres) {
   for (const double side_m : {1e-6, 1.0, 1e7}) {
     const Outcome got = lit_square(side_m, 0.0);
     ASSERT_EQ(got.status, 0) << got.err;
-    const json absorbed = figure("absorbed_W");
+    const json absorbed = summary("o").at("absorbed_W");
     const double expected_W = 1361.0 * side_m * side_m;
     EXPECT_NEAR(absorbed.at("value").get<double>() / expected_W, 1.0,
                 5.0 * absorbed.at("standard_error").get<double>() / expected_W + 1e-5)
@@ -73,7 +66,7 @@ TEST_F(Stress, SunlightThatWouldMissAFarSceneIsRefused) {
 
 TEST_F(Stress, TrianglesWithoutAreaAndNeedlesChangeNothing) {
   ASSERT_EQ(lit_square(1.0, 0.0).status, 0);
-  const json alone = figure("absorbed_W");
+  const json alone = summary("o").at("absorbed_W");
   const Outcome got =
       lit_square(1.0, 0.0,
                  "v 0 0 0\nv 0 0 0\nv 0.2 0 0\nv 0.4 0 0\nf 5 6 7\nf 5 7 8\n"
@@ -81,8 +74,8 @@ TEST_F(Stress, TrianglesWithoutAreaAndNeedlesChangeNothing) {
   ASSERT_EQ(got.status, 0) << got.err;
   EXPECT_THAT(got.out, HasSubstr("without area left out"));
   const double tolerance_W = 3.0 * alone.at("standard_error").get<double>() + 1e-6;
-  EXPECT_NEAR(figure("absorbed_W").at("value").get<double>(), alone.at("value").get<double>(),
-              tolerance_W);
+  EXPECT_NEAR(summary("o").at("absorbed_W").at("value").get<double>(),
+              alone.at("value").get<double>(), tolerance_W);
 }
 
 // Half the angle turned, in the quaternion.

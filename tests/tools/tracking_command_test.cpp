@@ -16,17 +16,13 @@ const std::string tracked = (source / "scenes/stasis/camera.toml").string();
 
 class TrackingCommands : public CommandTest {};
 
-double figure(const json& summary, const std::string& name) {
-  return summary.at(name).at("value").get<double>();
-}
-
 TEST_F(TrackingCommands, TheStatedBoardAndLensGiveThePapersErrors) {
   const Outcome got =
       succeed("camera " + tracked +
               " --set camera_study.images=100 --set camera_study.grid=5 --json --out " + at("o"));
   const json summary = json::parse(got.out);
-  EXPECT_NEAR(figure(summary, "in_plane_error_arcsec"), 12.0, 1.0);
-  EXPECT_NEAR(figure(summary, "out_of_plane_error_arcsec"), 37.0, 2.0);
+  EXPECT_NEAR(value(summary, "in_plane_error_arcsec"), 12.0, 1.0);
+  EXPECT_NEAR(value(summary, "out_of_plane_error_arcsec"), 37.0, 2.0);
   const auto all = files("o");
   for (const char* name : {"design.png", "error_over_tilt.png", "out_of_plane_error.png",
                            "degradation.csv", "images.csv", "markers.csv"}) {
@@ -60,8 +56,8 @@ TEST_F(TrackingCommands, EstimatesAreRecordingsThatOthersRead) {
   const Outcome got = succeed("estimate " + tracked + " --recording " + at("p/recording.csv") +
                               " --truth " + at("p/time_history.csv") + " --json --out " + at("e"));
   const json summary = json::parse(got.out);
-  EXPECT_LT(figure(summary, "smoother_error_arcsec"), figure(summary, "filter_error_arcsec"));
-  EXPECT_LT(figure(summary, "filter_error_arcsec"), 40.0);
+  EXPECT_LT(value(summary, "smoother_error_arcsec"), value(summary, "filter_error_arcsec"));
+  EXPECT_LT(value(summary, "filter_error_arcsec"), 40.0);
   // A truth of another time contains no row of these.
   const std::string later = write("later.csv",
                                   "t_s,q_w,q_x,q_y,q_z\n1e9,1,0,0,0\n1000000001,1,0,0,0\n"

@@ -24,10 +24,7 @@ class WarmArrayCommand : public CommandTest {
   json power(const std::string& set) {
     const Outcome got = succeed("power " + lit_stasis + set + " --out " + at("out"));
     out_ = got.out;
-    return json::parse(file_text(at("out/summary.json")));
-  }
-  static double figure(const json& all, const char* name) {
-    return all.at(name).at("value").get<double>();
+    return summary();
   }
   std::string out_;
 };
@@ -38,22 +35,22 @@ TEST_F(WarmArrayCommand, PowerIsThatOfCellsInTheSteadyState) {
       "--set "
       "'array.thermal={convection_W_m2_K=12,emissivity=0,faces=1,air_K=300,absorptance=0.9}'");
   EXPECT_THAT(out_, HasSubstr("steady state: the front in air of 300 K with 12 W/m²K"));
-  const double kelvin = figure(steady, "cell_temperature_K");
-  const double absorbed_W = 0.9 * figure(steady, "power_on_cells_W");
-  const double left_W = absorbed_W - figure(steady, "array_power_W");
-  EXPECT_NEAR(kelvin, 300.0 + left_W / (12.0 * figure(steady, "area_of_cells_m2")), 1e-4);
-  EXPECT_EQ(figure(steady, "cell_temperature_is_stated"), 0.0);
+  const double kelvin = value(steady, "cell_temperature_K");
+  const double absorbed_W = 0.9 * value(steady, "power_on_cells_W");
+  const double left_W = absorbed_W - value(steady, "array_power_W");
+  EXPECT_NEAR(kelvin, 300.0 + left_W / (12.0 * value(steady, "area_of_cells_m2")), 1e-4);
+  EXPECT_EQ(value(steady, "cell_temperature_is_stated"), 0.0);
   const auto stated = [&](double at_K) {
     return power("--set array.temperature_K=" + std::to_string(at_K));
   };
   const json same = stated(kelvin);
   EXPECT_THAT(out_, HasSubstr("as stated"));
-  EXPECT_EQ(figure(same, "cell_temperature_is_stated"), 1.0);
-  EXPECT_NEAR(figure(same, "array_power_W"), figure(steady, "array_power_W"), 1e-6);
+  EXPECT_EQ(value(same, "cell_temperature_is_stated"), 1.0);
+  EXPECT_NEAR(value(same, "array_power_W"), value(steady, "array_power_W"), 1e-6);
   const double slope_W_K = 0.5 * (figure(stated(kelvin + 1.0), "array_power_W") -
                                   figure(stated(kelvin - 1.0), "array_power_W"));
   EXPECT_LT(slope_W_K, -0.05);
-  EXPECT_NEAR(figure(steady, "array_power_slope_W_K"), slope_W_K, 1e-3 * -slope_W_K);
+  EXPECT_NEAR(value(steady, "array_power_slope_W_K"), slope_W_K, 1e-3 * -slope_W_K);
 }
 
 TEST_F(WarmArrayCommand, SurroundingsAreThoseOfTheExperiment) {
@@ -69,8 +66,8 @@ TEST_F(WarmArrayCommand, CellsAboveTheirRatedTemperatureAreAWarning) {
   const json hot = power("--set array.thermal.faces=1 --set array.rated_temperature_K=320");
   EXPECT_THAT(hot.at("warnings").dump(), HasSubstr("above array.rated_temperature_K, 320"));
   EXPECT_THAT(out_, HasSubstr("WARNING: cells of "));
-  EXPECT_NEAR(figure(hot, "cell_temperature_above_rated_K"),
-              figure(hot, "cell_temperature_K") - 320.0, 1e-9);
+  EXPECT_NEAR(value(hot, "cell_temperature_above_rated_K"),
+              value(hot, "cell_temperature_K") - 320.0, 1e-9);
 }
 
 // Cells that hardly cool: beyond some light they give less. With cells of 25 °C more light is more.
@@ -82,8 +79,7 @@ TEST_F(WarmArrayCommand, SweepsJudgeCellsAtTheirTemperature) {
   const Outcome warm = succeed("sweep " + lit_stasis + plan + " --out " + at("warm"));
   EXPECT_THAT(warm.out, testing::Not(HasSubstr("source[0].total_power_W=80")));
   EXPECT_THAT(warm.out, HasSubstr("  cell_temperature_K  "));
-  const json summary = json::parse(file_text(at("warm/summary.json")));
-  EXPECT_GT(figure(summary, "best_cell_temperature_K"), 320.0);
+  EXPECT_GT(figure("best_cell_temperature_K", "warm"), 320.0);
   const Outcome cold = succeed("sweep " + lit_stasis + plan +
                                "--set array.temperature_K=298.15 --out " + at("cold"));
   EXPECT_THAT(cold.out, HasSubstr("source[0].total_power_W=80"));
