@@ -10,6 +10,7 @@
 #include "core/errors.h"
 #include "core/wrench.h"
 #include "tests/attitude/disturbance_bench.h"
+#include "tests/files.h"
 
 namespace photorque {
 namespace {
@@ -62,14 +63,13 @@ TEST(HelmholtzCage, CancelsPlaysAndErrs) {
 }
 
 TEST(HelmholtzCage, PlaysAFile) {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "field.csv";
-  std::ofstream(path) << "t_s,field_x_T,field_y_T,field_z_T\n0,0,0,0\n10,1e-5,0,0\n20,2e-5,0,0\n";
+  const auto path = test_file(
+      "field.csv", "t_s,field_x_T,field_y_T,field_z_T\n0,0,0,0\n10,1e-5,0,0\n20,2e-5,0,0\n");
   const AttitudeModel model =
       with(with(bench_model(), "helmholtz_cage", {{"field_file", node(path.c_str())}}),
            "magnetic_dipole", {{"dipole_A_m2", numbers({0, 0.1, 0})}});
   const Vec3 torque = torque_body_N_m(model, state_of(model, Quat::Identity(), Vec3::Zero(), 15.0));
   EXPECT_LT((torque - Vec3(0, 0, -1.5e-6)).norm(), 1e-18);
-  std::filesystem::remove(path);
 }
 
 // A table over the sphere that is linear in the light's direction: then the planet's parts act as
@@ -219,7 +219,6 @@ class LightTable : public testing::Test {
       }
     }
   }
-  void TearDown() override { std::filesystem::remove(path_); }
 
   std::filesystem::path path_ = std::filesystem::path(testing::TempDir()) / "light.csv";
 };

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "tests/attitude/settings_bench.h"
+#include "tests/files.h"
 #include "tests/noise.h"
 #include "tests/outside.h"
 #include "tests/refusal.h"
@@ -21,30 +21,14 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class File {
- public:
-  explicit File(const std::string& bytes, const std::string& ending = ".csv")
-      : path_(
-            std::filesystem::path(testing::TempDir()) /
-            ("recording_" + std::to_string(::getpid()) + "_" + std::to_string(next_++) + ending)) {
-    std::ofstream(path_, std::ios::binary) << bytes;
-  }
-  ~File() { std::filesystem::remove(path_); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  static inline int next_ = 0;
-  std::filesystem::path path_;
-};
-
 Recording read(const std::string& text, const RecordingOptions& options = {}) {
-  const File file(text);
-  return read_recording(file.path(), options);
+  const auto file = new_file(text, ".csv");
+  return read_recording(file, options);
 }
 
 std::string complaint(const std::string& text, const RecordingOptions& options = {}) {
-  const File file(text);
-  return refusal_of([&] { read_recording(file.path(), options); });
+  const auto file = new_file(text, ".csv");
+  return refusal_of([&] { read_recording(file, options); });
 }
 
 const std::vector<double>& cells_of(const Recording& recording, std::string_view name) {
@@ -70,9 +54,9 @@ TEST(Recording, WrittenAndReadBackIsTheSameToTheBit) {
   }
   recording.channels[2].values[7] = NAN;
   for (const char* ending : {".csv", ".csv.gz"}) {
-    const File file("", ending);
-    write_recording(file.path(), recording, {"made by a test", "two lines"});
-    const Recording back = read_recording(file.path());
+    const auto file = new_file("", ending);
+    write_recording(file, recording, {"made by a test", "two lines"});
+    const Recording back = read_recording(file);
     EXPECT_EQ(back.time_s, recording.time_s);
     EXPECT_EQ(back.report.preamble_lines, 2);
     EXPECT_EQ(back.report.empty_cells, 1);
@@ -330,20 +314,20 @@ TEST(Recording, DamagedCompressedFilesAreRefused) {
   for (int i = 0; i < 5000; ++i)
     text += std::to_string(i) + "," + std::to_string(i * i % 997) + "\n";
   const std::string whole = gzip(text);
-  const File good(whole, ".csv.gz");
-  EXPECT_EQ(read_recording(good.path()).rows(), 5000u);
-  const File cut(whole.substr(0, whole.size() / 2), ".csv.gz");
-  EXPECT_THROW(read_recording(cut.path()), InputError);
+  const auto good = new_file(whole, ".csv.gz");
+  EXPECT_EQ(read_recording(good).rows(), 5000u);
+  const auto cut = new_file(whole.substr(0, whole.size() / 2), ".csv.gz");
+  EXPECT_THROW(read_recording(cut), InputError);
   std::string broken = whole;
   for (size_t i = whole.size() / 2; i < whole.size() / 2 + 20; ++i) broken[i] = '\x55';
-  const File damaged(broken, ".csv.gz");
-  EXPECT_THROW(read_recording(damaged.path()), InputError);
+  const auto damaged = new_file(broken, ".csv.gz");
+  EXPECT_THROW(read_recording(damaged), InputError);
 }
 
 TEST(Commands, MustBeInOrderAndCommandSomething) {
   const auto complaint_of = [](const std::string& text) -> std::string {
-    const File file(text);
-    return refusal_of([&] { read_command_file(file.path()); });
+    const auto file = new_file(text, ".csv");
+    return refusal_of([&] { read_command_file(file); });
   };
   EXPECT_EQ(complaint_of("t_s,command_x_N_m\n0,1\n1,0\n"), "");
   EXPECT_THAT(complaint_of("t_s,command_x_N_m\n0,1\n2,0\n1,0\n"),

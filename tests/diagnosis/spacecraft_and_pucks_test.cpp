@@ -13,6 +13,7 @@
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/guess/guess.h"
 #include "tests/diagnosis/machine_bench.h"
+#include "tests/files.h"
 #include "tests/noise.h"
 
 namespace photorque {
@@ -148,15 +149,14 @@ noise_arcsec = 31
 }
 
 TEST(Pucks, AreGuessedByTheirColumns) {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "puck.csv";
-  std::ofstream file(path);
+  std::ostringstream file;
   file << "time (s),x (mm),y (mm)\n";
   const Recording seen = puck(1e-3, 0, 0, 4);
   for (size_t i = 0; i < seen.rows(); ++i) {
     file << seen.time_s[i] << ',' << 1e3 * seen.channels[0].values[i] << ','
          << 1e3 * seen.channels[1].values[i] << '\n';
   }
-  file.close();
+  const auto path = test_file("puck.csv", file.str());
   const std::string toml = guess_experiment({path}, path.parent_path());
   EXPECT_THAT(toml, HasSubstr("topology = \"planar\""));
   EXPECT_THAT(toml, HasSubstr("x_mm = \"x (mm)\""));

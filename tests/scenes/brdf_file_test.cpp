@@ -5,6 +5,7 @@
 #include "gltf_test_model.h"
 #include "raytrace/surfaces/bsdf.h"
 #include "scenes/surfaces/settings.h"
+#include "tests/files.h"
 #include "tests/refusal.h"
 
 namespace photorque {
@@ -24,10 +25,6 @@ std::string brdf_error(const std::string& text) {
   return refusal_of([&] { read_brdf(text, "scan.csv"); });
 }
 
-std::string with_text(std::string text, const std::string& old_text, const std::string& new_text) {
-  return text.replace(text.find(old_text), old_text.size(), new_text);
-}
-
 TEST(BrdfFile, TakesColumnsAndRowsInAnyOrder) {
   const BrdfTable table = read_brdf(small_table, "scan.csv");
   EXPECT_THAT(table.incidence_rad, ElementsAre(0.0, 60 * degree_rad));
@@ -37,18 +34,18 @@ TEST(BrdfFile, TakesColumnsAndRowsInAnyOrder) {
 }
 
 TEST(BrdfFile, NamesTheLineOfTheMistake) {
-  EXPECT_EQ(brdf_error(with_text(small_table, "brdf_1_sr", "brdf")),
+  EXPECT_EQ(brdf_error(replaced(small_table, "brdf_1_sr", "brdf")),
             "scan.csv:3: brdf_1_sr: found no such column, expected a header with incidence_deg, "
             "scatter_deg, azimuth_deg and brdf_1_sr");
-  EXPECT_EQ(brdf_error(with_text(small_table, "60,60,0,0.2", "60,60,0,-0.2")),
+  EXPECT_EQ(brdf_error(replaced(small_table, "60,60,0,0.2", "60,60,0,-0.2")),
             "scan.csv:5: brdf_1_sr: found \"-0.2\", expected a number from 0 to 1e+09");
-  EXPECT_EQ(brdf_error(with_text(small_table, "60,60,0", "95,60,0")),
+  EXPECT_EQ(brdf_error(replaced(small_table, "60,60,0", "95,60,0")),
             "scan.csv:5: scatter_deg: found \"95\", expected a number from 0 to 90");
-  EXPECT_EQ(brdf_error(with_text(small_table, "0,0,0,0.1,0", "0,0,0,0.1")),
+  EXPECT_EQ(brdf_error(replaced(small_table, "0,0,0,0.1,0", "0,0,0,0.1")),
             "scan.csv:6: found 4 fields, expected 5, as in the header");
-  EXPECT_EQ(brdf_error(with_text(small_table, "0,0,0,0.1", "0,60,0,0.1")),
+  EXPECT_EQ(brdf_error(replaced(small_table, "0,0,0,0.1", "0,60,0,0.1")),
             "scan.csv:6: found angles that an earlier row has, expected each once");
-  EXPECT_THAT(brdf_error(with_text(small_table, "0,0,0,0.1,0\r\n", "")),
+  EXPECT_THAT(brdf_error(replaced(small_table, "0,0,0,0.1,0\r\n", "")),
               HasSubstr("found no row for incidence 0, scatter 0, azimuth 0 deg"));
   EXPECT_THAT(brdf_error("# nothing\n"), HasSubstr("scan.csv: found no rows"));
 }
@@ -96,7 +93,7 @@ TEST(MeasuredMaterial, ScattersByItsFileWhichIsAnInput) {
 // One of the pairs (0, 0), (60, 0), (60, 60) differs; in the small table none differs.
 TEST(MeasuredMaterial, ThatIsNotReciprocalIsReported) {
   const GltfModel model = painted_with(material_with({{"brdf_file", {"scan.csv"}}}),
-                                       with_text(small_table, "60,0,0,0.3", "60,0,0,0.1"));
+                                       replaced(small_table, "60,0,0,0.3", "60,0,0,0.1"));
   EXPECT_THAT(model.notices, Contains(HasSubstr("scan.csv: f(i, o) and f(o, i) differ by 66.6")));
 }
 
