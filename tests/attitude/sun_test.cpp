@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "attitude/environment/environment.h"
 #include "core/errors.h"

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include <sstream>
 
 #include "attitude/estimation/segments.h"
 #include "attitude/observation/observation.h"

@@ -46,8 +46,7 @@ TEST(Machines, AWheelThatCoastsDownIsNamedByItsDryTorqueAndItsDrag) {
   for (int i = 0; i < 1200; ++i) {
     rate.values.push_back(coasting_rad_s(0.25 * i, start_rad_s, dry, form) + noise());
   }
-  const Diagnosis d =
-      diagnose(machine(wheel_toml), {{"wheel.csv", recording_of(0.25, {rate})}}, {});
+  const Diagnosis d = diagnosed(machine(wheel_toml), 0.25, {rate});
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("dry_friction", "air_pressure_drag"));
   for (const FoundEffect& effect : d.effects) {
     const double truth = effect.kind == "dry_friction" ? dry : form;
@@ -107,7 +106,7 @@ inertia_kg_m2 = { value = [[0.02, 0, 0], [0, 0.02, 0], [0, 0, 0.03]], sigma = [[
 [sensors.gyro]
 noise_rad_s = 0.002
 )");
-  const Diagnosis d = diagnose(nominal, {{"throw.csv", recording_of(interval_s, gyro)}}, {});
+  const Diagnosis d = diagnosed(nominal, interval_s, gyro);
   EXPECT_EQ(d.verdict, Verdict::consistent) << d.sentence;
   EXPECT_NEAR(d.chi2_per_sample_after, 1.0, 5.0 * std::sqrt(2.0 / (3.0 * 450.0)));
 }
@@ -357,8 +356,7 @@ void expect_near_truth(const Diagnosis& d, const std::string& kind, const std::s
 // encoder repeats one count.
 TEST(Machines, APendulumThatComesToRestIsFollowedBySwingAndCount) {
   const Channel angle = counted(Swing{55.0, 0.9, 0.15, 0.0}.from(1.6, 0.01, 2400), 4096);
-  const Diagnosis d =
-      diagnose(machine(pendulum_toml(-5.6)), {{"swing.csv", recording_of(0.01, {angle})}}, {});
+  const Diagnosis d = diagnosed(machine(pendulum_toml(-5.6)), 0.01, {angle});
   EXPECT_EQ(d.verdict, Verdict::missing_physics) << d.sentence;
   ASSERT_THAT(kinds_of(d), UnorderedElementsAre("dry_friction", "bearing_drag"));
   expect_near_truth(d, "dry_friction", "torque_N_m", 0.9, 0.01);
@@ -368,8 +366,8 @@ TEST(Machines, APendulumThatComesToRestIsFollowedBySwingAndCount) {
 // Swings whose period depends on their size, with no weight and no friction in the experiment.
 TEST(Machines, LargeSwingsAreNamedByWeightAndDrag) {
   const Channel angle = counted(Swing{30.0, 0.0, 0.0, 0.012}.from(2.3, 0.01, 2500), 4096);
-  const Diagnosis d = diagnose(machine("[platform]\ntopology = \"one_axis\"\naxis = \"x\"\n"),
-                               {{"swing.csv", recording_of(0.01, {angle})}}, {});
+  const Diagnosis d =
+      diagnosed(machine("[platform]\ntopology = \"one_axis\"\naxis = \"x\"\n"), 0.01, {angle});
   EXPECT_EQ(d.verdict, Verdict::missing_physics) << d.sentence;
   ASSERT_THAT(kinds_of(d), UnorderedElementsAre("static_unbalance", "air_pressure_drag"));
   expect_near_truth(d, "air_pressure_drag", "coefficient_N_m_s2", 0.012, 0.02);
@@ -387,8 +385,8 @@ TEST(Machines, ADragHasNoRivalsInAHeadingThatNeverChanges) {
     const double t = i / 30.0;
     angle.values.push_back(0.05 * std::exp(-0.5 * c * t) * std::cos(std::sqrt(k) * t) + noise());
   }
-  const Diagnosis d = diagnose(machine(pendulum_toml(-k / standard_gravity_m_s2)),
-                               {{"swing.csv", recording_of(1.0 / 30.0, {angle})}}, {});
+  const Diagnosis d =
+      diagnosed(machine(pendulum_toml(-k / standard_gravity_m_s2)), 1.0 / 30.0, {angle});
   ASSERT_THAT(kinds_of(d), ElementsAre("bearing_drag")) << d.sentence;
   EXPECT_GT(d.confidence, 0.7);
   expect_near_truth(d, "bearing_drag", "coefficient_N_m_s", c, 0.0);
@@ -410,8 +408,8 @@ TEST(Machines, ATwistedLineIsFoundByTheRateAlone) {
                                 (0.5 * c * std::cos(omega * t) + omega * std::sin(omega * t)) +
                             noise());
     }
-    const Diagnosis d = diagnose(machine("[platform]\ntopology = \"one_axis\"\naxis = \"z\"\n"),
-                                 {{"line.csv", recording_of(0.1, {rate})}}, {});
+    const Diagnosis d =
+        diagnosed(machine("[platform]\ntopology = \"one_axis\"\naxis = \"z\"\n"), 0.1, {rate});
     std::vector<std::string> kinds = kinds_of(d);
     std::ranges::sort(kinds);
     if (kinds != std::vector<std::string>{"bearing_drag", "tether"}) continue;
@@ -544,8 +542,7 @@ TEST(Machines, FittedPriorsStayWithinTheRangeOfTheirKeys) {
   for (int i = 0; i < 1200; ++i) {
     rate.values.push_back(3.0 * std::exp(5e-4 * 0.25 * i) + noise());
   }
-  const Diagnosis d =
-      diagnose(machine(wheel_toml), {{"wheel.csv", recording_of(0.25, {rate})}}, {});
+  const Diagnosis d = diagnosed(machine(wheel_toml), 0.25, {rate});
   ASSERT_EQ(d.priors_refined.size(), 1u) << d.sentence;
   EXPECT_EQ(d.priors_refined[0].key, "disturbance[0].coefficient_N_m_s");
   EXPECT_EQ(d.priors_refined[0].value[0], 0.0) << d.sentence;

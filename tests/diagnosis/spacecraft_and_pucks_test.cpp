@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <random>
+#include <sstream>
 
 #include "attitude/propagation/run.h"
 #include "core/constants.h"
@@ -76,8 +77,7 @@ TEST(Pucks, ASlideToRestIsBrakedByFriction) {
     x.values.push_back(0.8 * way + noise());
     y.values.push_back(0.6 * way + noise());
   }
-  const Diagnosis d =
-      diagnose(machine(puck_toml), {{"slide.csv", recording_of(interval_s, {x, y})}}, {});
+  const Diagnosis d = diagnosed(machine(puck_toml), interval_s, {x, y});
   ASSERT_THAT(kinds_of(d), ElementsAre("sliding_friction"));
   EXPECT_EQ(d.verdict, Verdict::unexplained);  // the wave is left
   EXPECT_NEAR(parameter(d, "sliding_friction", "coefficient").value[0], coefficient, 0.02);
