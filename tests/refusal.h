@@ -1,4 +1,4 @@
-// What a reader says about wrong input.
+// Messages about wrong input.
 #pragma once
 
 #include <string>
