@@ -10,6 +10,8 @@
 
 namespace photorque {
 
+namespace fs = std::filesystem;
+
 inline std::filesystem::path test_file(const std::string& name, const std::string& bytes) {
   const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
   write_file_whole(path, bytes);

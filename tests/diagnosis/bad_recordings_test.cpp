@@ -14,8 +14,6 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
-
 // A recording with this header and, from t = 0 on, every tenth of a second this rest of a row.
 Recording repeated_row(const std::string& header, const std::string& row, int rows) {
   std::ostringstream out;

@@ -13,8 +13,6 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
-
 TEST(LightRecordings, AScanAmongCommentsAndTornRows) {
   const auto scan = read_light_recording(
       test_file("scan.csv",

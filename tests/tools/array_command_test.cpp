@@ -12,7 +12,6 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 class ArrayCommand : public CommandTest {};
@@ -34,7 +33,7 @@ TEST_F(ArrayCommand, FitsADatasheetAndPrintsTheCell) {
 
 // The error of the photocurrent was "inf".
 TEST_F(ArrayCommand, AParameterWithoutAnyErrorIsNotDetermined) {
-  const std::string sheet = std::string(PHOTORQUE_SOURCE_DIR) + "/tests/data/keys/datasheet.toml";
+  const std::string sheet = source_folder + "/tests/data/keys/datasheet.toml";
   succeed("fit-cell " + sheet + " --set fit.rounding_A=1e9 --out " + at("out"));
   const std::string table = file_text(at("out/parameters.csv"));
   EXPECT_THAT(table, testing::ContainsRegex("photocurrent_A,not determined,[0-9.]+,\n"));
@@ -267,7 +266,7 @@ TEST_F(ArrayCommand, WrongFitsAreOneLineAndLeaveNothing) {
 
 TEST_F(ArrayCommand, PowerReportsLossesTrackersDayTargetAndWiring) {
   const Outcome got =
-      succeed("power " + (fs::path(PHOTORQUE_SOURCE_DIR) / "scenes/stasis/nominal.toml").string() +
+      succeed("power " + nominal_file +
               " --set trace.rays=65536 --set attitude.tilt_deg=30"
               " --set 'array.target={power_W=30,efficiency=0.38}' --set 'array.day={load_W=25}'"
               " --set 'array.chain={wall_plug_efficiency=0.45,converter_efficiency=0.95}'"
@@ -288,9 +287,7 @@ TEST_F(ArrayCommand, PowerReportsLossesTrackersDayTargetAndWiring) {
 
 // 23 W and 30 W are the experiment's own [[published]] figures: with others the text is another.
 TEST_F(ArrayCommand, TargetUsesPublishedFigures) {
-  const std::string stasis =
-      (fs::path(PHOTORQUE_SOURCE_DIR) / "scenes/stasis/nominal.toml").string();
-  const std::string common = "power " + stasis +
+  const std::string common = "power " + nominal_file +
                              " --set trace.rays=65536 --set 'array.target={}' --verbose --out " +
                              at("out");
   const Outcome paper = succeed(common);
@@ -304,9 +301,7 @@ TEST_F(ArrayCommand, TargetUsesPublishedFigures) {
 }
 
 TEST_F(ArrayCommand, LightAtASlantIsAStageOfTheLosses) {
-  const std::string stasis =
-      (fs::path(PHOTORQUE_SOURCE_DIR) / "scenes/stasis/nominal.toml").string();
-  const std::string common = "power " + stasis + " --set trace.rays=65536 --verbose --out " +
+  const std::string common = "power " + nominal_file + " --set trace.rays=65536 --verbose --out " +
                              at("out") + " --set attitude.tilt_deg=60 ";
   const Outcome glass = succeed(common + "--set 'array.cover={refractive_index=1.526}'");
   // Duffie and Beckman, example 5.1.1: (1 − 0.093)/(1 − 0.0434) = 0.948 at 60 deg; the beams
@@ -320,18 +315,16 @@ TEST_F(ArrayCommand, LightAtASlantIsAStageOfTheLosses) {
 }
 
 TEST_F(ArrayCommand, ASheetIsOneCellOfItsMesh) {
-  EXPECT_THAT(
-      refused("power " + (fs::path(PHOTORQUE_SOURCE_DIR) / "scenes/stasis/nominal.toml").string() +
-              " --set trace.rays=65536 --set 'array.cells=\"mesh\"' --set array.gap_mm=0" +
-              " --out " + at("out")),
-      HasSubstr("array.gap_m"));
+  EXPECT_THAT(refused("power " + nominal_file +
+                      " --set trace.rays=65536 --set 'array.cells=\"mesh\"' --set array.gap_mm=0" +
+                      " --out " + at("out")),
+              HasSubstr("array.gap_m"));
 }
 
 TEST_F(ArrayCommand, TrackersNeedAMotion) {
-  EXPECT_THAT(
-      refused("power " + (fs::path(PHOTORQUE_SOURCE_DIR) / "scenes/stasis/nominal.toml").string() +
-              " --set 'array.tracker={time_s=[0,4],tilt_deg=[0]}' --out " + at("out")),
-      HasSubstr("array.tracker.tilt_deg"));
+  EXPECT_THAT(refused("power " + nominal_file +
+                      " --set 'array.tracker={time_s=[0,4],tilt_deg=[0]}' --out " + at("out")),
+              HasSubstr("array.tracker.tilt_deg"));
   EXPECT_FALSE(fs::exists(at("out")));
 }
 

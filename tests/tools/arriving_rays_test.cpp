@@ -8,8 +8,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::string nominal_file = std::string(PHOTORQUE_SOURCE_DIR) + "/scenes/stasis/nominal.toml";
-
 class ArrivingRaysCommand : public CommandTest {
  protected:
   std::string saved(const std::string& name, const std::string& options) {

@@ -11,7 +11,6 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
 

@@ -91,8 +91,8 @@ TEST_F(Boundaries, LittleMemoryIsOneLineAndStatusThree) {
   const std::string experiment = plate("lamp", "");
   for (const int kibibytes : {620000, 450000, 400000}) {
     const Outcome got =
-        shell("(ulimit -v " + std::to_string(kibibytes) + "; exec " + PHOTORQUE_BINARY_DIR +
-              "/photorque trace " + experiment + " --quiet --threads 1 --out " + at("o") + ")");
+        shell("(ulimit -v " + std::to_string(kibibytes) + "; exec " + program_file + " trace " +
+              experiment + " --quiet --threads 1 --out " + at("o") + ")");
     if (got.status == 0) continue;
     EXPECT_EQ(got.status, 3) << kibibytes << got.err;
     EXPECT_THAT(got.err, testing::AnyOf(testing::StartsWith("numerical failure: not enough memory"),
@@ -104,27 +104,25 @@ TEST_F(Boundaries, LittleMemoryIsOneLineAndStatusThree) {
 // The limit does not hold for the superuser. Libraries of pictures aborted, or waited without end.
 TEST_F(Boundaries, TooFewThreadsAreOneLineAndStatusThree) {
   const std::string other = ::geteuid() == 0 ? "setpriv --reuid=65534 --clear-groups " : "";
-  const std::string program = std::string(PHOTORQUE_BINARY_DIR) + "/photorque";
-  if (std::system((other + program + " --version >/dev/null 2>&1").c_str()) != 0) {
+  if (std::system((other + program_file + " --version >/dev/null 2>&1").c_str()) != 0) {
     GTEST_SKIP() << "no other user can run the program";
   }
-  const Outcome got = shell(other + "prlimit --nproc=8 " + program + " trace " + plate("lamp", "") +
-                            " --quiet --out " + at("o"));
+  const Outcome got = shell(other + "prlimit --nproc=8 " + program_file + " trace " +
+                            plate("lamp", "") + " --quiet --out " + at("o"));
   EXPECT_EQ(got.status, 3);
   EXPECT_THAT(got.err, testing::ContainsRegex("^numerical failure: not enough .*\\(.*-u\\)\n$"));
 }
 
 TEST_F(Boundaries, ASmallStackIsRefused) {
-  const Outcome got =
-      shell("(ulimit -s 64; exec " + std::string(PHOTORQUE_BINARY_DIR) + "/photorque trace " +
-            plate("lamp", "") + " --quiet --out " + at("o") + ")");
+  const Outcome got = shell("(ulimit -s 64; exec " + program_file + " trace " + plate("lamp", "") +
+                            " --quiet --out " + at("o") + ")");
   EXPECT_EQ(got.status, 2);
   EXPECT_THAT(got.err, testing::HasSubstr("ulimit -s"));
 }
 
 // Integrals over the aperture of a lamp had a tolerance of zero, and no end.
 TEST_F(Boundaries, NumbersBelowAllSizesAreRefused) {
-  const std::string walls = std::string(PHOTORQUE_SOURCE_DIR) + "/tests/data/keys/walls.toml";
+  const std::string walls = source_folder + "/tests/data/keys/walls.toml";
   const std::string outcome = refused("check " + walls + " --set source[0].power_W=5e-324");
   EXPECT_THAT(outcome, testing::HasSubstr("power_W"));
   EXPECT_THAT(outcome, testing::HasSubstr("1e-100"));
@@ -133,8 +131,7 @@ TEST_F(Boundaries, NumbersBelowAllSizesAreRefused) {
 
 // The last resort: faults that would end the program by a signal.
 TEST_F(Boundaries, FaultsAreOneLineAndStatusThree) {
-  const std::string command = std::string(PHOTORQUE_BINARY_DIR) + "/photorque serve " +
-                              std::string(PHOTORQUE_SOURCE_DIR) +
+  const std::string command = program_file + " serve " + source_folder +
                               "/docs/realtime/stasis.toml --set serve.port=0 --out " + at("o") +
                               " >" + at("stdout") + " 2>" + at("err") +
                               " & p=$!; for i in $(seq 300); do"
@@ -150,9 +147,8 @@ TEST_F(Boundaries, FaultsAreOneLineAndStatusThree) {
 
 // The short form of the campaign over all numeric keys; docs/reliability.md has the long one.
 TEST_F(Boundaries, HostileNumbersEndWithOneLineOrAResult) {
-  const std::string source = PHOTORQUE_SOURCE_DIR;
-  EXPECT_EQ(std::system(("python3 " + source + "/tools/hostile " + PHOTORQUE_BINARY_DIR +
-                         "/photorque --runs 12 --seed 1 --timeout 600 >" + at("said") + " 2>&1")
+  EXPECT_EQ(std::system(("python3 " + source_folder + "/tools/hostile " + program_file +
+                         " --runs 12 --seed 1 --timeout 600 >" + at("said") + " 2>&1")
                             .c_str()),
             0)
       << file_text(at("said"));

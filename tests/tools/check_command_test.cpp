@@ -8,21 +8,18 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-const fs::path shipped = fs::path(PHOTORQUE_SOURCE_DIR) / "scenes";
 
 class CheckCommand : public CommandTest {
  protected:
   // STASIS with one thing changed, beside its scene.
   std::string planted(const std::string& file, const std::string& from, const std::string& to) {
-    std::string text = file_text(shipped / "stasis" / file);
-    const std::string scene = "\"" + (shipped / "stasis" / "stasis.gltf").string() + "\"";
+    std::string text = file_text(shipped_scenes / "stasis" / file);
+    const std::string scene = "\"" + (shipped_scenes / "stasis" / "stasis.gltf").string() + "\"";
     if (const size_t at = text.find("\"stasis.gltf\""); at != std::string::npos) {
       text.replace(at, 13, scene);
     }
-    fs::copy_file(shipped / "stasis" / "light_torque.csv", folder_ / "light_torque.csv",
+    fs::copy_file(shipped_scenes / "stasis" / "light_torque.csv", folder_ / "light_torque.csv",
                   fs::copy_options::overwrite_existing);
     const size_t at = text.find(from);
     EXPECT_NE(at, std::string::npos) << from;
@@ -32,7 +29,7 @@ class CheckCommand : public CommandTest {
 
 TEST_F(CheckCommand, ShippedExperimentsHaveNoMistake) {
   size_t checked = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(shipped)) {
+  for (const auto& entry : fs::recursive_directory_iterator(shipped_scenes)) {
     if (entry.path().extension() != ".toml" || entry.path().stem() == "parameters") continue;
     const Outcome got = succeed("check " + entry.path().string());
     EXPECT_EQ(got.err, "");
@@ -42,7 +39,7 @@ TEST_F(CheckCommand, ShippedExperimentsHaveNoMistake) {
 }
 
 TEST_F(CheckCommand, ReportsTheEffectOfEachCommand) {
-  const Outcome got = run("check " + (shipped / "stasis" / "nominal.toml").string());
+  const Outcome got = run("check " + (shipped_scenes / "stasis" / "nominal.toml").string());
   for (const std::string line :
        {"trace       12845056 rays of 49 lamps, 88 W, onto solar_array",
         "power       16 cells on solar_array", "torque-map  7 tilts × 8 headings",
@@ -54,7 +51,7 @@ TEST_F(CheckCommand, ReportsTheEffectOfEachCommand) {
 
 TEST_F(CheckCommand, ReportsInJson) {
   const Outcome good =
-      succeed("check " + (shipped / "stasis" / "nominal.toml").string() + " --json");
+      succeed("check " + (shipped_scenes / "stasis" / "nominal.toml").string() + " --json");
   const auto report = nlohmann::json::parse(good.out);
   EXPECT_EQ(report.at("schema"), "photorque.check/1");
   EXPECT_TRUE(report.at("mistakes").empty());
@@ -73,7 +70,7 @@ TEST_F(CheckCommand, LeavesNoCommandOut) {
   static const std::set<std::string> others = {"check", "new", "schema", "selftest"};
   for (const char* file :
        {"stasis/nominal.toml", "stasis/attitude.toml", "tabletop/tabletop.toml"}) {
-    const std::string message = run("check " + (shipped / file).string()).out;
+    const std::string message = run("check " + (shipped_scenes / file).string()).out;
     size_t asked = 0;
     for (std::sregex_iterator it(help.begin(), help.end(), verb), end; it != end; ++it) {
       const std::string name = (*it)[1];
@@ -169,7 +166,7 @@ TEST_F(CheckCommand, ContainsModulesAndPlansOfProve) {
 }
 
 TEST_F(CheckCommand, NewWritesAnExperimentThatRuns) {
-  const std::string model = (shipped / "stasis" / "stasis.gltf").string();
+  const std::string model = (shipped_scenes / "stasis" / "stasis.gltf").string();
   succeed("new " + at("lab/lit.toml") + " --scene " + model);
   EXPECT_THAT(file_text(at("lab/lit.toml")), HasSubstr("array_board/solar_array"));
   succeed("trace " + at("lab/lit.toml") + " --out " + at("out"));

@@ -12,18 +12,16 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-const fs::path shipped_scenes = fs::path(PHOTORQUE_SOURCE_DIR) / "scenes";
 const std::string every = " --checkpoint 0.0005";  // 30 ms
 
 class CheckpointCommand : public CommandTest {
  protected:
   // The exit status of `photorque ARGUMENTS`, or −1 where it was killed after so long.
   int killed_after(const std::string& arguments, std::chrono::milliseconds length) const {
-    const std::string command = "exec " + std::string(PHOTORQUE_BINARY_DIR) + "/photorque " +
-                                arguments + " >>" + at("stdout") + " 2>>" + at("stderr");
+    const std::string command =
+        "exec " + program_file + " " + arguments + " >>" + at("stdout") + " 2>>" + at("stderr");
     const pid_t child = ::fork();
     if (child == 0) {
       ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);

@@ -7,22 +7,18 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
 
-const fs::path scenes = fs::path(PHOTORQUE_SOURCE_DIR) / "scenes";
-
 class CommandLine : public CommandTest {};
 
-const std::string nominal = (scenes / "stasis" / "nominal.toml").string();
-const std::string attitude = (scenes / "stasis" / "attitude.toml").string();
+const std::string attitude = (shipped_scenes / "stasis" / "attitude.toml").string();
 const std::string few_rays = " --set trace.rays=65536";
 
 // Ten digits that no file of numbers holds by chance.
 TEST_F(CommandLine, EveryFileCarriesProvenance) {
   const std::string seed = "5915587277";
-  succeed("trace " + nominal + few_rays + " --seed " + seed + " --out " + at("o"));
+  succeed("trace " + nominal_file + few_rays + " --seed " + seed + " --out " + at("o"));
   EXPECT_GT(files("o").size(), 10u);
   for (const auto& [file, bytes] : files("o")) {
     EXPECT_THAT(bytes, HasSubstr("photorque")) << file;
@@ -31,27 +27,27 @@ TEST_F(CommandLine, EveryFileCarriesProvenance) {
 }
 
 TEST_F(CommandLine, JsonIsTheSummaryAndNothingElse) {
-  const Outcome got = succeed("trace " + nominal + few_rays + " --json --out " + at("o"));
+  const Outcome got = succeed("trace " + nominal_file + few_rays + " --json --out " + at("o"));
   EXPECT_EQ(got.out, file_text(folder_ / "o" / "summary.json"));
   EXPECT_THAT(got.out, HasSubstr("\"emitted_W\""));
 }
 
 TEST_F(CommandLine, QuietPrintsNothing) {
-  const Outcome got = succeed("trace " + nominal + few_rays + " --quiet --out " + at("o"));
+  const Outcome got = succeed("trace " + nominal_file + few_rays + " --quiet --out " + at("o"));
   EXPECT_EQ(got.out + got.err, "");
 }
 
 TEST_F(CommandLine, EveryExperimentRuns) {
   for (const char* name : {"dumbbell/dumbbell.toml", "tabletop/tabletop.toml", "hollow/hollow.toml",
                            "spacecraft/spacecraft.toml"}) {
-    succeed("trace " + (scenes / name).string() + few_rays + " --out " + at("o"));
-    succeed("render " + (scenes / name).string() + few_rays +
+    succeed("trace " + (shipped_scenes / name).string() + few_rays + " --out " + at("o"));
+    succeed("render " + (shipped_scenes / name).string() + few_rays +
             " --set camera.width=160 --set camera.height=120 --out " + at("o"));
   }
 }
 
 TEST_F(CommandLine, TorqueMapCoversTheGrid) {
-  succeed("torque-map " + nominal +
+  succeed("torque-map " + nominal_file +
           " --set trace.rays=16384 --set torque_map.tilt_deg=[0,30]"
           " --set torque_map.heading_deg=[0,180] --out " +
           at("o"));
@@ -64,7 +60,7 @@ TEST_F(CommandLine, TorqueMapCoversTheGrid) {
 // The Sun at azimuth 30, elevation 20 deg of the body is a source that shines from there on the
 // body at rest.
 TEST_F(CommandLine, TorqueMapTurnsTheBodyUnderTheSun) {
-  const std::string craft = (scenes / "spacecraft" / "spacecraft.toml").string();
+  const std::string craft = (shipped_scenes / "spacecraft" / "spacecraft.toml").string();
   succeed("torque-map " + craft +
           " --set torque_map={azimuth_deg=[30],elevation_deg=[20],rays=1048576} --out " +
           at("turned"));
@@ -86,7 +82,7 @@ TEST_F(CommandLine, TorqueMapTurnsTheBodyUnderTheSun) {
 }
 
 TEST_F(CommandLine, TorqueMapOverTheSphereWritesSpad) {
-  const std::string craft = (scenes / "spacecraft" / "spacecraft.toml").string();
+  const std::string craft = (shipped_scenes / "spacecraft" / "spacecraft.toml").string();
   succeed("torque-map " + craft +
           " --set torque_map.azimuth_step_deg=90"
           " --set torque_map.elevation_step_deg=45 --set torque_map.rays=8192 --out " +
@@ -102,7 +98,7 @@ double value_in(const std::string& summary, const std::string& key, const char* 
 }
 
 TEST_F(CommandLine, ResultsAreLeanAndTheTextIsShort) {
-  const std::string few = "power " + nominal + " --set trace.rays=65536 --out " + at("o");
+  const std::string few = "power " + nominal_file + " --set trace.rays=65536 --out " + at("o");
   const auto has = [this](const std::string& name) { return fs::exists(folder_ / "o" / name); };
   const Outcome usual = succeed(few);
   EXPECT_LE(std::ranges::count(usual.out, '\n'), 30) << usual.out;
@@ -130,7 +126,7 @@ TEST_F(CommandLine, ResultsAreLeanAndTheTextIsShort) {
 
 TEST_F(CommandLine, DirectLightIsTheSameGatheredAndByRays) {
   const Outcome got =
-      succeed("trace " + nominal +
+      succeed("trace " + nominal_file +
               " --set attitude.tilt_deg=30 --set trace.rays=1048576 --verbose --out " + at("o"));
   EXPECT_THAT(got.out, HasSubstr("gathered and by rays differ by"));
   const std::string summary = file_text(folder_ / "o" / "summary.json");
@@ -143,7 +139,8 @@ TEST_F(CommandLine, DirectLightIsTheSameGatheredAndByRays) {
 }
 
 TEST_F(CommandLine, RaysAreAddedUntilTheTargetErrorIsReached) {
-  const std::string base = "trace " + nominal + " --set trace.rays=4096 --set trace.direct=rays";
+  const std::string base =
+      "trace " + nominal_file + " --set trace.rays=4096 --set trace.direct=rays";
   succeed(base + " --out " + at("few"));
   succeed(base + " --target-error 0.2 --max-time 60 --out " + at("more"));
   const auto error = [&](const char* name) {
@@ -159,21 +156,22 @@ struct WrongCall {
 };
 
 TEST_F(CommandLine, WrongInputIsOneLineStatusTwoAndNoFiles) {
-  const std::string base = "trace " + nominal + few_rays + " ";
+  const std::string base = "trace " + nominal_file + few_rays + " ";
   const std::vector<WrongCall> calls = {
       {"", "found no command"},
       {"trace", "found no experiment, expected one: photorque trace EXPERIMENT.toml"},
-      {"fly " + nominal, "fly"},
+      {"fly " + nominal_file, "fly"},
       {"trace /nowhere/lab.toml", "/nowhere/lab.toml"},
-      {"trace " + nominal + " --max-time 5", "target_error"},
-      {"trace " + nominal + " --target-error 2", "target-error"},
-      {"trace " + nominal + " --set trace.direct=magic", "gather"},
-      {"torque-map " + nominal + " --set torque_map={azimuth_deg=[0],elevation_deg=[0]}", "sun"},
-      {"torque-map " + nominal + " --set torque_map={azimuth_step_deg=7,elevation_deg=[0]}",
+      {"trace " + nominal_file + " --max-time 5", "target_error"},
+      {"trace " + nominal_file + " --target-error 2", "target-error"},
+      {"trace " + nominal_file + " --set trace.direct=magic", "gather"},
+      {"torque-map " + nominal_file + " --set torque_map={azimuth_deg=[0],elevation_deg=[0]}",
+       "sun"},
+      {"torque-map " + nominal_file + " --set torque_map={azimuth_step_deg=7,elevation_deg=[0]}",
        "whole fraction of 360"},
-      {"torque-map " + nominal + " --set torque_map={azimuth_deg=[0],tilt_deg=[0]}",
+      {"torque-map " + nominal_file + " --set torque_map={azimuth_deg=[0],tilt_deg=[0]}",
        "beside directions of light"},
-      {"trace " + scenes.string(), "folder"},
+      {"trace " + shipped_scenes.string(), "folder"},
       {base + "--threads many", "many"},
       {base + "--threads -1", "-1"},
       {base + "--set trace.rays=none", "trace.rays"},
@@ -193,7 +191,7 @@ TEST_F(CommandLine, WrongInputIsOneLineStatusTwoAndNoFiles) {
       {base + "--set source[0].direction=[0,0,0]", "[0, 0, 0], expected a vector that is not zero"},
       {base + "--sett trace.rays=4",
        "--sett: found an unknown option, expected a known one, perhaps --set"},
-      {base + nominal, "nominal.toml, expected nothing more"},
+      {base + nominal_file, "nominal.toml, expected nothing more"},
       {base + "--format jpg", "--format: found \"jpg\", expected one of exr"},
       {"schema --key source.powr_W",
        "found \"source.powr_W\", expected a key with its table, perhaps "
@@ -203,9 +201,9 @@ TEST_F(CommandLine, WrongInputIsOneLineStatusTwoAndNoFiles) {
        "coefficient_N_m_s"},
       {"budget " + attitude + " --set 'disturbance={kind=\"radiation_pressure\",table=\"no.csv\"}'",
        "disturbance.table: found \"no.csv\", expected an existing file"},
-      {"power " + nominal + few_rays + " --set array.strings=7", "strings"},
-      {"power " + nominal + few_rays + " --set array.cell=banana", "banana"},
-      {"power " + (scenes / "spacecraft" / "spacecraft.toml").string(), "array"},
+      {"power " + nominal_file + few_rays + " --set array.strings=7", "strings"},
+      {"power " + nominal_file + few_rays + " --set array.cell=banana", "banana"},
+      {"power " + (shipped_scenes / "spacecraft" / "spacecraft.toml").string(), "array"},
       {base + "--out /proc/nowhere/o", "/proc/nowhere"},
   };
   for (const WrongCall& call : calls) {

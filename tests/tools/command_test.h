@@ -17,13 +17,20 @@
 
 namespace photorque {
 
+namespace fs = std::filesystem;
+
+inline const std::string program_file = std::string(PHOTORQUE_BINARY_DIR) + "/photorque",
+                         source_folder = PHOTORQUE_SOURCE_DIR,
+                         nominal_file = source_folder + "/scenes/stasis/nominal.toml";
+inline const fs::path shipped_scenes = source_folder + "/scenes";
+
 // The exit status and all that the program printed.
 struct Outcome {
   int status = -1;
   std::string out, err;
 };
 
-inline std::string file_text(const std::filesystem::path& path) {
+inline std::string file_text(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();
@@ -31,7 +38,7 @@ inline std::string file_text(const std::filesystem::path& path) {
 }
 
 // The rows of a CSV file without its comments; the first is the header.
-inline std::vector<std::vector<std::string>> csv_rows(const std::filesystem::path& path) {
+inline std::vector<std::vector<std::string>> csv_rows(const fs::path& path) {
   std::istringstream in(file_text(path));
   std::vector<std::vector<std::string>> all;
   for (std::string line; std::getline(in, line);) {
@@ -44,14 +51,14 @@ inline std::vector<std::vector<std::string>> csv_rows(const std::filesystem::pat
   return all;
 }
 
-inline std::vector<double> last_row(const std::filesystem::path& path) {
+inline std::vector<double> last_row(const fs::path& path) {
   std::vector<double> numbers;
   for (const std::string& cell : csv_rows(path).back()) numbers.push_back(std::stod(cell));
   return numbers;
 }
 
 // The columns of a CSV file by their names, as numbers; an empty cell is no number.
-inline std::map<std::string, std::vector<double>> csv_table(const std::filesystem::path& path) {
+inline std::map<std::string, std::vector<double>> csv_table(const fs::path& path) {
   const auto all = csv_rows(path);
   std::map<std::string, std::vector<double>> table;
   for (size_t r = 1; r < all.size(); ++r) {
@@ -71,10 +78,10 @@ inline double value(const nlohmann::json& summary, const std::string& name) {
 class CommandTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
+    folder_ =
+        fs::temp_directory_path() / ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
   }
 
   // A command of the shell that ends in the program's arguments, or in a group of commands.
@@ -84,9 +91,7 @@ class CommandTest : public ::testing::Test {
             file_text(at("stderr"))};
   }
   // `photorque ARGUMENTS`.
-  Outcome run(const std::string& arguments) const {
-    return shell(std::string(PHOTORQUE_BINARY_DIR) + "/photorque " + arguments);
-  }
+  Outcome run(const std::string& arguments) const { return shell(program_file + " " + arguments); }
   // One that succeeds.
   Outcome succeed(const std::string& arguments) const {
     Outcome got = run(arguments);
@@ -140,13 +145,13 @@ class CommandTest : public ::testing::Test {
   // Every file below a folder by its name.
   std::map<std::string, std::string> files(const std::string& name) const {
     std::map<std::string, std::string> all;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / name)) {
+    for (const auto& entry : fs::recursive_directory_iterator(folder_ / name)) {
       if (entry.is_regular_file()) all[entry.path().filename()] = file_text(entry.path());
     }
     return all;
   }
 
-  std::filesystem::path folder_;
+  fs::path folder_;
 };
 
 }  // namespace photorque

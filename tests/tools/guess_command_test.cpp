@@ -9,7 +9,6 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 class GuessCommand : public CommandTest {

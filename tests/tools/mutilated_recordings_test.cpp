@@ -12,7 +12,6 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::IsSupersetOf;
 
@@ -72,9 +71,8 @@ class MutilatedRecordings : public CommandTest {
   }
   // Arguments that diagnose it with an experiment of docs/real.
   std::string diagnose(const std::string& experiment, const CopiedTable& table) const {
-    return "diagnose " + std::string(PHOTORQUE_SOURCE_DIR) + "/docs/real/" + experiment +
-           ".toml --recording " + write("copy.csv", table.text()) + " --json --quiet --out " +
-           at("out");
+    return "diagnose " + source_folder + "/docs/real/" + experiment + ".toml --recording " +
+           write("copy.csv", table.text()) + " --json --quiet --out " + at("out");
   }
   static std::vector<std::string> names_of(const nlohmann::json& answer) {
     std::vector<std::string> kinds;

@@ -115,9 +115,8 @@ at_least = 1e6
 TEST_F(Optimise, GoesOnWhereItWasKilledToTheSameEnd) {
   experiment(aim_at_the_sun);
   ASSERT_EQ(optimise("reference", sun_from(25, 40)).status, 0);
-  const std::string command = "exec " + std::string(PHOTORQUE_BINARY_DIR) + "/photorque optimise " +
-                              at("e.toml") + " --out " + at("out") + sun_from(25, 40) +
-                              " >/dev/null 2>&1";
+  const std::string command = "exec " + program_file + " optimise " + at("e.toml") + " --out " +
+                              at("out") + sun_from(25, 40) + " >/dev/null 2>&1";
   const char* const words[] = {"sh", "-c", command.c_str(), nullptr};
   pid_t child = -1;
   ASSERT_EQ(

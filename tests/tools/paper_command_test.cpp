@@ -9,8 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-const std::string paper_experiment =
-    (std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "scenes/stasis/paper.toml").string();
+const std::string paper_experiment = source_folder + "/scenes/stasis/paper.toml";
 
 class PaperCommand : public CommandTest {
  protected:

@@ -5,13 +5,10 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
 
 const fs::path built = PHOTORQUE_BINARY_DIR;
-const std::string experiment =
-    (fs::path(PHOTORQUE_SOURCE_DIR) / "scenes/stasis/nominal.toml").string();
 
 class PictureModule : public CommandTest {
  protected:
@@ -37,7 +34,7 @@ TEST_F(PictureModule, IsNotLinkedByTheProgram) {
 
 TEST_F(PictureModule, IsMissedInOneLineBeforeTheWork) {
   copy_program();
-  const Outcome got = run_copy("trace " + experiment + " --set trace.rays=3e10 --out " + at("o"));
+  const Outcome got = run_copy("trace " + nominal_file + " --set trace.rays=3e10 --out " + at("o"));
   EXPECT_EQ(got.status, 2);
   EXPECT_THAT(got.err, HasSubstr("found no photorque_pictures.so, expected"));
   EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;
@@ -47,7 +44,8 @@ TEST_F(PictureModule, IsMissedInOneLineBeforeTheWork) {
 TEST_F(PictureModule, OfAnotherKindIsRefused) {
   copy_program();
   fs::copy_file(built / "photorque_fmu.so", at("bin/photorque_pictures.so"));
-  const Outcome got = run_copy("render " + experiment + " --set trace.rays=4096 --out " + at("o"));
+  const Outcome got =
+      run_copy("render " + nominal_file + " --set trace.rays=4096 --out " + at("o"));
   EXPECT_EQ(got.status, 2);
   EXPECT_THAT(got.err, HasSubstr("found another library"));
   EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;

@@ -88,7 +88,7 @@ TEST_F(Stress, RatesFromANanoradianToAThousandRadiansASecond) {
 }
 
 TEST_F(Stress, CellsTooColdForADiodeAreReported) {
-  EXPECT_THAT(refused("power " + std::string(PHOTORQUE_SOURCE_DIR) +
+  EXPECT_THAT(refused("power " + source_folder +
                       "/scenes/stasis/nominal.toml --set array.temperature_K=1 "
                       "--set trace.rays=4096 --out " +
                       at("o")),
@@ -99,7 +99,7 @@ TEST_F(Stress, CellsTooColdForADiodeAreReported) {
 // messages.
 class Attack : public CommandTest {
  protected:
-  const std::filesystem::path lab_ = std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "docs/tutorials";
+  const fs::path lab_ = source_folder + "/docs/tutorials";
   std::string bench() const { return (lab_ / "bench.toml").string(); }
   std::string recorded(const std::string& name) const {
     return " --recording " + (lab_ / name).string();
@@ -160,8 +160,8 @@ TEST_F(Attack, ATorqueMapReportsThatItOmitsTheAttitudeBias) {
 TEST_F(Attack, RatesThatNoPlatformHasAreNoFailureOfTheComputation) {
   std::string rows = "t_s,q_w,q_x,q_y,q_z,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s\n";
   for (int i = 0; i < 60; ++i) rows += std::to_string(0.1 * i) + ",1,0,0,0,1e300,0,0\n";
-  expect_refused("balance " + std::string(PHOTORQUE_SOURCE_DIR) +
-                     "/scenes/stasis/attitude.toml --recording " + write("fast.csv", rows),
+  expect_refused("balance " + source_folder + "/scenes/stasis/attitude.toml --recording " +
+                     write("fast.csv", rows),
                  "rates below 1e6 rad/s");
 }
 

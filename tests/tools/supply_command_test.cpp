@@ -90,18 +90,17 @@ TEST_F(SupplyCommand, SuppliesDeliverTheLoadAtZeroTiltAndLessWhenTilted) {
 // The light of a way is that of `power`, whose figures pass through the converter and the lamps'
 // efficiency.
 TEST_F(SupplyCommand, LightIsThatOfPower) {
-  const std::string stasis = std::string(PHOTORQUE_SOURCE_DIR) + "/scenes/stasis/nominal.toml";
   const std::string beam = "[[supply_trade.beam]]\nname = \"LED beaming\"\nexperiment = \"" +
-                           stasis +
+                           nominal_file +
                            "\"\nrays = 65536\nlamp_efficiency = 0.5\nconverter_efficiency = 0.9\n";
   const Outcome fed = succeed("supply " + write("s.toml", fed_platform + beam) +
                               " --set supply_trade.tilts=2 --json --out " + at("o"));
   const json all = json::parse(fed.out);
   for (const auto& [tilt, name] : std::vector<std::pair<std::string, std::string>>{
            {"0", "delivered_level_W"}, {"30", "delivered_tilted_W"}}) {
-    const Outcome lit =
-        succeed("power " + stasis + " --set trace.rays=65536 --set attitude.tilt_deg=" + tilt +
-                " --json --out " + at("p"));
+    const Outcome lit = succeed("power " + nominal_file +
+                                " --set trace.rays=65536 --set attitude.tilt_deg=" + tilt +
+                                " --json --out " + at("p"));
     EXPECT_NEAR(of(all, "LED_beaming_" + name), 0.9 * of(json::parse(lit.out), "array_power_W"),
                 1e-9);
   }

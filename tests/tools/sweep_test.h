@@ -57,9 +57,8 @@ class SweepTest : public CommandTest {
   // `photorque sweep` on its own, as another process.
   pid_t start(const std::string& options, const std::string& out = "out",
               const std::string& output_file = "/dev/null") const {
-    const std::string command = "exec " + std::string(PHOTORQUE_BINARY_DIR) + "/photorque sweep " +
-                                at("e.toml") + " --out " + at(out) + " " + options + " >" +
-                                output_file + " 2>&1";
+    const std::string command = "exec " + program_file + " sweep " + at("e.toml") + " --out " +
+                                at(out) + " " + options + " >" + output_file + " 2>&1";
     const char* const words[] = {"sh", "-c", command.c_str(), nullptr};
     pid_t child = -1;
     ::posix_spawn(&child, "/bin/sh", nullptr, nullptr, const_cast<char* const*>(words), environ);

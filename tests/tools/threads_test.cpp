@@ -6,8 +6,6 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct Command {
   std::string name, arguments;  // SCENES and CASE are folders of the sources, HERE the test's own
 };
@@ -82,12 +80,12 @@ class Threads : public CommandTest, public ::testing::WithParamInterface<Command
  protected:
   void SetUp() override {
     CommandTest::SetUp();
-    const fs::path scenes = fs::path(PHOTORQUE_SOURCE_DIR) / "scenes";
-    fs::copy(scenes / "hollow" / "hollow.gltf", at("hollow.gltf"));
+    fs::copy(shipped_scenes / "hollow" / "hollow.gltf", at("hollow.gltf"));
     write("sunlit.toml", sunlit);
     write("datasheet.toml", datasheet);
     if (GetParam().name != "balance") return;
-    const std::string flight = "propagate " + (scenes / "stasis" / "attitude.toml").string() +
+    const std::string flight = "propagate " +
+                               (shipped_scenes / "stasis" / "attitude.toml").string() +
                                " --set propagate.duration_s=60 --out " + at("flight");
     succeed(flight);
     fs::copy(at("flight/recording.csv"), at("recording.csv"));

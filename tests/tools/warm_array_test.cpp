@@ -11,13 +11,10 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
 
-const std::string lit_stasis =
-    (fs::path(PHOTORQUE_SOURCE_DIR) / "scenes/stasis/nominal.toml").string() +
-    " --set trace.rays=65536 ";
+const std::string lit_stasis = nominal_file + " --set trace.rays=65536 ";
 
 class WarmArrayCommand : public CommandTest {
  protected:
