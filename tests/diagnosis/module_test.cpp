@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <random>
-#include <sstream>
 
 #include "diagnosis/light/module/curve.h"
 #include "diagnosis/light/module/diagnose.h"
 #include "photovoltaics/cell/table.h"
 #include "photovoltaics/network/curve.h"
 #include "scenes/experiment/toml.h"
+#include "tests/files.h"
 #include "tests/outside.h"
 
 namespace photorque {
@@ -371,16 +370,10 @@ LightRecording by_ngspice(const std::string& name, double temperature_K) {
   LightRecording r;
   r.kind = LightRecording::Kind::sweep;
   r.name = name;
-  std::ifstream in(outside::reference_data("electrical/ngspice_modules.csv"));
-  for (std::string line; std::getline(in, line);) {
-    std::stringstream fields(line);
-    std::string curve, voltage, current;
-    std::getline(fields, curve, ',');
-    std::getline(fields, voltage, ',');
-    std::getline(fields, current, ',');
-    if (curve != name) continue;
-    r.voltage_V.push_back(std::stod(voltage));
-    r.current_A.push_back(std::stod(current));
+  for (const auto& row : csv_rows(outside::reference_data("electrical/ngspice_modules.csv"))) {
+    if (row[0] != name) continue;
+    r.voltage_V.push_back(std::stod(row.at(1)));
+    r.current_A.push_back(std::stod(row.at(2)));
   }
   const size_t rows = r.voltage_V.size();
   r.temperature_K.assign(rows, temperature_K);

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <sstream>
 
 #include "core/errors.h"
 #include "reference.h"
@@ -48,18 +47,11 @@ TEST(PhotovoltaicWirings, EightWiringsUnderThreeMapsAgreeWithNgspice) {
       {"tied_modules", {"series 5", "parallel 4 bypass", "series 5"}},
       {"nested", {"parallel 2", "series 5 bypass", "parallel 2", "series 5 bypass"}}};
   const double temperature_K = reference::ngspice_temperature_K();
-  std::ifstream in(reference::file("ngspice_wirings"));
   std::map<std::string, ArrayCurve> curves;
   size_t compared = 0;
   double worst = 0.0;
-  for (std::string line; std::getline(in, line);) {
-    if (line.empty() || line[0] == '#') continue;
-    std::stringstream cells(line);
-    std::string wiring, map, voltage, current;
-    std::getline(cells, wiring, ',');
-    std::getline(cells, map, ',');
-    std::getline(cells, voltage, ',');
-    std::getline(cells, current, ',');
+  for (const auto& row : csv_rows(reference::file("ngspice_wirings"))) {
+    const std::string &wiring = row.at(0), &map = row.at(1), &voltage = row.at(2);
     const std::string name = wiring + " " + map;
     if (!curves.contains(name)) {
       const ArrayDesign array =
@@ -67,7 +59,7 @@ TEST(PhotovoltaicWirings, EightWiringsUnderThreeMapsAgreeWithNgspice) {
       curves.emplace(name, reference::curve(array.wiring, reference::suns(map),
                                             reference::cell(temperature_K)));
     }
-    const double expected_A = std::stod(current);
+    const double expected_A = std::stod(row.at(3));
     const double apart = std::abs(curves.at(name).current_A(std::stod(voltage)) / expected_A - 1.0);
     EXPECT_LE(apart, 1e-6) << name << " at " << voltage << " V";
     worst = std::max(worst, apart);

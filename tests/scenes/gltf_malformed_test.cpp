@@ -1,7 +1,7 @@
 // Files that are wrong: the corpus of the Khronos validator, and mistakes made one at a time.
 #include <filesystem>
-#include <fstream>
 
+#include "core/files.h"
 #include "gltf_test_model.h"
 #include "tests/outside.h"
 
@@ -48,11 +48,6 @@ const std::map<std::string, std::string> refused = {
     {"node/valid.gltf", "found a skinned mesh, expected rigid meshes"},
 };
 
-std::string bytes_of_file(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 TEST(GltfCorpus, EveryErrorThatMattersIsRefusedInOneLine) {
   PHOTORQUE_NEEDS_THIRD_PARTY("models/malformed");
   size_t wrong_files = 0, right_files = 0;
@@ -60,7 +55,7 @@ TEST(GltfCorpus, EveryErrorThatMattersIsRefusedInOneLine) {
     const std::string extension = entry.path().extension().string();
     if (extension != ".gltf" && extension != ".glb") continue;
     const std::string name = std::filesystem::relative(entry.path(), corpus).generic_string();
-    const json report = json::parse(bytes_of_file(entry.path().string() + ".report.json"));
+    const json report = json::parse(read_file(entry.path().string() + ".report.json"));
     const bool is_wrong = report["issues"]["numErrors"].get<int>() > 0;
     (is_wrong ? wrong_files : right_files) += 1;
     const std::string message = refusal_of([&] { read_gltf(entry.path()); });

@@ -67,8 +67,7 @@ initial_apm = "attitude.apm"
   EXPECT_THAT(all.at("time_history.csv"), HasSubstr("\n0,0.8,0.6,0,0,"));
   EXPECT_THAT(all.at("summary.json"), HasSubstr("states.oem"));
   const auto refusal = [&](const std::string& setting) {
-    const std::string refused = refused("propagate " + experiment + " --set " + setting);
-    return refused;
+    return refused("propagate " + experiment + " --set " + setting);
   };
   EXPECT_THAT(refusal("propagate.duration_s=400"),
               HasSubstr("an end 110 s after the ephemeris, expected a run between "
