@@ -30,6 +30,13 @@ struct Outcome {
   std::string out, err;
 };
 
+// The kinds of the effects of a diagnosis.
+inline std::vector<std::string> kinds_in(const nlohmann::json& answer) {
+  std::vector<std::string> kinds;
+  for (const auto& effect : answer.at("effects")) kinds.push_back(effect.at("kind"));
+  return kinds;
+}
+
 // A figure of summary.json.
 inline double value(const nlohmann::json& summary, const std::string& name) {
   return summary.at(name).at("value").get<double>();
@@ -60,9 +67,11 @@ class CommandTest : public ::testing::Test {
   }
   // The lines, usually one, of one that is refused.
   std::string refused(const std::string& arguments, int lines = 1) const {
-    const Outcome got = run(arguments);
-    EXPECT_EQ(got.status, 2) << arguments << '\n' << got.err;
-    EXPECT_EQ(std::ranges::count(got.err, '\n'), lines) << arguments << '\n' << got.err;
+    return refusal_in(run(arguments), lines);
+  }
+  static std::string refusal_in(const Outcome& got, int lines = 1) {
+    EXPECT_EQ(got.status, 2) << got.err;
+    EXPECT_EQ(std::ranges::count(got.err, '\n'), lines) << got.err;
     return got.err;
   }
   // The path of a file in the test's folder.

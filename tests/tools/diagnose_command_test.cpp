@@ -87,10 +87,8 @@ TEST_F(DiagnoseCommand, RecordingsOfTwoKindsAreListedByName) {
   const std::string curve = write("curve.csv", "voltage_V,current_A\n0,1\n0.3,0.9\n0.5,0\n");
   for (const std::string& both : {"--recording " + recording_ + " --recording " + curve,
                                   "--recording " + recording_ + " --holdout " + curve}) {
-    const Outcome found =
-        run("diagnose " + experiment_ + " " + both + " --quiet --out " + at("answer"));
-    EXPECT_EQ(found.status, 2);
-    EXPECT_THAT(found.err, HasSubstr("curve.csv: found a recording of light"));
+    EXPECT_THAT(refused("diagnose " + experiment_ + " " + both + " --quiet --out " + at("answer")),
+                HasSubstr("curve.csv: found a recording of light"));
   }
   EXPECT_THAT(refused("diagnose " + experiment_ + " --recording " + recording_ + " " + curve +
                       " --out " + at("answer")),
@@ -170,31 +168,26 @@ mode = "off"
 duration_s = 30
 initial_rate_rad_s = [0, 0, 0.05]
 )");
-  Outcome got = run("power " + lab + " --quiet --out " + at("power"));
-  ASSERT_EQ(got.status, 0) << got.err;
-  got = run("propagate " + lab + " --quiet --out " + at("propagated"));
-  ASSERT_EQ(got.status, 0) << got.err;
+  succeed("power " + lab + " --quiet --out " + at("power"));
+  succeed("propagate " + lab + " --quiet --out " + at("propagated"));
   const auto power = nlohmann::json::parse(file_text(at("power/summary.json")));
   const auto figure = [&](const char* name) { return power[name]["value"].dump(); };
   const std::string both = write(
       "run.csv",
       with_columns(file_text(at("propagated/recording.csv")), ",array_voltage_V,array_current_A",
                    "," + figure("array_voltage_V") + "," + figure("array_current_A")));
-  got = run("diagnose " + lab + " --recording " + both + " --quiet --out " + at("answer"));
-  ASSERT_EQ(got.status, 0) << got.err;
+  succeed("diagnose " + lab + " --recording " + both + " --quiet --out " + at("answer"));
   const auto json = nlohmann::json::parse(file_text(at("answer/diagnosis.json")));
   EXPECT_EQ(json["verdict"], "consistent") << json["sentence"];
   ASSERT_EQ(json["domains"].size(), 2u);
   EXPECT_EQ(json["domains"][0]["of"], "motion");
   EXPECT_EQ(json["domains"][1]["of"], "light");
   EXPECT_THAT(file_text(at("answer/report.html")), HasSubstr("array_voltage_V"));
-  got = run("check " + at("answer/improved.toml"));
-  EXPECT_EQ(got.status, 0) << got.err;
+  succeed("check " + at("answer/improved.toml"));
   // No light among the recordings, no light held out.
-  got = run("diagnose " + lab + " --recording " + at("propagated/recording.csv") + " --holdout " +
-            both + " --quiet --out " + at("answer"));
-  EXPECT_EQ(got.status, 2);
-  EXPECT_THAT(got.err, HasSubstr("run.csv: found a recording of light"));
+  EXPECT_THAT(refused("diagnose " + lab + " --recording " + at("propagated/recording.csv") +
+                      " --holdout " + both + " --quiet --out " + at("answer")),
+              HasSubstr("run.csv: found a recording of light"));
 }
 
 TEST_F(DiagnoseCommand, AnExperimentWithoutACommandIsReported) {

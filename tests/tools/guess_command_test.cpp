@@ -36,11 +36,6 @@ class GuessCommand : public CommandTest {
     }
     return write("thinned.csv", text);
   }
-  static std::vector<std::string> names(const nlohmann::json& answer) {
-    std::vector<std::string> kinds;
-    for (const auto& effect : answer.at("effects")) kinds.push_back(effect.at("kind"));
-    return kinds;
-  }
 };
 
 TEST_F(GuessCommand, PrintsItsFilesAndKeepsChangedOnes) {
@@ -89,11 +84,11 @@ TEST_F(GuessCommand, RealRecordingsAreDiagnosedByTheirGuess) {
   const fs::path real = photorque::outside::third_party("recordings");
   using testing::Contains;
   // 4000 rows a second would take five times as long and say no more.
-  EXPECT_THAT(names(diagnosed(thinned(real / "throw_flywheel/body_37.csv.gz", 8))),
+  EXPECT_THAT(kinds_in(diagnosed(thinned(real / "throw_flywheel/body_37.csv.gz", 8))),
               Contains("wheel_momentum"));
-  EXPECT_THAT(names(diagnosed(real / "racquet_tumble/flight_081.csv.gz")),
+  EXPECT_THAT(kinds_in(diagnosed(real / "racquet_tumble/flight_081.csv.gz")),
               Contains("air_pressure_drag"));
-  EXPECT_THAT(names(diagnosed(real / "wheel_coastdown/grandprix406_left_120psi.csv.gz")),
+  EXPECT_THAT(kinds_in(diagnosed(real / "wheel_coastdown/grandprix406_left_120psi.csv.gz")),
               Contains("air_pressure_drag"));
   EXPECT_EQ(diagnosed(real / "pv_iv_shading/curve_058.csv.gz").at("verdict"), "consistent");
   EXPECT_EQ(diagnosed(real / "pv_iv_shading/curve_067.csv.gz").at("verdict"), "unexplained");

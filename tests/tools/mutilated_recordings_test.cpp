@@ -74,15 +74,10 @@ class MutilatedRecordings : public CommandTest {
     return "diagnose " + source_folder + "/docs/real/" + experiment + ".toml --recording " +
            write("copy.csv", table.text()) + " --json --quiet --out " + at("out");
   }
-  static std::vector<std::string> names_of(const nlohmann::json& answer) {
-    std::vector<std::string> kinds;
-    for (const auto& effect : answer.at("effects")) kinds.push_back(effect.at("kind"));
-    return kinds;
-  }
   void expect_found(const std::string& experiment, const CopiedTable& table,
                     const std::vector<std::string>& names, const std::string& note) const {
     const auto answer = nlohmann::json::parse(succeed(diagnose(experiment, table)).out);
-    EXPECT_THAT(names_of(answer), IsSupersetOf(names));
+    EXPECT_THAT(kinds_in(answer), IsSupersetOf(names));
     EXPECT_THAT(answer.at("warnings").dump(), HasSubstr(note));
   }
   void expect_refused(const std::string& experiment, const CopiedTable& table,

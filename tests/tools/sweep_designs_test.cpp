@@ -241,9 +241,8 @@ TEST_F(SweepDesigns, ThatAllFailLeaveNothing) {
   experiment(
       "[sweep]\nverb = \"trace\"\n[[sweep.axis]]\nkey = \"source[0].irradiance_W_m2\"\n"
       "values = [-1, -3]\n");
-  const Outcome got = sweep();
-  EXPECT_EQ(got.status, 2);
-  EXPECT_THAT(got.err, HasSubstr("e.toml: design 1 of 2: source[0].irradiance_W_m2: found -1"));
+  EXPECT_THAT(refusal_in(sweep()),
+              HasSubstr("e.toml: design 1 of 2: source[0].irradiance_W_m2: found -1"));
   EXPECT_FALSE(std::filesystem::exists(at("out")));
 }
 
