@@ -149,9 +149,8 @@ TEST(SurfaceSettings, GlassRoughnessAndSlopesReachTheSurface) {
 }
 
 TEST(SurfaceSettings, SlopeErrorsHaveAShapeAndTwoSizes) {
-  const SettingsNode two{SettingsNode::Array{node_of(6.0), node_of(2.0)}, written_at};
-  const SettingsNode axis{SettingsNode::Array{node_of(0.0), node_of(2.0), node_of(0.0)},
-                          written_at};
+  const SettingsNode two = node_of(std::vector{6.0, 2.0});
+  const SettingsNode axis = node_of(std::vector{0.0, 2.0, 0.0});
   const SettingsNode pillbox{std::string("pillbox"), written_at};
   const Settings settings = settings_of({{"specular", node_of(1.0)},
                                          {"slope_error_mrad", two},
@@ -168,12 +167,10 @@ TEST(SurfaceSettings, SlopeErrorsHaveAShapeAndTwoSizes) {
     return refusal_of([&] { read_sheet(settings_of(table), 1, "x"); });
   };
   EXPECT_THAT(error({{"slope_error_mrad", two}}), HasSubstr("slope_error_axis beside"));
-  const SettingsNode three{SettingsNode::Array{node_of(6.0), node_of(2.0), node_of(1.0)},
-                           written_at};
+  const SettingsNode three = node_of(std::vector{6.0, 2.0, 1.0});
   EXPECT_THAT(error({{"slope_error_mrad", three}, {"slope_error_axis", axis}}),
               HasSubstr("found an array of 3, expected one number, or two"));
-  const SettingsNode nowhere{SettingsNode::Array{node_of(0.0), node_of(0.0), node_of(0.0)},
-                             written_at};
+  const SettingsNode nowhere = node_of(std::vector{0.0, 0.0, 0.0});
   EXPECT_THAT(error({{"slope_error_mrad", two}, {"slope_error_axis", nowhere}}),
               HasSubstr("found a vector without length"));
 }
