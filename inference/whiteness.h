@@ -1,7 +1,6 @@
 // Tests of the residuals of a fit for whiteness, and of paired differences for a positive location.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "inference/estimator/thresholds.h"

@@ -1,6 +1,5 @@
 #include "attitude/environment/epoch.h"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <chrono>

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "attitude/estimation/axis_readings.h"
-#include "core/constants.h"
 #include "core/numerics/linear.h"
 #include "core/numerics/median.h"
 

@@ -1,7 +1,6 @@
 // A recording as a filter takes it: readings by instant.
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>

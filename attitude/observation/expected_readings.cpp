@@ -1,7 +1,6 @@
 #include "attitude/observation/expected_readings.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 namespace photorque {

@@ -1,7 +1,6 @@
 #include "attitude/observation/kinematics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "attitude/observation/prediction.h"

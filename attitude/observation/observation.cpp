@@ -1,7 +1,6 @@
 #include "attitude/observation/observation.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "attitude/observation/blocks.h"

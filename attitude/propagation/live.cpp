@@ -1,6 +1,5 @@
 #include "attitude/propagation/live.h"
 
-#include <algorithm>
 #include <array>
 #include <vector>
 

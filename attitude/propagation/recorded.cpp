@@ -7,7 +7,6 @@
 #include "attitude/propagation/run.h"
 #include "attitude/propagation/sampling.h"
 #include "attitude/propagation/time_history.h"
-#include "core/errors.h"
 #include "core/snapshot.h"
 
 namespace photorque {

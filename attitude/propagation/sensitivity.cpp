@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "attitude/model/disturbance.h"
 #include "attitude/propagation/stage_system.h"

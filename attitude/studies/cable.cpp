@@ -1,7 +1,5 @@
 #include "attitude/studies/cable.h"
 
-#include <cmath>
-
 #include "core/constants.h"
 
 namespace photorque {

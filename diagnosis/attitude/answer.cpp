@@ -5,10 +5,8 @@
 #include <optional>
 
 #include "attitude/estimation/fit.h"
-#include "attitude/observation/noise_levels.h"
 #include "attitude/propagation/run.h"
 #include "diagnosis/attitude/domain.h"
-#include "diagnosis/attitude/findings.h"
 #include "diagnosis/attitude/holdout.h"
 #include "diagnosis/attitude/locate.h"
 #include "diagnosis/attitude/model_discrepancy.h"

@@ -6,7 +6,6 @@
 #include "attitude/estimation/fit.h"
 #include "core/errors.h"
 #include "core/parallel.h"
-#include "diagnosis/attitude/holdout.h"
 
 namespace photorque {
 namespace {

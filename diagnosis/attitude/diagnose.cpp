@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 #include "attitude/disturbances/kind.h"
-#include "attitude/estimation/conventions.h"
 #include "attitude/estimation/fit.h"
 #include "attitude/estimation/swing.h"
 #include "core/constants.h"

@@ -1,9 +1,8 @@
 #include "diagnosis/attitude/domain.h"
 
-#include <algorithm>
-
 #include "attitude/estimation/fit.h"
 #include "core/parallel.h"
+#include "diagnosis/attitude/effects/scan.h"
 #include "diagnosis/attitude/effects/screen.h"
 #include "diagnosis/attitude/holdout.h"
 

@@ -3,7 +3,6 @@
 // motion. Candidates are the effects of the catalogue and empirical torques.
 #pragma once
 
-#include "diagnosis/attitude/effects/scan.h"
 #include "diagnosis/attitude/effects/trial.h"
 #include "inference/domain.h"
 

@@ -5,7 +5,6 @@
 
 #include "attitude/estimation/fit.h"
 #include "attitude/estimation/starts.h"
-#include "core/constants.h"
 #include "core/errors.h"
 
 namespace photorque {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/constants.h"
 #include "core/errors.h"
 #include "core/text/format.h"
 #include "diagnosis/light/model/recording.h"

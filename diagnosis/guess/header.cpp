@@ -1,7 +1,5 @@
 #include "diagnosis/guess/header.h"
 
-#include <algorithm>
-#include <array>
 #include <cctype>
 #include <cstdint>
 

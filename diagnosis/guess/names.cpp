@@ -1,7 +1,6 @@
 #include "diagnosis/guess/guess.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <optional>
 

@@ -1,7 +1,6 @@
 #include "diagnosis/light/candidate.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace photorque {
 namespace {

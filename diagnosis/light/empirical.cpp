@@ -3,7 +3,6 @@
 // in the residuals of scans.
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/constants.h"
 #include "diagnosis/light/candidate.h"

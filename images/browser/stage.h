@@ -1,7 +1,6 @@
 // The three-dimensional scene of a page, as plain data: a body among lamps, in one state or many.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -7,7 +7,6 @@
 #include "core/errors.h"
 #include "core/text/format.h"
 #include "images/drawing/colour.h"
-#include "images/writers/metadata.h"
 
 namespace photorque {
 namespace {

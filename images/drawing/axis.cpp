@@ -1,6 +1,5 @@
 #include "images/drawing/axis.h"
 
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include "core/text/format.h"

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>

@@ -3,7 +3,6 @@
 #include <hdf5.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "core/errors.h"
 #include "core/files.h"

@@ -1,7 +1,6 @@
 // Maps and plots as PNG pictures.
 //
 // "Description" is JSON with unit, extents and provenance.
-#include "core/text/format.h"
 #include "images/drawing/map.h"
 #include "images/drawing/plot.h"
 #include "images/writers/image_file.h"

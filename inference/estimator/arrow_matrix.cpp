@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/numerics/linear.h"
 #include "inference/estimator/covariance.h"

@@ -21,7 +21,6 @@
 // can diverge from it.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "inference/estimator/covariance.h"

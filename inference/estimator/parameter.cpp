@@ -1,7 +1,6 @@
 #include "inference/estimator/parameter.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace photorque::inference {

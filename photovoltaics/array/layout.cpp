@@ -1,7 +1,6 @@
 #include "photovoltaics/array/layout.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "core/errors.h"
 

@@ -1,7 +1,6 @@
 #include "photovoltaics/array/tracker.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 

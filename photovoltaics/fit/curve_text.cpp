@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <map>
-#include <numeric>
-#include <span>
 
 #include "core/errors.h"
 #include "core/text/format.h"

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 
-#include "core/constants.h"
 #include "core/errors.h"
 #include "photovoltaics/fit/parts.h"
 

@@ -1,7 +1,6 @@
 #include "photovoltaics/fit/module_file.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <map>

@@ -5,11 +5,9 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <vector>
 
-#include "core/constants.h"
 #include "core/errors.h"
 #include "photovoltaics/fit/parts.h"
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <span>
 #include <type_traits>
 
 #include "photovoltaics/cell/diode_voltage.h"

@@ -1,7 +1,6 @@
 #include "photovoltaics/network/four_strings.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/numerics/root.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <optional>
 
 #include "core/numerics/root.h"
 #include "photovoltaics/network/curve.h"

@@ -1,7 +1,6 @@
 // A StringCurve from its wiring: cells in runs, and where its diodes start to conduct.
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/numerics/root.h"
 #include "photovoltaics/network/string.h"

@@ -1,7 +1,6 @@
 #include "scenes/cad/part.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace photorque::cad {

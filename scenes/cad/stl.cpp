@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <bit>
 #include <cctype>
-#include <cmath>
 #include <cstring>
 #include <optional>
 #include <unordered_map>

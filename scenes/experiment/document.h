@@ -1,7 +1,6 @@
 // TOML documents that the program writes: the one writer of all of them.
 #pragma once
 
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -1,7 +1,6 @@
 // Properties of a scene that make results doubtful.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>

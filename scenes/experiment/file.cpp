@@ -1,5 +1,4 @@
 // The first step of reading an experiment: the text, without the scene.
-#include <algorithm>
 #include <cmath>
 
 #include "core/constants.h"

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "core/constants.h"
-#include "core/errors.h"
 #include "core/settings/settings.h"
 
 namespace photorque {

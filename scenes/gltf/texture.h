@@ -5,7 +5,6 @@
 // that the absorbed fraction of uniform light is unchanged.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "raytrace/scene.h"

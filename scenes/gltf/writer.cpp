@@ -1,8 +1,6 @@
 #include "scenes/gltf/writer.h"
 
-#include <algorithm>
 #include <bit>
-#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>

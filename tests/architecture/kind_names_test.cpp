@@ -2,17 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <regex>
 #include <set>
-#include <sstream>
+
+#include "tests/architecture/tree.h"
 
 namespace {
 
-namespace fs = std::filesystem;
-
-const fs::path source_root = PHOTORQUE_SOURCE_DIR;
+using namespace photorque::tree;
 
 // Files outside a kind's own that hold its name in quotes, and why.
 const std::map<std::string, std::set<std::string>> allowed = {
@@ -48,21 +46,11 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"attitude/environment/sun.cpp", {"orbit"}},
 };
 
-std::string text_without_comments(const fs::path& file) {
-  static const std::regex comment(R"(//[^\n]*)");
-  std::ifstream in(file);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return std::regex_replace(text.str(), comment, "");
-}
-
 // Name and own file of every kind, from the folder's list of words.
 std::map<std::string, std::string> kinds_of_the_list() {
   static const std::regex word(R"(disturbances/[a-z]+/([a-z_]+)(?!\.cpp|[a-z_]))");
-  std::ifstream in(source_root / "attitude/CMakeLists.txt");
-  std::ostringstream text;
-  text << in.rdbuf();
-  const std::string list = text.str().substr(0, text.str().find("photorque_folder"));
+  std::string list = text_of(root / "attitude/CMakeLists.txt");
+  list.erase(list.find("photorque_folder"));
   std::map<std::string, std::string> kinds;
   for (std::sregex_iterator it(list.begin(), list.end(), word), end; it != end; ++it) {
     kinds[(*it)[1]] = "attitude/" + it->str() + ".cpp";
@@ -76,14 +64,10 @@ TEST(KindNames, StandInTheKindsOwnFileAlone) {
   ASSERT_GT(kinds.size(), 30u);
   std::map<std::string, std::set<std::string>> found;
   for (const std::string folder : {"attitude", "diagnosis", "inference", "tools"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(source_root / folder)) {
-      const std::string file = fs::relative(entry.path(), source_root).generic_string();
-      const fs::path extension = entry.path().extension();
-      // A benchmark keeps its cases.
-      if ((extension != ".h" && extension != ".cpp") || file.starts_with("tools/benchmarks/")) {
-        continue;
-      }
-      const std::string text = text_without_comments(entry.path());
+    for (const fs::path& path : sources_of(folder)) {
+      const std::string file = fs::relative(path, root).generic_string();
+      if (file.starts_with("tools/benchmarks/")) continue;  // a benchmark keeps its cases
+      const std::string text = without_comments(text_of(path));
       for (std::sregex_iterator it(text.begin(), text.end(), quoted), end; it != end; ++it) {
         const auto kind = kinds.find((*it)[1]);
         if (kind != kinds.end() && kind->second != file) found[file].insert(kind->first);

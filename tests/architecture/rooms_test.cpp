@@ -165,15 +165,13 @@ TEST(Rooms, IncludesNeverRunInACircle) {
 
 TEST(Rooms, HaveAtMost30FilesWithNamesThatDoNotRepeatTheFolder) {
   std::map<std::string, size_t> files;
-  for (const std::string& folder : top_folders) {
-    for (const fs::path& file : sources_of(folder)) {
-      ++files[room_of(file)];
-      const std::string own = file.parent_path().filename().string();
-      // A kind is named as users write it.
-      const bool is_kind =
-          text_of(file).find("s::" + file.stem().string() + " {") != std::string::npos;
-      EXPECT_TRUE(is_kind || !file.stem().string().starts_with(own + "_")) << file;
-    }
+  for (const fs::path& file : all_sources()) {
+    ++files[room_of(file)];
+    const std::string own = file.parent_path().filename().string();
+    // A kind is named as users write it.
+    const bool is_kind =
+        text_of(file).find("s::" + file.stem().string() + " {") != std::string::npos;
+    EXPECT_TRUE(is_kind || !file.stem().string().starts_with(own + "_")) << file;
   }
   for (const auto& [room, count] : files) EXPECT_LE(count, 30u) << room;
 }
@@ -232,16 +230,14 @@ TEST(Rooms, LibrariesNeitherPrintNorExit) {
 TEST(Rooms, OnlyTheTwoExceptionsAreThrown) {
   static const std::regex thrown(R"(\bthrow\s+([A-Za-z_:]+))");
   // A name with a small first letter is a function or a variable that makes one of the two.
-  for (const std::string& folder : top_folders) {
-    for (const fs::path& file : sources_of(folder)) {
-      const std::string code = code_of(file);
-      for (std::sregex_iterator it(code.begin(), code.end(), thrown), end; it != end; ++it) {
-        const std::string name = (*it)[1];
-        if (name == "InputError" || name == "NumericalError") continue;
-        if (name == "BeyondTable") continue;  // a NumericalError
-        EXPECT_FALSE(name.starts_with("std::") || std::isupper(static_cast<unsigned char>(name[0])))
-            << file << " throws " << name;
-      }
+  for (const fs::path& file : all_sources()) {
+    const std::string code = code_of(file);
+    for (std::sregex_iterator it(code.begin(), code.end(), thrown), end; it != end; ++it) {
+      const std::string name = (*it)[1];
+      if (name == "InputError" || name == "NumericalError") continue;
+      if (name == "BeyondTable") continue;  // a NumericalError
+      EXPECT_FALSE(name.starts_with("std::") || std::isupper(static_cast<unsigned char>(name[0])))
+          << file << " throws " << name;
     }
   }
 }
@@ -250,12 +246,10 @@ TEST(Rooms, NoGlobalVariables) {
   // A mutable namespace-scope or static object: `static T x` that is neither const nor constexpr.
   static const std::regex mutable_static(
       R"(\n\s*(static|thread_local)\s+(?!const|constexpr|inline|void|bool operator)[A-Za-z_:<>, \*&]+\s+[a-z_]+\s*(=|;|\{))");
-  for (const std::string& folder : top_folders) {
-    for (const fs::path& file : sources_of(folder)) {
-      const std::string code = code_of(file);
-      std::smatch match;
-      EXPECT_FALSE(std::regex_search(code, match, mutable_static)) << file << ": " << match.str();
-    }
+  for (const fs::path& file : all_sources()) {
+    const std::string code = code_of(file);
+    std::smatch match;
+    EXPECT_FALSE(std::regex_search(code, match, mutable_static)) << file << ": " << match.str();
   }
 }
 
@@ -264,17 +258,15 @@ TEST(Rooms, TypesOfHeadersHaveDistinctNames) {
   static const std::regex type(R"(\n(struct|class|enum class) ([A-Z]\w+)\b(?!::)[^;\n]*\{)");
   static const std::regex space(R"(\nnamespace ([a-z:]+) \{)");
   std::map<std::string, fs::path> first;
-  for (const std::string& folder : top_folders) {
-    for (const fs::path& file : sources_of(folder)) {
-      if (file.extension() != ".h") continue;
-      const std::string code = code_of(file);
-      std::smatch in;
-      const std::string scope = std::regex_search(code, in, space) ? in[1].str() + "::" : "";
-      for (std::sregex_iterator it(code.begin(), code.end(), type), end; it != end; ++it) {
-        const auto [place, is_new] = first.try_emplace(scope + (*it)[2].str(), file);
-        EXPECT_TRUE(is_new || place->second == file)
-            << scope << (*it)[2] << " in " << place->second << " and " << file;
-      }
+  for (const fs::path& file : all_sources()) {
+    if (file.extension() != ".h") continue;
+    const std::string code = code_of(file);
+    std::smatch in;
+    const std::string scope = std::regex_search(code, in, space) ? in[1].str() + "::" : "";
+    for (std::sregex_iterator it(code.begin(), code.end(), type), end; it != end; ++it) {
+      const auto [place, is_new] = first.try_emplace(scope + (*it)[2].str(), file);
+      EXPECT_TRUE(is_new || place->second == file)
+          << scope << (*it)[2] << " in " << place->second << " and " << file;
     }
   }
   EXPECT_GT(first.size(), 100u);
@@ -282,10 +274,8 @@ TEST(Rooms, TypesOfHeadersHaveDistinctNames) {
 
 TEST(Rooms, RandomnessComesFromCore) {
   static const std::regex other(R"(\b(std::mt19937|std::random_device|rand\s*\(|drand48))");
-  for (const std::string& folder : top_folders) {
-    for (const fs::path& file : sources_of(folder)) {
-      EXPECT_FALSE(std::regex_search(code_of(file), other)) << file;
-    }
+  for (const fs::path& file : all_sources()) {
+    EXPECT_FALSE(std::regex_search(code_of(file), other)) << file;
   }
 }
 

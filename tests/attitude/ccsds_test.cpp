@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include "attitude/recordings/aem.h"
 #include "attitude/recordings/recording.h"
 #include "core/errors.h"
+#include "tests/files.h"
 #include "tests/outside.h"
 
 namespace photorque {
@@ -19,21 +19,6 @@ namespace {
 std::filesystem::path shared_message(const std::string& name) {
   return outside::third_party("ccsds") / name;
 }
-
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const std::string& text = "")
-      : path_(std::filesystem::path(testing::TempDir()) /
-              ("ccsds_" + std::to_string(::getpid()) + "_" + std::to_string(next_++) + ".txt")) {
-    std::ofstream(path_) << text;
-  }
-  ~TemporaryFile() { std::filesystem::remove(path_); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  static inline int next_ = 0;
-  std::filesystem::path path_;
-};
 
 // The words of a message, numbers by their value: what it says, whatever its spacing. Written apart
 // from the reader under test.
@@ -67,10 +52,6 @@ constexpr const char* small_aem =
     "STOP_TIME = 2020-01-01T00:00:01\nATTITUDE_TYPE = QUATERNION\nQUATERNION_TYPE = FIRST\n"
     "META_STOP\nDATA_START\n2020-01-01T00:00:00 1 0 0 0\n2020-001T00:00:01.5 0 1 0 0\nDATA_STOP\n";
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  return text.replace(text.find(from), from.size(), to);
-}
-
 class SharedMessage : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(File, SharedMessage,
                          testing::Values("AEMExample01.txt", "CCSDS_BasicQuatFile.aem",
@@ -82,11 +63,11 @@ INSTANTIATE_TEST_SUITE_P(File, SharedMessage,
 TEST_P(SharedMessage, IsUnchangedWhenWrittenBack) {
   PHOTORQUE_NEEDS_THIRD_PARTY("ccsds");
   const std::filesystem::path path = shared_message(GetParam());
-  const TemporaryFile copy;
+  const auto copy = new_file("");
   const AttitudeEphemeris aem = read_aem(path);
-  write_aem(copy.path(), aem);
-  EXPECT_EQ(kvn_text(to_kvn(read_aem(copy.path()))), kvn_text(to_kvn(aem)));
-  EXPECT_EQ(statements(copy.path()), statements(path));
+  write_aem(copy, aem);
+  EXPECT_EQ(kvn_text(to_kvn(read_aem(copy))), kvn_text(to_kvn(aem)));
+  EXPECT_EQ(statements(copy), statements(path));
 }
 
 // GMAT wrote the same attitude as quaternions (scalar last) and as Euler angles 321.
@@ -121,8 +102,8 @@ TEST(Aem, EulerSequenceAgreesWithThePublishedQuaternion) {
                                  "QUATERNION_TYPE = FIRST", "EULER_ROT_SEQ = 321"),
                         "1 0 0 0", "35.4540963916258 -15.74726604135554 18.80387738364443"),
                "0 1 0 0", "0 0 0");
-  const TemporaryFile file(euler);
-  const Quat q = read_aem(file.path()).segments.front().attitudes().front().a_from_b;
+  const auto file = new_file(euler);
+  const Quat q = read_aem(file).segments.front().attitudes().front().a_from_b;
   const Quat published(0.9240493645517975, 0.1952861484651402, -0.07946016321668915,
                        0.3188764252036319);
   // The angles are published to 5e-14 deg, the quaternion to 1e-16.
@@ -140,17 +121,17 @@ TEST(Aem, Version2HasQuaternionsAndEulerAnglesWithRates) {
            "STOP_TIME = 2023-054T00:00:19.150001\nATTITUDE_TYPE = " +
            type + "\nANGVEL_FRAME = SC_BODY_1\nMETA_STOP\nDATA_START\n" + rows + "DATA_STOP\n";
   };
-  const TemporaryFile quaternions(message(
+  const auto quaternions = new_file(message(
       "QUATERNION/ANGVEL",
       "2023-054T00:00:09.150001 0.056482 0.209807 -0.912091 0.347679 -0.021029 0.023643 18.288407\n"
       "2023-054T00:00:19.150001 0.208972 -0.060605 0.371436 0.902603 -0.019288 0.021817 "
       "18.291279\n"));
-  const TemporaryFile angles(message(
+  const auto angles = new_file(message(
       "EULER_ANGLE/ANGVEL\nEULER_ROT_SEQ = ZXZ",
       "2023-054T00:00:09.150001 5.798977 25.098268 -144.066452 -0.021029 0.023643 18.288407\n"
       "2023-054T00:00:19.150001 6.194963 25.134202 38.541023 -0.019288 0.021817 18.291279\n"));
-  const auto by_quaternions = aem_attitudes(quaternions.path());
-  const auto by_angles = aem_attitudes(angles.path());
+  const auto by_quaternions = aem_attitudes(quaternions);
+  const auto by_angles = aem_attitudes(angles);
   ASSERT_EQ(by_quaternions.size(), 2u);
   ASSERT_EQ(by_angles.size(), 2u);
   for (size_t i = 0; i < 2; ++i) {
@@ -164,22 +145,22 @@ TEST(Aem, Version2HasQuaternionsAndEulerAnglesWithRates) {
       by_angles[0].lab_from_body *
       Quat(Eigen::AngleAxisd(10.0 * by_angles[0].rate_body_rad_s->z(), Vec3::UnitZ()));
   EXPECT_LT(turned.angularDistance(by_angles[1].lab_from_body), 0.01);
-  const Recording recording = read_recording(quaternions.path());
+  const Recording recording = read_recording(quaternions);
   ASSERT_NE(recording.find("gyro_z_rad_s"), nullptr);
   EXPECT_DOUBLE_EQ(recording.find("gyro_z_rad_s")->values[0], 18.288407 * degree_rad);
   // The rate in the axes of the other frame is the one that the attitude turns into the body's.
-  const TemporaryFile inertial(replaced(
+  const auto inertial = new_file(replaced(
       message("EULER_ANGLE/ANGVEL\nEULER_ROT_SEQ = ZXZ", "2023-054T00:00:09.150001 0 90 0 1 2 3\n"),
       "ANGVEL_FRAME = SC_BODY_1", "ANGVEL_FRAME = EME2000"));
-  const auto about_x = aem_attitudes(inertial.path());
+  const auto about_x = aem_attitudes(inertial);
   EXPECT_LT((*about_x[0].rate_body_rad_s - degree_rad * Vec3(1, 3, -2)).norm(), 1e-15);
-  const TemporaryFile spin(message("SPIN", "2023-054T00:00:09.150001 1 2 3 4\n"));
-  EXPECT_THROW(aem_attitudes(spin.path()), InputError);
+  const auto spin = new_file(message("SPIN", "2023-054T00:00:09.150001 1 2 3 4\n"));
+  EXPECT_THROW(aem_attitudes(spin), InputError);
 }
 
 // In XML the order of a quaternion's numbers is free.
 TEST(Aem, XmlAndKeywordsAgree) {
-  const TemporaryFile xml(
+  const auto xml = new_file(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<aem id=\"CCSDS_AEM_VERS\" version=\"1.0\">\n"
       "<header><CREATION_DATE>2020-01-01T00:00:00</CREATION_DATE>"
       "<ORIGINATOR>TEST</ORIGINATOR></header>\n<body><segment><metadata>"
@@ -194,25 +175,25 @@ TEST(Aem, XmlAndKeywordsAgree) {
       "<quaternionRate><QC_DOT units=\"1/s\">0</QC_DOT><Q1_DOT>0</Q1_DOT><Q2_DOT>0</Q2_DOT>"
       "<Q3_DOT>0</Q3_DOT></quaternionRate></quaternionDerivative></attitudeState>\n"
       "</data></segment></body></aem>\n");
-  EXPECT_TRUE(is_message(xml.path(), "AEM"));
-  const auto attitudes = aem_attitudes(xml.path());
+  EXPECT_TRUE(is_message(xml, "AEM"));
+  const auto attitudes = aem_attitudes(xml);
   ASSERT_EQ(attitudes.size(), 1u);
   EXPECT_LT(attitudes[0].lab_from_body.angularDistance(Quat(0.8, 0, 0.6, 0)), 1e-15);
   EXPECT_EQ(attitudes[0].line, 6);
-  const TemporaryFile torn("<?xml version=\"1.0\"?>\n<aem version=\"1.0\">\n<header>\n");
-  EXPECT_THROW(read_aem(torn.path()), InputError);
-  const TemporaryFile other("<?xml version=\"1.0\"?>\n<opm version=\"1.0\"/>\n");
-  EXPECT_FALSE(is_message(other.path(), "AEM"));
+  const auto torn = new_file("<?xml version=\"1.0\"?>\n<aem version=\"1.0\">\n<header>\n");
+  EXPECT_THROW(read_aem(torn), InputError);
+  const auto other = new_file("<?xml version=\"1.0\"?>\n<opm version=\"1.0\"/>\n");
+  EXPECT_FALSE(is_message(other, "AEM"));
 }
 
 TEST(Aem, ScalarFirstAndDirectionAreHeeded) {
-  const TemporaryFile a2b(small_aem);
-  const auto samples = read_aem(a2b.path()).segments.front().attitudes();
+  const auto a2b = new_file(small_aem);
+  const auto samples = read_aem(a2b).segments.front().attitudes();
   EXPECT_EQ(samples[0].a_from_b.w(), 1.0);
   EXPECT_EQ(samples[1].a_from_b.x(), 1.0);
   EXPECT_EQ(samples[1].time_s, 1.5);
-  const TemporaryFile b2a(replaced(small_aem, "A2B", "B2A"));
-  EXPECT_EQ(read_aem(b2a.path()).segments.front().attitudes()[1].a_from_b.x(), -1.0);
+  const auto b2a = new_file(replaced(small_aem, "A2B", "B2A"));
+  EXPECT_EQ(read_aem(b2a).segments.front().attitudes()[1].a_from_b.x(), -1.0);
 }
 
 TEST(Aem, APropagatedPlatformIsRecovered) {
@@ -222,9 +203,9 @@ TEST(Aem, APropagatedPlatformIsRecovered) {
     states[i].lab_from_body =
         Quat(Eigen::AngleAxisd(0.4 * static_cast<double>(i), Vec3(1, -2, 3).normalized()));
   }
-  const TemporaryFile file;
-  write_aem(file.path(), make_aem(states, "1999-12-31T00:00:00", "STASIS", "2026-01-01T00:00:00"));
-  const auto samples = read_aem(file.path()).segments.front().attitudes();
+  const auto file = new_file("");
+  write_aem(file, make_aem(states, "1999-12-31T00:00:00", "STASIS", "2026-01-01T00:00:00"));
+  const auto samples = read_aem(file).segments.front().attitudes();
   ASSERT_EQ(samples.size(), states.size());
   for (size_t i = 0; i < states.size(); ++i) {
     EXPECT_NEAR(samples[i].time_s, states[i].time_s, 1e-6);
@@ -242,11 +223,11 @@ TEST(Aem, WrongMessagesAreRefused) {
                                                         {"1 0 0 0", "1 0 0 x"},
                                                         {"DATA_STOP", ""},
                                                         {"META_STOP", "DATA_STOP"}}) {
-    const TemporaryFile file(replaced(small_aem, from, to));
-    EXPECT_THROW(read_aem(file.path()), InputError) << from << " -> " << to;
+    const auto file = new_file(replaced(small_aem, from, to));
+    EXPECT_THROW(read_aem(file), InputError) << from << " -> " << to;
   }
-  const TemporaryFile long_quaternion(replaced(small_aem, "1 0 0 0", "1 1 0 0"));
-  EXPECT_THROW(read_aem(long_quaternion.path()).segments.front().attitudes(), InputError);
+  const auto long_quaternion = new_file(replaced(small_aem, "1 0 0 0", "1 1 0 0"));
+  EXPECT_THROW(read_aem(long_quaternion).segments.front().attitudes(), InputError);
 }
 
 // A name and a value, and a block, among the rows: a row of no words was looked into.
@@ -256,11 +237,11 @@ TEST(Aem, DataThatAreNoRowsAreRefused) {
       "OBJECT_NAME = A\nOBJECT_ID = B\nREF_FRAME_A = LAB\nREF_FRAME_B = SC\nATTITUDE_DIR = A2B\n"
       "TIME_SYSTEM = UTC\nSTART_TIME = 2020-01-01T00:00:00\nSTOP_TIME = 2020-01-01T00:00:01\n"
       "ATTITUDE_TYPE = QUATERNION\nQUATERNION_TYPE = LAST\nMETA_STOP\nDATA_START\n";
-  const TemporaryFile good(before + "2020-01-01T00:00:00 0 0 0 1\nDATA_STOP\n");
-  EXPECT_EQ(read_aem(good.path()).segments.front().rows.size(), 1u);
+  const auto good = new_file(before + "2020-01-01T00:00:00 0 0 0 1\nDATA_STOP\n");
+  EXPECT_EQ(read_aem(good).segments.front().rows.size(), 1u);
   for (const char* rows : {"X =\n", "X = 2020-01-01T00:00:00 0 0 0 1\n", "A_START\nA_STOP\n"}) {
-    const TemporaryFile file(before + rows + "DATA_STOP\n");
-    EXPECT_THROW(read_aem(file.path()), InputError) << rows;
+    const auto file = new_file(before + rows + "DATA_STOP\n");
+    EXPECT_THROW(read_aem(file), InputError) << rows;
   }
 }
 
@@ -291,8 +272,8 @@ TEST(Aem, IsReadAsARecording) {
           text += row;
           if (i == 40) text += "DATA_STOP\n" + meta + row;
         }
-        const TemporaryFile file(text + "DATA_STOP\n");
-        const Recording recording = read_recording(file.path());
+        const auto file = new_file(text + "DATA_STOP\n");
+        const Recording recording = read_recording(file);
         ASSERT_EQ(recording.rows(), static_cast<size_t>(rows));
         EXPECT_EQ(recording.report.repeated_times, 1);
         for (size_t i = 0; i < recording.rows(); ++i) {

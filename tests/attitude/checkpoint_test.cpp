@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "attitude/propagation/recorded.h"
-#include "core/errors.h"
 #include "scenes/experiment/toml.h"
 #include "tests/attitude/settings_bench.h"
 

@@ -15,6 +15,7 @@
 #include "attitude/propagation/propagator.h"
 #include "core/files.h"
 #include "tests/attitude/settings_bench.h"
+#include "tests/files.h"
 
 namespace photorque {
 
@@ -103,7 +104,6 @@ inline Vec3 sphere_table_torque_N_m(const Vec3& light_body) {
   return of_direction * light_body;
 }
 inline std::string sphere_table() {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "sphere_light.csv";
   std::ostringstream file;
   file.precision(17);
   file << "azimuth_deg,elevation_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n";
@@ -116,8 +116,7 @@ inline std::string sphere_table() {
            << torque.z() << '\n';
     }
   }
-  write_file_whole(path, file.str());  // other processes may be reading it
-  return path;
+  return test_file("sphere_light.csv", file.str());
 }
 
 }  // namespace photorque

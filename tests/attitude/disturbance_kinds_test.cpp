@@ -1,19 +1,17 @@
 // Errors for kinds of disturbance that do not exist.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/errors.h"
 #include "tests/attitude/disturbance_bench.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
 
 TEST(Disturbances, UnknownKindIsOneClearLine) {
-  try {
-    make(bench_model(), "bearing_drug", {});
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("bearing_drag"), std::string::npos) << error.what();
-  }
+  EXPECT_THAT(refusal_of([&] { make(bench_model(), "bearing_drug", {}); }),
+              testing::HasSubstr("bearing_drag"));
 }
 
 // A disturbance that sets the field, the rotation of the laboratory or the battery's current for

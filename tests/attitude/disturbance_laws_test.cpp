@@ -12,6 +12,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "tests/attitude/disturbance_bench.h"
+#include "tests/files.h"
 
 namespace photorque {
 namespace {
@@ -20,7 +21,6 @@ using Entries = std::vector<std::pair<std::string, SettingsNode>>;
 
 // A small wrench table, written once for the run.
 std::string light_table() {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "law_light.csv";
   std::ostringstream file;
   file.precision(17);
   file << "heading_deg,tilt_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n";
@@ -31,8 +31,7 @@ std::string light_table() {
            << -1e-9 * std::sin(t) * std::cos(h) << ',' << 2e-10 * std::cos(t) << '\n';
     }
   }
-  write_file_whole(path, file.str());  // other processes may be reading it
-  return path.string();
+  return test_file("law_light.csv", file.str());
 }
 
 // One example of each kind, with values large enough to matter in double precision.

@@ -7,6 +7,7 @@
 #include "attitude/disturbances/unknown/shape.h"
 #include "core/errors.h"
 #include "tests/attitude/disturbance_bench.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -246,12 +247,7 @@ TEST(EmpiricalTorque, ShapesAreWrittenAsTheyAreRead) {
 }
 
 std::string complaint(const Entries& entries) {
-  try {
-    make(bench_model(), "empirical_torque", entries);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { make(bench_model(), "empirical_torque", entries); });
 }
 
 TEST(EmpiricalTorque, TakesTheOldNameOfTheYaw) {

@@ -10,6 +10,7 @@
 #include "core/errors.h"
 #include "core/wrench.h"
 #include "tests/attitude/disturbance_bench.h"
+#include "tests/files.h"
 
 namespace photorque {
 namespace {
@@ -62,14 +63,13 @@ TEST(HelmholtzCage, CancelsPlaysAndErrs) {
 }
 
 TEST(HelmholtzCage, PlaysAFile) {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "field.csv";
-  std::ofstream(path) << "t_s,field_x_T,field_y_T,field_z_T\n0,0,0,0\n10,1e-5,0,0\n20,2e-5,0,0\n";
+  const auto path = test_file(
+      "field.csv", "t_s,field_x_T,field_y_T,field_z_T\n0,0,0,0\n10,1e-5,0,0\n20,2e-5,0,0\n");
   const AttitudeModel model =
       with(with(bench_model(), "helmholtz_cage", {{"field_file", node(path.c_str())}}),
            "magnetic_dipole", {{"dipole_A_m2", numbers({0, 0.1, 0})}});
   const Vec3 torque = torque_body_N_m(model, state_of(model, Quat::Identity(), Vec3::Zero(), 15.0));
   EXPECT_LT((torque - Vec3(0, 0, -1.5e-6)).norm(), 1e-18);
-  std::filesystem::remove(path);
 }
 
 // A table over the sphere that is linear in the light's direction: then the planet's parts act as
@@ -153,36 +153,25 @@ TEST(EarthRotation, BodyAtRestAmongTheStarsTurnsBackward) {
   EXPECT_LT(end.lab_from_body.angularDistance(expected), 1e-9);
 }
 
-// Any free motion in the lab, seen from the stars, keeps its angular momentum.
+// Any free motion in the lab, seen from the stars, keeps its angular momentum. A gyrocompass: with
+// a rotor on board it is the sum of both momenta that is kept.
 TEST(EarthRotation, KeepsMomentumAmongTheStars) {
-  const AttitudeModel model = with(bench_model(), "earth_rotation", {});
-  const Vec3 earth = model.environment.earth_rate_lab_rad_s;
-  const Mat3 I = model.platform.inertia_kg_m2;
-  const auto momentum = [&](const PlatformState& s) -> Vec3 {
-    const Vec3 inertial_body = s.rate_body_rad_s + s.lab_from_body.conjugate() * earth;
-    return turned(earth.norm() * s.time_s, earth) * (s.lab_from_body * (I * inertial_body));
-  };
-  const PlatformState start = state_of(model, turned(0.4, {1, 0, 1}), {0.05, -0.02, 0.04});
-  const PlatformState end = propagated(model, start, 5000);
-  EXPECT_LT((momentum(end) - momentum(start)).norm(), 1e-11 * momentum(start).norm());
-}
-
-// A gyrocompass: with a rotor on board it is the sum of both momenta that is kept.
-TEST(EarthRotation, ActsOnRotors) {
-  const Vec3 spin_body_N_m_s(0.05, -0.02, 0.03);
-  const AttitudeModel model = with(
-      with(bench_model(), "rotor_momentum", {{"momentum_N_m_s", numbers({0.05, -0.02, 0.03})}}),
-      "earth_rotation", {});
-  const Vec3 earth = model.environment.earth_rate_lab_rad_s;
-  const Mat3 I = model.platform.inertia_kg_m2;
-  const auto momentum = [&](const PlatformState& s) -> Vec3 {
-    const Vec3 inertial_body = s.rate_body_rad_s + s.lab_from_body.conjugate() * earth;
-    return turned(earth.norm() * s.time_s, earth) *
-           (s.lab_from_body * (I * inertial_body + spin_body_N_m_s));
-  };
-  const PlatformState start = state_of(model, turned(0.4, {1, 0, 1}), {0.05, -0.02, 0.04});
-  const PlatformState end = propagated(model, start, 5000);
-  EXPECT_LT((momentum(end) - momentum(start)).norm(), 1e-11 * momentum(start).norm());
+  const AttitudeModel plain = bench_model();
+  const AttitudeModel rotor =
+      with(plain, "rotor_momentum", {{"momentum_N_m_s", numbers({0.05, -0.02, 0.03})}});
+  for (const auto& [model, spin_body_N_m_s] :
+       {std::pair{with(plain, "earth_rotation", {}), Vec3(0, 0, 0)},
+        {with(rotor, "earth_rotation", {}), Vec3(0.05, -0.02, 0.03)}}) {
+    const Vec3 earth = model.environment.earth_rate_lab_rad_s;
+    const auto momentum = [&](const PlatformState& s) -> Vec3 {
+      const Vec3 inertial_body = s.rate_body_rad_s + s.lab_from_body.conjugate() * earth;
+      return turned(earth.norm() * s.time_s, earth) *
+             (s.lab_from_body * (model.platform.inertia_kg_m2 * inertial_body + spin_body_N_m_s));
+    };
+    const PlatformState start = state_of(model, turned(0.4, {1, 0, 1}), {0.05, -0.02, 0.04});
+    const PlatformState end = propagated(model, start, 5000);
+    EXPECT_LT((momentum(end) - momentum(start)).norm(), 1e-11 * momentum(start).norm());
+  }
 }
 
 // The reading of a north-finding gyro at rest: 15.041 deg/h.
@@ -219,7 +208,6 @@ class LightTable : public testing::Test {
       }
     }
   }
-  void TearDown() override { std::filesystem::remove(path_); }
 
   std::filesystem::path path_ = std::filesystem::path(testing::TempDir()) / "light.csv";
 };

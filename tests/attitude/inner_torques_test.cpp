@@ -64,14 +64,22 @@ TEST(PeriodicTorque, TakesPhaseInDegreesToo) {
   EXPECT_NEAR(torque_body_N_m(model, state_of(model, Quat::Identity())).x(), 1.0, 1e-15);
 }
 
+// The bench with an appendage.
+AttitudeModel flexible(const std::vector<double>& axis, double frequency_Hz, double damping,
+                       double inertia_kg_m2,
+                       const std::vector<std::pair<std::string, SettingsNode>>& more = {}) {
+  std::vector<std::pair<std::string, SettingsNode>> keys = {{"axis", numbers(axis)},
+                                                            {"frequency_Hz", node(frequency_Hz)},
+                                                            {"damping", node(damping)},
+                                                            {"inertia_kg_m2", node(inertia_kg_m2)}};
+  keys.insert(keys.end(), more.begin(), more.end());
+  return with(bench_model(), "flexible_mode", keys);
+}
+
 // Two inertias on a spring, free: ω = ω_n √(I/(I − J)), about the common centre of rotation.
 TEST(FlexibleMode, FreeBodySwingsAtTheCoupledFrequency) {
   const double I = 0.19, appendage = 0.05, f = 0.4;
-  const AttitudeModel model = with(bench_model(), "flexible_mode",
-                                   {{"axis", numbers({0, 0, 2})},
-                                    {"frequency_Hz", node(f)},
-                                    {"damping", node(0)},
-                                    {"inertia_kg_m2", node(appendage)}});
+  const AttitudeModel model = flexible({0, 0, 2}, f, 0, appendage);
   PlatformState start = state_of(model, Quat::Identity());
   start.extra[0] = 0.01;  // let go with the appendage bent
   const double coupled = 2 * pi * f * std::sqrt(I / (I - appendage));
@@ -84,13 +92,9 @@ TEST(FlexibleMode, FreeBodySwingsAtTheCoupledFrequency) {
 // φ = φ₀ cos ωt + φ'₀/ω sin ωt, ω as above, on a body that turns at the start.
 TEST(FlexibleMode, StartsAsItsKeysState) {
   const double I = 0.19, appendage = 0.05, f = 0.4, rate = 0.02;
-  const AttitudeModel model = with(bench_model(), "flexible_mode",
-                                   {{"axis", numbers({0, 0, 1})},
-                                    {"frequency_Hz", node(f)},
-                                    {"damping", node(0)},
-                                    {"inertia_kg_m2", node(appendage)},
-                                    {"initial_angle_deg", node(0.5)},
-                                    {"initial_rate_rad_s", node(0.3 + rate)}});
+  const AttitudeModel model =
+      flexible({0, 0, 1}, f, 0, appendage,
+               {{"initial_angle_deg", node(0.5)}, {"initial_rate_rad_s", node(0.3 + rate)}});
   const double coupled = 2 * pi * f * std::sqrt(I / (I - appendage)), t = 1.7;
   const PlatformState end = propagated(model, state_of(model, Quat::Identity(), {0, 0, 0.3}), t);
   EXPECT_NEAR(end.extra[0],
@@ -99,11 +103,7 @@ TEST(FlexibleMode, StartsAsItsKeysState) {
 }
 
 TEST(FlexibleMode, KeepsAngularMomentumAndLosesEnergyToItsDamper) {
-  const AttitudeModel model = with(bench_model(), "flexible_mode",
-                                   {{"axis", numbers({1, 1, 0})},
-                                    {"frequency_Hz", node(0.5)},
-                                    {"damping", node(0.05)},
-                                    {"inertia_kg_m2", node(0.03)}});
+  const AttitudeModel model = flexible({1, 1, 0}, 0.5, 0.05, 0.03);
   const Vec3 axis = Vec3(1, 1, 0).normalized();
   const Mat3 I = model.platform.inertia_kg_m2;
   const auto momentum_lab = [&](const PlatformState& s) -> Vec3 {
@@ -130,13 +130,8 @@ TEST(FlexibleMode, KeepsAngularMomentumAndLosesEnergyToItsDamper) {
 TEST(FlexibleMode, KeepsMomentumAndEnergyWhereItChangesTheInertia) {
   const double J = 0.03, f = 0.5;
   const std::vector<double> slope{0.4, -0.3, -0.1, 0.5, -0.2, 0.6};
-  const AttitudeModel model = with(bench_model(), "flexible_mode",
-                                   {{"axis", numbers({1, 1, 0})},
-                                    {"frequency_Hz", node(f)},
-                                    {"damping", node(0)},
-                                    {"inertia_kg_m2", node(J)},
-                                    {"inertia_slope", numbers(slope)},
-                                    {"initial_angle_deg", node(6)}});
+  const AttitudeModel model = flexible(
+      {1, 1, 0}, f, 0, J, {{"inertia_slope", numbers(slope)}, {"initial_angle_deg", node(6)}});
   const Vec3 axis = Vec3(1, 1, 0).normalized();
   Mat3 S;
   S << 0.4, 0.5, -0.2, 0.5, -0.3, 0.6, -0.2, 0.6, -0.1;
@@ -164,11 +159,7 @@ TEST(FlexibleMode, KeepsMomentumAndEnergyWhereItChangesTheInertia) {
 // Nothing moves, so nothing but the derivatives keeps the steps short enough for a swing.
 TEST(FlexibleMode, OfAnAppendageAtRestTheDerivativeIsTheSwing) {
   const double I = 0.19, appendage = 0.05, f = 1.3;
-  const AttitudeModel model = with(bench_model(), "flexible_mode",
-                                   {{"axis", numbers({0, 0, 1})},
-                                    {"frequency_Hz", node(f)},
-                                    {"damping", node(0)},
-                                    {"inertia_kg_m2", node(appendage)}});
+  const AttitudeModel model = flexible({0, 0, 1}, f, 0, appendage);
   const double period_s = std::sqrt((I - appendage) / I) / f;
   const double times_s[] = {40.5 * period_s};
   const Dynamics dynamics(model);
@@ -183,11 +174,7 @@ TEST(FlexibleMode, BeginsWithTheBodyWhenItsAxisChanges) {
   const Vec3 rate(0.3, -0.1, 0.2);
   const double times_s[] = {7.3};
   const auto end_about = [&](const Vec3& axis, const std::vector<Variable>& variables) {
-    const AttitudeModel model = with(bench_model(), "flexible_mode",
-                                     {{"axis", numbers({axis.x(), axis.y(), axis.z()})},
-                                      {"frequency_Hz", node(0.5)},
-                                      {"damping", node(0.05)},
-                                      {"inertia_kg_m2", node(0.03)}});
+    const AttitudeModel model = flexible({axis.x(), axis.y(), axis.z()}, 0.5, 0.05, 0.03);
     const PropagationOptions fine{.tolerance = 1e-12};
     const Dynamics dynamics(model);
     return propagate(dynamics, state_of(model, Quat::Identity(), rate), times_s, fine, variables);
@@ -210,12 +197,7 @@ TEST(FlexibleMode, BeginsWithTheBodyWhenItsAxisChanges) {
 }
 
 TEST(FlexibleMode, RefusesMoreInertiaThanThePlatformHas) {
-  EXPECT_THROW(make(bench_model(), "flexible_mode",
-                    {{"axis", numbers({0, 0, 1})},
-                     {"frequency_Hz", node(1)},
-                     {"damping", node(0)},
-                     {"inertia_kg_m2", node(0.2)}}),
-               InputError);
+  EXPECT_THROW(flexible({0, 0, 1}, 1, 0, 0.2), InputError);
 }
 
 TEST(ActuatorGain, AddsItsShareOfTheCommand) {

@@ -7,14 +7,13 @@
 #include "attitude/recordings/recording.h"
 #include "core/constants.h"
 #include "tests/attitude/disturbance_bench.h"
+#include "tests/files.h"
 
 namespace photorque {
 namespace {
 
 Schedule schedule_of(const std::string& rows) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "lamps.csv";
-  std::ofstream(path) << "t_s,led_current_A\n" << rows;
-  return read_command_file(path);
+  return read_command_file(test_file("lamps.csv", "t_s,led_current_A\n" + rows));
 }
 
 TEST(LampCurrent, HoldsUntilItChangesByMoreThanItsNoise) {

@@ -9,6 +9,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "tests/attitude/disturbance_bench.h"
+#include "tests/files.h"
 
 namespace photorque {
 namespace {
@@ -163,9 +164,9 @@ TEST(FloorVibration, PlaysSpectraAndRecordings) {
   }
   EXPECT_NEAR(sum / samples / (std::pow(7.0 * 1e-5, 2) * 9e-8), 1.0, 0.06);
 
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "floor.csv";
-  std::ofstream(path) << "t_s,acceleration_x_m_s2,acceleration_y_m_s2,acceleration_z_m_s2\n0,0.1,0,"
-                         "0\n1,0.2,0,0\n2,0.3,0,0\n";
+  const auto path = test_file("floor.csv",
+                              "t_s,acceleration_x_m_s2,acceleration_y_m_s2,acceleration_z_m_s2\n"
+                              "0,0.1,0,0\n1,0.2,0,0\n2,0.3,0,0\n");
   const AttitudeModel recorded = with(
       base, "floor_vibration", {{"accelerogram_file", node(path.c_str())}, {"scale", node(2)}});
   EXPECT_NEAR(
@@ -174,7 +175,6 @@ TEST(FloorVibration, PlaysSpectraAndRecordings) {
   EXPECT_EQ(
       torque_body_N_m(recorded, state_of(recorded, Quat::Identity(), Vec3::Zero(), 5.0)).norm(),
       0.0);
-  std::filesystem::remove(path);
 }
 
 }  // namespace

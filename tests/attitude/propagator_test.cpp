@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "core/constants.h"
-#include "core/errors.h"
 
 namespace photorque {
 namespace {

@@ -2,17 +2,18 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
-#include <random>
 
 #include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "tests/attitude/settings_bench.h"
+#include "tests/files.h"
+#include "tests/noise.h"
 #include "tests/outside.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -20,35 +21,14 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class File {
- public:
-  explicit File(const std::string& bytes, const std::string& ending = ".csv")
-      : path_(
-            std::filesystem::path(testing::TempDir()) /
-            ("recording_" + std::to_string(::getpid()) + "_" + std::to_string(next_++) + ending)) {
-    std::ofstream(path_, std::ios::binary) << bytes;
-  }
-  ~File() { std::filesystem::remove(path_); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  static inline int next_ = 0;
-  std::filesystem::path path_;
-};
-
 Recording read(const std::string& text, const RecordingOptions& options = {}) {
-  const File file(text);
-  return read_recording(file.path(), options);
+  const auto file = new_file(text, ".csv");
+  return read_recording(file, options);
 }
 
 std::string complaint(const std::string& text, const RecordingOptions& options = {}) {
-  const File file(text);
-  try {
-    read_recording(file.path(), options);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "none";
+  const auto file = new_file(text, ".csv");
+  return refusal_of([&] { read_recording(file, options); });
 }
 
 const std::vector<double>& cells_of(const Recording& recording, std::string_view name) {
@@ -64,20 +44,19 @@ TEST(Recording, TimesOverCenturiesAreRefused) {
 
 TEST(Recording, WrittenAndReadBackIsTheSameToTheBit) {
   Recording recording;
-  std::mt19937_64 engine(3);
-  std::normal_distribution<double> normal;
+  Noise normal(3);
   for (const char* name : {"gyro_x_rad_s", "battery_current_A", "anything_else"}) {
     recording.channels.push_back({name, {}});
   }
   for (int i = 0; i < 500; ++i) {
     recording.time_s.push_back(0.1 * i);
-    for (Channel& channel : recording.channels) channel.values.push_back(normal(engine));
+    for (Channel& channel : recording.channels) channel.values.push_back(normal());
   }
   recording.channels[2].values[7] = NAN;
   for (const char* ending : {".csv", ".csv.gz"}) {
-    const File file("", ending);
-    write_recording(file.path(), recording, {"made by a test", "two lines"});
-    const Recording back = read_recording(file.path());
+    const auto file = new_file("", ending);
+    write_recording(file, recording, {"made by a test", "two lines"});
+    const Recording back = read_recording(file);
     EXPECT_EQ(back.time_s, recording.time_s);
     EXPECT_EQ(back.report.preamble_lines, 2);
     EXPECT_EQ(back.report.empty_cells, 1);
@@ -186,15 +165,14 @@ TEST(Recording, FlippedAndBadQuaternionsAreMended) {
 
 // Spikes go; noise, steps and fast motion stay.
 TEST(Recording, OutliersAreFoundAndNothingElse) {
-  std::mt19937_64 engine(5);
-  std::normal_distribution<double> noise(0.0, 2e-4);
+  Noise noise(5, 2e-4);
   std::string text = "t_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s\n";
   for (int i = 0; i < 2000; ++i) {
     const double t = 0.01 * i;
     const double spike = i % 500 == 123 ? 0.5 : 0.0;
-    const double x = std::sin(3 * t) + spike + noise(engine);
-    const double y = (t < 10 ? 0.1 : -0.2) + noise(engine);
-    const double z = 20 * std::sin(15 * t) + noise(engine);
+    const double x = std::sin(3 * t) + spike + noise();
+    const double y = (t < 10 ? 0.1 : -0.2) + noise();
+    const double z = 20 * std::sin(15 * t) + noise();
     text += std::to_string(t) + "," + std::to_string(x) + "," + std::to_string(y) + "," +
             std::to_string(z) + "\n";
   }
@@ -213,21 +191,20 @@ TEST(Recording, OutliersAreFoundAndNothingElse) {
 // reading for 2 s about y. What moves without noise and comes to rest is no fault, nor is an axis
 // that the instrument does not have.
 TEST(Recording, ReadingsOfASensorThatStandsStillAreLeftOut) {
-  std::mt19937_64 engine(9);
-  std::normal_distribution<double> noise(0.0, 2e-4);
+  Noise noise(9, 2e-4);
   const std::string header = "t_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s\n";
   std::string faulty = header, sound = header;
   double y = 0.0;
   for (int i = 0; i < 2000; ++i) {
     const double t = 0.01 * i;
-    const double x = std::min(0.1, 0.12 * std::sin(0.5 * t) + noise(engine));
-    if (i <= 500 || i > 700) y = 0.03 * std::cos(t) + noise(engine);
+    const double x = std::min(0.1, 0.12 * std::sin(0.5 * t) + noise());
+    if (i <= 500 || i > 700) y = 0.03 * std::cos(t) + noise();
     const auto row = [&](double a, double b, double c) {
       return std::to_string(t) + "," + std::to_string(a) + "," + std::to_string(b) + "," +
              std::to_string(c) + "\n";
     };
     faulty += row(x, y, 0.1);
-    sound += row(0.05 + noise(engine), t < 5.0 ? 0.1 * std::exp(-t) : 0.0, 0.0);
+    sound += row(0.05 + noise(), t < 5.0 ? 0.1 * std::exp(-t) : 0.0, 0.0);
   }
   const Recording r = read(faulty);
   for (size_t i = 0; i < 2000; ++i) {
@@ -255,10 +232,9 @@ TEST(Recording, ReadingsOfASensorThatStandsStillAreLeftOut) {
 }
 
 TEST(Recording, JitterAndIntervalAreMeasured) {
-  std::mt19937_64 engine(7);
-  std::normal_distribution<double> jitter(0.0, 1e-3);
+  Noise jitter(7, 1e-3);
   std::string text = "t_s,gyro_x_rad_s\n";
-  for (int i = 0; i < 5000; ++i) text += std::to_string(0.1 * i + jitter(engine)) + ",0\n";
+  for (int i = 0; i < 5000; ++i) text += std::to_string(0.1 * i + jitter()) + ",0\n";
   const RecordingReport report = read(text).report;
   EXPECT_NEAR(report.median_interval_s, 0.1, 2e-4);
   // The difference of two jittered times.
@@ -313,7 +289,7 @@ TEST(Recording, DecimalCommasAreReadWhereTheyDoNotSeparateCells) {
   EXPECT_THAT(complaint("t_s,gyro_x_rad_s\n0,0,1,5\n0,1,2,5\n0,2,2,5\n"),
               HasSubstr(":2: found a row of 4 cells, expected 2, as in the header"));
   // A cell that only looks like a number is left out like any other.
-  EXPECT_EQ(complaint("t_s;a\n0;1\n1;x,5\n2;1,2,3\n3;2\n"), "none");
+  EXPECT_EQ(complaint("t_s;a\n0;1\n1;x,5\n2;1,2,3\n3;2\n"), "");
 }
 
 TEST(Recording, WhereMostRowsAreWrongTheFirstIsNamed) {
@@ -338,27 +314,22 @@ TEST(Recording, DamagedCompressedFilesAreRefused) {
   for (int i = 0; i < 5000; ++i)
     text += std::to_string(i) + "," + std::to_string(i * i % 997) + "\n";
   const std::string whole = gzip(text);
-  const File good(whole, ".csv.gz");
-  EXPECT_EQ(read_recording(good.path()).rows(), 5000u);
-  const File cut(whole.substr(0, whole.size() / 2), ".csv.gz");
-  EXPECT_THROW(read_recording(cut.path()), InputError);
+  const auto good = new_file(whole, ".csv.gz");
+  EXPECT_EQ(read_recording(good).rows(), 5000u);
+  const auto cut = new_file(whole.substr(0, whole.size() / 2), ".csv.gz");
+  EXPECT_THROW(read_recording(cut), InputError);
   std::string broken = whole;
   for (size_t i = whole.size() / 2; i < whole.size() / 2 + 20; ++i) broken[i] = '\x55';
-  const File damaged(broken, ".csv.gz");
-  EXPECT_THROW(read_recording(damaged.path()), InputError);
+  const auto damaged = new_file(broken, ".csv.gz");
+  EXPECT_THROW(read_recording(damaged), InputError);
 }
 
 TEST(Commands, MustBeInOrderAndCommandSomething) {
   const auto complaint_of = [](const std::string& text) -> std::string {
-    const File file(text);
-    try {
-      read_command_file(file.path());
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "none";
+    const auto file = new_file(text, ".csv");
+    return refusal_of([&] { read_command_file(file); });
   };
-  EXPECT_EQ(complaint_of("t_s,command_x_N_m\n0,1\n1,0\n"), "none");
+  EXPECT_EQ(complaint_of("t_s,command_x_N_m\n0,1\n1,0\n"), "");
   EXPECT_THAT(complaint_of("t_s,command_x_N_m\n0,1\n2,0\n1,0\n"),
               HasSubstr(":4: t_s: found times that do not rise"));
   EXPECT_THAT(complaint_of("t_s,command_x_N_m\n0,1\n1,0\n1,2\n"), HasSubstr(":4: t_s"));

@@ -1,4 +1,5 @@
 // Time series, floor spectra and wrench tables: numbers made smooth.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,22 +11,11 @@
 #include "attitude/environment/time_series.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "tests/files.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
-
-class SeriesFile {
- public:
-  SeriesFile(const std::string& name, const std::string& text)
-      : path_(std::filesystem::path(testing::TempDir()) / name) {
-    std::ofstream(path_) << text;
-  }
-  ~SeriesFile() { std::filesystem::remove(path_); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 Vec3 bounce(double t) {
   return {std::sin(t), std::cos(0.7 * t), t * std::exp(-t)};
@@ -76,26 +66,21 @@ TEST(TimeSeries, RefusesDisorder) {
 }
 
 TEST(TimeSeries, ReadsColumnsByName) {
-  const SeriesFile file("series.csv",
-                        "# who made it\nnote_1,a_z,t_s,a_x,a_y\n0,3,0,1,2\n\n0,6,0.5,4,5\n");
+  const auto file =
+      test_file("series.csv", "# who made it\nnote_1,a_z,t_s,a_x,a_y\n0,3,0,1,2\n\n0,6,0.5,4,5\n");
   const TimeSeries series =
-      read_time_series(file.path(), {"a_x", "a_y", "a_z"}, TimeSeries::Outside::hold);
+      read_time_series(file, {"a_x", "a_y", "a_z"}, TimeSeries::Outside::hold);
   EXPECT_LT((series.at(0.25) - Vec3(2.5, 3.5, 4.5)).norm(), 1e-15);
 }
 
 TEST(TimeSeries, NamesTheLineThatIsWrong) {
-  const SeriesFile text("text.csv", "t_s,a,b,c\n0,1,2,3\n1,x,2,3\n");
-  const SeriesFile order("order.csv", "t_s,a,b,c\n0,1,2,3\n0,1,2,3\n");
+  const auto text = test_file("text.csv", "t_s,a,b,c\n0,1,2,3\n1,x,2,3\n");
+  const auto order = test_file("order.csv", "t_s,a,b,c\n0,1,2,3\n0,1,2,3\n");
   const auto message = [](const std::filesystem::path& path) {
-    try {
-      read_time_series(path, {"a", "b", "c"}, TimeSeries::Outside::hold);
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return refusal_of([&] { read_time_series(path, {"a", "b", "c"}, TimeSeries::Outside::hold); });
   };
-  EXPECT_NE(message(text.path()).find("text.csv:3"), std::string::npos) << message(text.path());
-  EXPECT_NE(message(order.path()).find("order.csv:3"), std::string::npos) << message(order.path());
+  EXPECT_THAT(message(text), testing::HasSubstr("text.csv:3"));
+  EXPECT_THAT(message(order), testing::HasSubstr("order.csv:3"));
 }
 
 const std::vector<SpectrumPoint> floor_spectrum = {
@@ -216,21 +201,21 @@ TEST(TorqueSurface, AgreesWithTheBilinearTable) {
 }
 
 TEST(WrenchTableFile, ReadsFilesOfTheProgram) {
-  const SeriesFile file(
+  const auto file = test_file(
       "wrench.csv",
       "# photorque\nheading_deg,tilt_deg,force_x_N,torque_x_N_m,torque_y_N_m,torque_z_N_m\n"
       "0,0,9,1,2,3\n0,30,9,4,5,6\n180,0,9,7,8,9\n180,30,9,10,11,12\n");
-  const WrenchTable table = read_wrench_table(file.path());
+  const WrenchTable table = read_wrench_table(file);
   EXPECT_EQ(table.angles, WrenchTable::Angles::tilt_heading);
   EXPECT_EQ(table.torque_body_N_m[table.node(1, 1)], Vec3(10, 11, 12));
-  const SeriesFile twice("twice.csv",
-                         "azimuth_deg,elevation_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n"
-                         "0,0,1,2,3\n0,1,1,2,3\n1,0,1,2,3\n0,0,1,2,3\n");
-  EXPECT_THROW(read_wrench_table(twice.path()), InputError);
-  const SeriesFile hole(
+  const auto twice = test_file("twice.csv",
+                               "azimuth_deg,elevation_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n"
+                               "0,0,1,2,3\n0,1,1,2,3\n1,0,1,2,3\n0,0,1,2,3\n");
+  EXPECT_THROW(read_wrench_table(twice), InputError);
+  const auto hole = test_file(
       "hole.csv",
       "azimuth_deg,elevation_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n0,0,1,2,3\n1,1,1,2,3\n");
-  EXPECT_THROW(read_wrench_table(hole.path()), InputError);
+  EXPECT_THROW(read_wrench_table(hole), InputError);
 }
 
 // 200,000 rows along a diagonal stand for 4e10 pairs of angles, 4 TB of them.
@@ -240,8 +225,8 @@ TEST(WrenchTableFile, AnglesOfRowsThatAreNotThereTakeNoRoom) {
     const std::string angle = std::to_string(1e-4 * i);
     text += angle + "," + angle + ",0,0,0\n";
   }
-  const SeriesFile file("diagonal.csv", text);
-  EXPECT_THROW(read_wrench_table(file.path()), InputError);
+  const auto file = test_file("diagonal.csv", text);
+  EXPECT_THROW(read_wrench_table(file), InputError);
 }
 
 // Headings of 0 and 360 deg are one: the surface looked for a neighbour beyond them.
@@ -249,8 +234,8 @@ TEST(WrenchTableFile, AnglesOfASingleNodeAreRefused) {
   const std::string header = "heading_deg,tilt_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n";
   for (const char* rows : {"0,0,1,2,3\n0,9,1,2,3\n360,0,1,2,3\n360,9,1,2,3\n",
                            "0,0,1,2,3\n90,0,1,2,3\n180,0,1,2,3\n"}) {
-    const SeriesFile file("one.csv", header + rows);
-    EXPECT_THROW(read_wrench_table(file.path()), InputError) << rows;
+    const auto file = test_file("one.csv", header + rows);
+    EXPECT_THROW(read_wrench_table(file), InputError) << rows;
   }
 }
 

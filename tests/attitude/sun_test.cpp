@@ -4,12 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "attitude/environment/environment.h"
-#include "attitude/environment/epoch.h"
 #include "core/errors.h"
 #include "scenes/experiment/toml.h"
 #include "tests/attitude/disturbance_bench.h"
+#include "tests/files.h"
 
 namespace photorque {
 namespace {
@@ -148,14 +149,13 @@ TEST(Sun, PointingTurnsTheLab) {
 }
 
 TEST(Sun, ComesFromATableToo) {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "sun.csv";
   std::ostringstream file;
   file << "t_s,sun_x,sun_y,sun_z\n";
   for (int i = 0; i <= 90; ++i) {
     const double a = i * degree_rad;
     file << 100 * i << ',' << 3 * std::cos(a) << ',' << 3 * std::sin(a) << ",0\n";
   }
-  write_file_whole(path, file.str());
+  const auto path = test_file("sun.csv", file.str());
   const std::string toml = "table = '" + path.string() + "'\ndistance_au = 2";
   const Vec3 sun = sun_at(toml, 4550.0);
   EXPECT_NEAR(

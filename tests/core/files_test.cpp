@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include "core/errors.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -29,12 +30,7 @@ class FilesInAFolder : public ::testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   static std::string refusal(const fs::path& path) {
-    try {
-      read_file(path);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return refusal_of([&] { read_file(path); });
   }
 
   fs::path folder_;
@@ -110,13 +106,10 @@ TEST_F(FilesInAFolder, FoldersAreMadeWithTheirParentsOrNameTheObstacle) {
   make_folders(folder_ / "a");
   write_file_whole(folder_ / "c" / "d.txt", "new");
   EXPECT_EQ(read_file(folder_ / "c" / "d.txt"), "new");
-  try {
-    make_folders(folder_ / "c" / "d.txt" / "e", "--out");
-    FAIL() << "a folder within a file";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("d.txt/e"));
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("--out"));
-  }
+  const std::string refusal =
+      refusal_of([&] { make_folders(folder_ / "c" / "d.txt" / "e", "--out"); });
+  EXPECT_THAT(refusal, ::testing::HasSubstr("d.txt/e"));
+  EXPECT_THAT(refusal, ::testing::HasSubstr("--out"));
 }
 
 TEST_F(FilesInAFolder, AFailedWriteLeavesTheOldFileAndNothingElse) {

@@ -7,6 +7,7 @@
 
 #include "core/files.h"
 #include "core/text/parse.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -70,13 +71,10 @@ TEST(Text, NumbersAreWholeAndFinite) {
 }
 
 TEST(Text, AWrongNumberIsReportedWithPlaceKeyAndRange) {
-  try {
-    require_number(std::string(60, 'x'), {"lamp.ies", 7}, "watts");
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "lamp.ies:7: watts: found \"" + std::string(40, 'x') + "…\", expected a number");
-  }
+  EXPECT_EQ(refusal_of([&] {
+              require_number(std::string(60, 'x'), {"lamp.ies", 7}, "watts");
+            }),
+            "lamp.ies:7: watts: found \"" + std::string(40, 'x') + "…\", expected a number");
 }
 
 TEST(Text, CountsAreWholeAndInRange) {
@@ -95,12 +93,7 @@ TEST(Columns, AreFoundByNameAndWrongCellsByLine) {
   EXPECT_THAT(read.columns[1], ElementsAre(1.0, 3.0));
   EXPECT_THAT(read.lines, ElementsAre(3, 5));
   const auto message = [&](const std::string& name) {
-    try {
-      read_number_columns(path, {name});
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return refusal_of([&] { read_number_columns(path, {name}); });
   };
   EXPECT_THAT(message("c"), HasSubstr("text_test.csv:3: c: found \"x\", expected a finite number"));
   EXPECT_THAT(message("d"), HasSubstr("text_test.csv:2: header: found the columns "));
@@ -112,12 +105,7 @@ TEST(Columns, AreFoundByNameAndWrongCellsByLine) {
 
 TEST(Text, SixteenBitTextAndBytesAreDistinguished) {
   const auto message = [](std::string_view begin) -> std::string {
-    try {
-      require_text(begin, {"r.csv", 1});
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return refusal_of([&] { require_text(begin, {"r.csv", 1}); });
   };
   using namespace std::string_literals;
   EXPECT_THAT(message("\xff\xfet\0_\0s\0"s), testing::HasSubstr("found UTF-16 text"));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/constants.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -18,15 +19,6 @@ SettingsNode leaf(
 Settings lab(SettingsNode::Table table) {
   return Settings(
       std::make_shared<const SettingsNode>(SettingsNode{std::move(table), {"lab.toml", 1}}));
-}
-
-std::string message(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(Units, EveryKeyOfAQuantityGivesSI) {
@@ -53,16 +45,17 @@ TEST(Units, LongestSuffixWins) {
 
 TEST(Units, MissingAndDoubledAreRefused) {
   const Settings bare = lab({{"fwhm", leaf(3.0, 7)}});
-  EXPECT_THAT(message([&] { bare.number("fwhm_deg"); }), testing::HasSubstr("lab.toml:7: fwhm"));
+  EXPECT_THAT(refusal_of([&] { bare.number("fwhm_deg"); }), testing::HasSubstr("lab.toml:7: fwhm"));
   const Settings twice = lab({{"pitch_mm", leaf(1.0, 2)}, {"pitch_m", leaf(1.0, 3)}});
-  EXPECT_THAT(message([&] { twice.number("pitch_m"); }), testing::HasSubstr("the same quantity"));
+  EXPECT_THAT(refusal_of([&] { twice.number("pitch_m"); }),
+              testing::HasSubstr("the same quantity"));
 }
 
 TEST(Keys, UnreadKeyIsAnErrorWithTheNearestName) {
   const Settings settings = lab({{"power_W", leaf(1.0, 2)}, {"apperture_m", leaf(0.1, 5)}});
   settings.number("power_W");
   settings.number_or("aperture_m", 0.0);
-  EXPECT_EQ(message([&] { settings.finish(); }),
+  EXPECT_EQ(refusal_of([&] { settings.finish(); }),
             "lab.toml:5: apperture_m: found an unknown key, expected a known key, perhaps "
             "\"aperture_m\"");
 }
@@ -70,13 +63,13 @@ TEST(Keys, UnreadKeyIsAnErrorWithTheNearestName) {
 TEST(Keys, UnreadKeyWithoutUnitIsTheOneWithAUnit) {
   const Settings settings = lab({{"tilt", leaf(3.0, 4)}});
   for (const char* key : {"heading_deg", "tilt_deg"}) settings.number_or(key, 0.0);
-  EXPECT_THAT(message([&] { settings.finish(); }), testing::HasSubstr("perhaps \"tilt_deg\""));
+  EXPECT_THAT(refusal_of([&] { settings.finish(); }), testing::HasSubstr("perhaps \"tilt_deg\""));
 }
 
 TEST(Keys, UnreadKeyLikeNoneListsThoseThatAreKnown) {
   const Settings settings = lab({{"wavelength_nm", leaf(730.0, 4)}});
   for (const char* key : {"power_W", "exponent"}) settings.number_or(key, 0.0);
-  EXPECT_EQ(message([&] { settings.finish(); }),
+  EXPECT_EQ(refusal_of([&] { settings.finish(); }),
             "lab.toml:4: wavelength_nm: found an unknown key, expected one of exponent, power_W");
 }
 
@@ -84,26 +77,28 @@ TEST(Keys, MissingKeyPointsToItsMisspelling) {
   const Settings settings = lab({{"power_W", leaf(1.0, 2)}, {"apperture_m", leaf(0.1, 5)}});
   settings.number("power_W");
   EXPECT_THAT(
-      message([&] { settings.number("aperture_m"); }),
+      refusal_of([&] { settings.number("aperture_m"); }),
       testing::HasSubstr(
           "found nothing, expected a finite number m (is \"apperture_m\" in line 5 meant?)"));
-  EXPECT_THAT(message([&] { settings.number("exponent"); }), testing::EndsWith("a finite number"));
+  EXPECT_THAT(refusal_of([&] { settings.number("exponent"); }),
+              testing::EndsWith("a finite number"));
 }
 
 TEST(Keys, UnreadKeyOfASubTableIsFound) {
   const Settings settings =
       lab({{"scene", leaf(SettingsNode::Table{{"fiel", leaf(std::string("x"), 9)}}, 8)}});
   settings.table("scene").text_or("file", "");
-  EXPECT_THAT(message([&] { settings.finish(); }), testing::StartsWith("lab.toml:9: scene.fiel"));
+  EXPECT_THAT(refusal_of([&] { settings.finish(); }),
+              testing::StartsWith("lab.toml:9: scene.fiel"));
 }
 
 TEST(Ranges, AreCheckedInTheUsersUnit) {
   const Settings settings = lab({{"tilt_deg", leaf(200.0, 4)}});
-  EXPECT_EQ(message([&] {
+  EXPECT_EQ(refusal_of([&] {
               settings.number("tilt_deg", {0.0, pi});
             }),
             "lab.toml:4: tilt_deg: found 200, expected a number in [0, 180] deg");
-  EXPECT_THAT(message([&] {
+  EXPECT_THAT(refusal_of([&] {
                 lab({{"power_W", leaf(std::nan(""), 1)}}).number("power_W");
               }),
               testing::HasSubstr("finite"));
@@ -123,19 +118,19 @@ TEST(Values, WrongTypesStateTheValueFound) {
   const Settings settings = lab({{"kind", leaf(int64_t{3}, 2)},
                                  {"n", leaf(2.5, 3)},
                                  {"v", leaf(SettingsNode::Array{leaf(1.0, 4)}, 4)}});
-  EXPECT_THAT(message([&] { settings.text("kind"); }),
+  EXPECT_THAT(refusal_of([&] { settings.text("kind"); }),
               testing::HasSubstr("found 3, expected a text"));
-  EXPECT_THAT(message([&] { settings.integer("n", 0, 9); }),
+  EXPECT_THAT(refusal_of([&] { settings.integer("n", 0, 9); }),
               testing::HasSubstr("found 2.5, expected a whole number"));
-  EXPECT_THAT(message([&] { settings.vector3("v"); }), testing::HasSubstr("an array of 1"));
+  EXPECT_THAT(refusal_of([&] { settings.vector3("v"); }), testing::HasSubstr("an array of 1"));
   // A diagonal is no matrix yet.
   const SettingsNode diagonal =
       leaf(SettingsNode::Array{leaf(1.0, 3), leaf(2.0, 3), leaf(3.0, 3)}, 3);
-  EXPECT_THAT(message([&] {
+  EXPECT_THAT(refusal_of([&] {
                 lab({{"m", diagonal}}).matrix3("m");
               }),
               testing::HasSubstr("found an array of 3, expected an array of 3 rows of 3 numbers"));
-  EXPECT_THAT(message([&] {
+  EXPECT_THAT(refusal_of([&] {
                 settings.choice("kind", {"led", "sun"});
               }),
               testing::HasSubstr("one of \"led\", \"sun\""));

@@ -1,12 +1,11 @@
 // The engine on recordings of a rigid body: one verdict of each kind, and a recording whose rates
 // are in another unit than its header says.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
-#include <random>
 
 #include "attitude/estimation/fit.h"
 #include "attitude/propagation/run.h"
@@ -192,7 +191,7 @@ TEST(Trial, AThirdOfTheInertiaIsNoExplanation) {
   const Trial trial =
       extend(nominal_trial(fit_nominal(nominal, runs), all), all,
              static_cast<size_t>(error - all.list.begin()), {error->start}, runs, settings);
-  EXPECT_NE(trial.objection.find("inertia would change by"), std::string::npos) << trial.objection;
+  EXPECT_THAT(trial.objection, testing::HasSubstr("inertia would change by"));
 }
 
 // A cable that pushes by less than its error is one of no stiffness at all, and what was fitted
@@ -328,9 +327,9 @@ TEST(Diagnose, ReportsRatesInAnotherUnitAsAConventionError) {
     const Diagnosis d = diagnosed(nothing, unit);
     EXPECT_EQ(d.verdict, Verdict::consistent);
     ASSERT_EQ(d.warnings.size(), 2u);
-    EXPECT_NE(d.warnings[0].find("convention"), std::string::npos);
-    EXPECT_NE(d.warnings[0].find(unit < 1.0 ? "radians per second" : "degrees per second"),
-              std::string::npos);
+    EXPECT_THAT(d.warnings[0], testing::HasSubstr("convention"));
+    EXPECT_THAT(d.warnings[0],
+                testing::HasSubstr(unit < 1.0 ? "radians per second" : "degrees per second"));
   }
 }
 

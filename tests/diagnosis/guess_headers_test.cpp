@@ -11,22 +11,18 @@
 #include "core/errors.h"
 #include "core/settings/settings.h"
 #include "diagnosis/guess/guess.h"
+#include "tests/files.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
 class Headers : public testing::Test {
  protected:
-  fs::path write(const std::string& name, const std::string& text) const {
-    const fs::path path = fs::path(testing::TempDir()) / name;
-    std::ofstream(path, std::ios::binary) << text;
-    return path;
-  }
   // Four columns of numbers, or as many as the header has between semicolons.
   fs::path table(const std::string& header) const {
     std::string text = header + "\n";
@@ -37,20 +33,12 @@ class Headers : public testing::Test {
       }
       text += "\n";
     }
-    return write("headers.csv", text);
+    return test_file("headers.csv", text);
   }
   std::vector<std::string> channels(const std::string& header) const {
     std::vector<std::string> all;
     for (const GuessedColumn& c : guess_columns(table(header))) all.push_back(c.channel);
     return all;
-  }
-  static std::string refusal(const auto& read) {
-    try {
-      read();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
   }
 };
 
@@ -167,16 +155,17 @@ TEST_F(Headers, OfOtherQuantitiesAreNoMotion) {
 TEST_F(Headers, OfUnknownUnitsAreRefused) {
   for (const char* header :
        {"angle (gon)", "Encoder (counts)", "Winkel / Skt", "Winkel (rad/s)", "angle (rev)"}) {
-    EXPECT_THAT(refusal([&] { channels(std::string("t_s;") + header); }),
+    EXPECT_THAT(refusal_of([&] { channels(std::string("t_s;") + header); }),
                 AllOf(HasSubstr("the unit"), HasSubstr("rad, mrad, deg (°)")))
         << header;
   }
   for (const char* header : {"speed (furlong)", "omega (deg)", "speed (1/s)", "ω [deg/min]"}) {
-    EXPECT_THAT(refusal([&] { channels(std::string("t_s;") + header); }),
+    EXPECT_THAT(refusal_of([&] { channels(std::string("t_s;") + header); }),
                 AllOf(HasSubstr("the unit"), HasSubstr("rpm (1/min")))
         << header;
   }
-  EXPECT_THAT(refusal([&] { channels("time (days);rate_rpm"); }), HasSubstr("s, ms, µs, min or h"));
+  EXPECT_THAT(refusal_of([&] { channels("time (days);rate_rpm"); }),
+              HasSubstr("s, ms, µs, min or h"));
   // One column of the quantity in a known unit is enough.
   EXPECT_EQ(channels("t_s;angle (raw);angle (deg)").at(2), "angle_deg");
 }
@@ -193,7 +182,7 @@ TEST_F(Headers, StateTheirUnitOrAreMarked) {
 TEST_F(Headers, LargeCoordinatesWithoutAUnitAreMillimetres) {
   const auto names = [&](const std::string& rows) {
     std::vector<std::string> all;
-    for (const GuessedColumn& c : guess_columns(write("place.csv", "t,x,y\n" + rows))) {
+    for (const GuessedColumn& c : guess_columns(test_file("place.csv", "t,x,y\n" + rows))) {
       all.push_back(c.channel);
     }
     return all;
@@ -232,7 +221,7 @@ TEST_F(Headers, OfCurvesOfAModule) {
       text += (is_numbered ? std::to_string(i) + ";" : "") + std::to_string(volt) + ";" +
               std::to_string(ampere) + "\n";
     }
-    return guess_experiment({write("curve.csv", text)}, testing::TempDir());
+    return guess_experiment({test_file("curve.csv", text)}, testing::TempDir());
   };
   for (const char* header : {"U/V;I/A", "U / V;I / A", "No.;U;I", "Nr.;Spannung (V);Strom (A)",
                              "Panel Voltage;Panel Current", "U_mod [V];I_mod [A]"}) {
@@ -242,7 +231,7 @@ TEST_F(Headers, OfCurvesOfAModule) {
   EXPECT_THAT(curve("V;J (mA/cm2)", 20.0),
               AllOf(HasSubstr("current_mA = \"J (mA/cm2)\""), HasSubstr("current density")));
   EXPECT_THAT(curve("V;J", 0.02), HasSubstr("in A/cm² by its size"));
-  EXPECT_THAT(refusal([&] { curve("U;K", 1.0); }), HasSubstr("one voltage and one current"));
+  EXPECT_THAT(refusal_of([&] { curve("U;K", 1.0); }), HasSubstr("one voltage and one current"));
 }
 
 TEST_F(Headers, AreAskedForWithACommandForAShell) {
@@ -250,20 +239,21 @@ TEST_F(Headers, AreAskedForWithACommandForAShell) {
   for (int i = 0; i < 30; ++i) {
     rows += std::to_string(1276228840 + 880000 * i) + ",1,2,3,4\n";
   }
-  EXPECT_THAT(refusal([&] { guess_columns(write("Run (1) - it's.csv", rows)); }),
+  EXPECT_THAT(refusal_of([&] { guess_columns(test_file("Run (1) - it's.csv", rows)); }),
               HasSubstr("sed -i '1i t_us,column_2,column_3,column_4,column_5' "
                         "'Run (1) - it'\\''s.csv'"));
-  EXPECT_THAT(
-      refusal([&] { guess_columns(write("prose.txt", "Symmetric mode\n19.2\n0 1 2\n1 2 3\n")); }),
-      AllOf(HasSubstr("prose.txt:3"), HasSubstr("sed -i '3i t_s x_m y_m'")));
-  EXPECT_THAT(refusal([&] { guess_columns(write("two.txt", "a b\n0 1 2\n1 2 3\n")); }),
+  EXPECT_THAT(refusal_of([&] {
+                guess_columns(test_file("prose.txt", "Symmetric mode\n19.2\n0 1 2\n1 2 3\n"));
+              }),
+              AllOf(HasSubstr("prose.txt:3"), HasSubstr("sed -i '3i t_s x_m y_m'")));
+  EXPECT_THAT(refusal_of([&] { guess_columns(test_file("two.txt", "a b\n0 1 2\n1 2 3\n")); }),
               HasSubstr("sed -i '1c "));
 }
 
 TEST_F(Headers, OfFewRowsAreNamedInTheRefusal) {
-  EXPECT_THAT(refusal([&] {
+  EXPECT_THAT(refusal_of([&] {
                 guess_experiment(
-                    {write("few.txt", "t [min]\tw [1/min]\n0\t1000\n2\t920\n4\t850\n")}, ".");
+                    {test_file("few.txt", "t [min]\tw [1/min]\n0\t1000\n2\t920\n4\t850\n")}, ".");
               }),
               AllOf(HasSubstr("w [1/min]"), HasSubstr("3 rows"), HasSubstr("at least 20")));
 }
@@ -278,9 +268,10 @@ TEST_F(Headers, PlacesOnACircleAreRemarked) {
     parabola += std::to_string(t) + "\t" + std::to_string(t) + "\t" +
                 std::to_string(0.2 * t * (2.0 - t)) + "\n";
   }
-  const std::string remarked = guess_experiment({write("swing.txt", swing)}, ".");
+  const std::string remarked = guess_experiment({test_file("swing.txt", swing)}, ".");
   EXPECT_THAT(remarked, AllOf(HasSubstr("radius 1.5 m"), HasSubstr("pivot_m = [0.2, ")));
-  EXPECT_THAT(guess_experiment({write("parabola.txt", parabola)}, "."), Not(HasSubstr("radius")));
+  EXPECT_THAT(guess_experiment({test_file("parabola.txt", parabola)}, "."),
+              Not(HasSubstr("radius")));
 }
 
 }  // namespace

@@ -19,25 +19,18 @@
 #include "diagnosis/guess/guess.h"
 #include "scenes/experiment/toml.h"
 #include "tests/diagnosis/machine_bench.h"
+#include "tests/files.h"
+#include "tests/noise.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 using testing::SizeIs;
-
-class Guess : public testing::Test {
- protected:
-  fs::path write(const std::string& name, const std::string& text) const {
-    const fs::path path = fs::path(testing::TempDir()) / name;
-    std::ofstream(path, std::ios::binary) << text;
-    return path;
-  }
-};
 
 NominalModel model_of(const std::string& toml) {
   return read_attitude_model(
@@ -71,8 +64,7 @@ Recording thrown(const Mat3& inertia_kg_m2, const Vec3& rate_rad_s, double noise
   Recording recording;
   recording.channels = {{"gyro_x_rad_s", {}}, {"gyro_y_rad_s", {}}, {"gyro_z_rad_s", {}}};
   if (wheel_kg_m2 > 0.0) recording.channels.push_back({"wheel_z_rad_s", {}});
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  Noise normal(seed);
   sample(
       propagator, rows, [&](size_t i) { return interval_s * static_cast<double>(i); },
       [&](const Samples& samples) {
@@ -81,7 +73,7 @@ Recording thrown(const Mat3& inertia_kg_m2, const Vec3& rate_rad_s, double noise
           recording.time_s.push_back(time_s);
           for (size_t k = 0; k < 3; ++k) {
             recording.channels[k].values.push_back(samples.y[component::rate + k][lane] +
-                                                   noise_rad_s * normal(random));
+                                                   noise_rad_s * normal());
           }
           if (wheel_kg_m2 > 0.0) recording.channels[3].values.push_back(wheel_rad_s2 * time_s);
         }
@@ -106,7 +98,7 @@ InertiaNumbers relative(const Mat3& inertia) {
 const Mat3 racquet = (Mat3() << 1.0, 0.02, 0.0, 0.02, 0.08, -0.01, 0.0, -0.01, 1.07).finished();
 const Mat3 board = (Mat3() << 1.0, 0.0, 0.0, 0.0, 0.4, 0.0, 0.0, 0.0, 1.2).finished();
 
-TEST_F(Guess, MomentsFollowFromFreeRatesUpToTheirScale) {
+TEST(Guess, MomentsFollowFromFreeRatesUpToTheirScale) {
   for (const bool wheel : {false, true}) {
     const Recording exact =
         thrown(racquet, {4.0, 2.0, 3.0}, 0.0, 1, wheel ? 2e-3 : 0.0, wheel ? 900.0 : 0.0);
@@ -118,7 +110,7 @@ TEST_F(Guess, MomentsFollowFromFreeRatesUpToTheirScale) {
   }
 }
 
-TEST_F(Guess, MomentsHaveTheErrorsOfTheirScatter) {
+TEST(Guess, MomentsHaveTheErrorsOfTheirScatter) {
   const InertiaNumbers truth = relative(racquet);
   InertiaNumbers squares = InertiaNumbers::Zero();
   constexpr int draws = 40;
@@ -135,7 +127,7 @@ TEST_F(Guess, MomentsHaveTheErrorsOfTheirScatter) {
   EXPECT_GT(squares.minCoeff(), 0.05) << squares.transpose();
 }
 
-TEST_F(Guess, RatesAboutOneAxisDetermineNoMoments) {
+TEST(Guess, RatesAboutOneAxisDetermineNoMoments) {
   const auto found =
       free_inertia({observe(thrown(board, {0.0, 0.0, 3.0}, 0.0, 1), "spin.csv", free_platform())});
   EXPECT_FALSE(found);
@@ -143,7 +135,7 @@ TEST_F(Guess, RatesAboutOneAxisDetermineNoMoments) {
 
 // Swapped, reversed or in degrees, the rates of a thrown body follow no inertia; where the stated
 // one is only a guess only the wheel distinguishes it from a mirror image.
-TEST_F(Guess, RatesThatFollowNoInertiaAreReinterpreted) {
+TEST(Guess, RatesThatFollowNoInertiaAreReinterpreted) {
   const Recording recording = thrown(racquet, {4.0, 2.0, 3.0}, 0.003, 5, 2e-3, 900.0);
   const Mat3 guessed = Mat3::Identity();
   const auto repaired = [&](const std::function<void(Recording&)>& spoil) {
@@ -189,7 +181,7 @@ value = [[1, 0, 0], [0, 0.4, 0], [0, 0, 1.2]]
 sigma = [[0, 0.1, 0.1], [0.1, 0.2, 0.1], [0.1, 0.1, 0.2]]
 )";
 
-TEST_F(Guess, RecordingsOfTwoBodiesAreDistinguished) {
+TEST(Guess, RecordingsOfTwoBodiesAreDistinguished) {
   const Diagnosis d =
       diagnose(model_of(free_toml),
                throws_of({{"one.csv", board}, {"two.csv", racquet}, {"three.csv", board}}), {});
@@ -206,14 +198,14 @@ TEST_F(Guess, RecordingsOfTwoBodiesAreDistinguished) {
   EXPECT_THAT(d.sentence, HasSubstr("The recordings are of 2 different bodies."));
 }
 
-TEST_F(Guess, RecordingsOfOneBodyAreNot) {
+TEST(Guess, RecordingsOfOneBodyAreNot) {
   const Diagnosis d =
       diagnose(model_of(free_toml), throws_of({{"one.csv", board}, {"two.csv", board}}), {});
   EXPECT_TRUE(d.bodies.empty());
   for (const std::string& warning : d.warnings) EXPECT_THAT(warning, Not(HasSubstr("bodies")));
 }
 
-TEST_F(Guess, AClockThatContradictsTheRatesIsReported) {
+TEST(Guess, AClockThatContradictsTheRatesIsReported) {
   std::vector<NamedRecording> runs = throws_of({{"one.csv", board}});
   for (const double factor : {1.0, 1.2}) {
     for (double& time_s : runs.front().recording.time_s) time_s *= factor;
@@ -228,7 +220,7 @@ TEST_F(Guess, AClockThatContradictsTheRatesIsReported) {
   }
 }
 
-TEST_F(Guess, ASensorWithAnotherMountingIsReported) {
+TEST(Guess, ASensorWithAnotherMountingIsReported) {
   const Mat3 turn = Eigen::AngleAxisd(0.5, Vec3::UnitX()).toRotationMatrix();
   const Diagnosis d =
       diagnose(model_of(free_toml),
@@ -237,10 +229,10 @@ TEST_F(Guess, ASensorWithAnotherMountingIsReported) {
   EXPECT_THAT(d.warnings.front(), HasSubstr("their principal moments agree"));
 }
 
-TEST_F(Guess, ColumnsByTheirNames) {
+TEST(Guess, ColumnsByTheirNames) {
   const std::string header = "Time (s),Gyroscope x (deg/s),wy,omega_z [rad/s],accX,temp,q0";
-  const fs::path file =
-      write("names.csv", "made by a phone\n" + header + "\n0,1,2,3,4,5,6\n" + "0.01,1,2,3,4,5,6\n");
+  const fs::path file = test_file(
+      "names.csv", "made by a phone\n" + header + "\n0,1,2,3,4,5,6\n" + "0.01,1,2,3,4,5,6\n");
   std::vector<std::string> channels;
   std::vector<bool> sure;
   for (const GuessedColumn& c : guess_columns(file)) {
@@ -253,21 +245,16 @@ TEST_F(Guess, ColumnsByTheirNames) {
   EXPECT_FALSE(sure[2]);  // no unit in its name
 }
 
-TEST_F(Guess, AClockThatCountsMilliseconds) {
-  const fs::path file = write("clock.csv", "timestamp;gyro_z\n0;1\n20;1\n40;1\n60;1\n");
+TEST(Guess, AClockThatCountsMilliseconds) {
+  const fs::path file = test_file("clock.csv", "timestamp;gyro_z\n0;1\n20;1\n40;1\n60;1\n");
   EXPECT_EQ(guess_columns(file).front().channel, "t_ms");
-  const fs::path fast = write("fast.csv", "timestamp;gyro_z\n0;1\n4000;1\n8000;1\n");
+  const fs::path fast = test_file("fast.csv", "timestamp;gyro_z\n0;1\n4000;1\n8000;1\n");
   EXPECT_EQ(guess_columns(fast).front().channel, "t_us");
 }
 
-TEST_F(Guess, FilesThatCannotBeReadNameTheCure) {
+TEST(Guess, FilesThatCannotBeReadNameTheCure) {
   const auto refusal = [&](const std::string& text) -> std::string {
-    try {
-      guess_columns(write("bad.csv", text));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return refusal_of([&] { guess_columns(test_file("bad.csv", text)); });
   };
   EXPECT_THAT(refusal("0,0;1,5;2\n0,1;1,6;3\n"), HasSubstr("sed -i '1i t_s;x_m;y_m' bad.csv"));
   EXPECT_THAT(refusal("0,1\n0.1,2\n"), HasSubstr("a line above them that names the columns"));
@@ -278,17 +265,17 @@ TEST_F(Guess, FilesThatCannotBeReadNameTheCure) {
 }
 
 // Tables as programs of other countries and calculators write them.
-TEST_F(Guess, BlanksAndDecimalCommasAreRead) {
-  const fs::path blanks = write("blanks.txt", "time  theta\n 0.0   1.5\n 0.1   1.6\n");
+TEST(Guess, BlanksAndDecimalCommasAreRead) {
+  const fs::path blanks = test_file("blanks.txt", "time  theta\n 0.0   1.5\n 0.1   1.6\n");
   EXPECT_EQ(guess_columns(blanks)[1].channel, "angle_rad");
   const fs::path german =
-      write("messung.csv", "Messung vom Montag\nZeit (s);Winkel (degrees)\n0,0;1,5\n0,1;1,6\n");
+      test_file("messung.csv", "Messung vom Montag\nZeit (s);Winkel (degrees)\n0,0;1,5\n0,1;1,6\n");
   EXPECT_EQ(guess_columns(german)[0].channel, "t_s");
   EXPECT_EQ(guess_columns(german)[1].channel, "angle_deg");
 }
 
 // The experiment that is guessed of a wheel names its effects, in words of another maker.
-TEST_F(Guess, AWheelIsDiagnosedByItsGuess) {
+TEST(Guess, AWheelIsDiagnosedByItsGuess) {
   constexpr double dry = 0.01, form = 1.2e-4, start_rad_s = 30.0;
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise(0.0, 0.003);
@@ -301,7 +288,7 @@ TEST_F(Guess, AWheelIsDiagnosedByItsGuess) {
     text += std::to_string(0.25 * i) + "," + std::to_string((rate + noise(random)) / degree_rad) +
             ",12\n";
   }
-  const fs::path file = write("wheel.csv", text);
+  const fs::path file = test_file("wheel.csv", text);
   const std::string toml = guess_experiment({file}, file.parent_path());
   EXPECT_THAT(toml, AllOf(HasSubstr("topology = \"one_axis\""),
                           HasSubstr("rate_deg_s = \"Angular speed (deg/s)\""),
@@ -324,11 +311,11 @@ std::string angles_text(const std::vector<double>& angle_rad, double interval_s)
 }
 
 // Small oscillations, and large ones with 60 and with 12 readings per period.
-TEST_F(Guess, APendulumHangsFromAHorizontalAxis) {
+TEST(Guess, APendulumHangsFromAHorizontalAxis) {
   const Swing pendulum{10.0, 0.0, 0.05, 0.02};
   for (const auto& [angle_rad, interval_s] : {std::pair(0.2, 0.05), {1.5, 0.035}, {1.5, 0.18}}) {
-    const fs::path file =
-        write("pendulum.csv", angles_text(pendulum.from(angle_rad, interval_s, 400), interval_s));
+    const fs::path file = test_file(
+        "pendulum.csv", angles_text(pendulum.from(angle_rad, interval_s, 400), interval_s));
     EXPECT_THAT(guess_experiment({file}, "."),
                 AllOf(HasSubstr("axis = \"x\""), HasSubstr("CONFIRM")))
         << angle_rad << " rad, every " << interval_s << " s";
@@ -336,30 +323,29 @@ TEST_F(Guess, APendulumHangsFromAHorizontalAxis) {
 }
 
 // A coil drives a pendulum at twelve readings a period: its swing keeps its size, then it decays.
-TEST_F(Guess, ADrivenPendulumIsNoSpring) {
+TEST(Guess, ADrivenPendulumIsNoSpring) {
   const Swing pendulum{108.0, 0.0, 0.0, 0.0}, braked{108.0, 0.0, 0.26, 0.0};
   std::vector<double> angle_rad = pendulum.from(1.16, 0.05, 110);
   const std::vector<double> free = braked.from(1.16, 0.05, 240);
   angle_rad.insert(angle_rad.end(), free.begin(), free.end());
   for (double& a : angle_rad) a = 2.0 * pi / 2400.0 * std::round(a * 2400.0 / (2.0 * pi));
-  EXPECT_THAT(guess_experiment({write("driven.csv", angles_text(angle_rad, 0.05))}, "."),
+  EXPECT_THAT(guess_experiment({test_file("driven.csv", angles_text(angle_rad, 0.05))}, "."),
               HasSubstr("axis = \"x\""));
 }
 
 // A bob in a video, y downwards in the picture as a camera counts it; and about which point it
 // turns is read back.
-TEST_F(Guess, AVideoOfAPendulumShowsItsPivot) {
+TEST(Guess, AVideoOfAPendulumShowsItsPivot) {
   constexpr double length_m = 0.62, pivot_x_m = 0.31, pivot_y_m = -0.05, interval_s = 1.0 / 30.0;
   const std::vector<double> angle_rad = Swing{15.8, 0.0, 0.06, 0.0}.from(0.5, interval_s, 400);
-  std::mt19937_64 random(9);
-  std::normal_distribution<double> noise(0.0, 5e-4);
+  Noise noise(9, 5e-4);
   std::string text = "t\tx\ty\n";
   for (size_t i = 0; i < angle_rad.size(); ++i) {
     text += written("%.5f\t%.5f\t%.5f\n", interval_s * static_cast<double>(i),
-                    pivot_x_m + length_m * std::sin(angle_rad[i]) + noise(random),
-                    pivot_y_m + length_m * std::cos(angle_rad[i]) + noise(random));
+                    pivot_x_m + length_m * std::sin(angle_rad[i]) + noise(),
+                    pivot_y_m + length_m * std::cos(angle_rad[i]) + noise());
   }
-  const fs::path file = write("video.txt", text);
+  const fs::path file = test_file("video.txt", text);
   const std::string toml = guess_experiment({file}, ".");
   EXPECT_THAT(toml, AllOf(HasSubstr("topology = \"one_axis\""), HasSubstr("axis = \"x\"")));
   const Settings root(std::make_shared<const SettingsNode>(parse_toml(toml, "video.toml")));
@@ -377,20 +363,18 @@ TEST_F(Guess, AVideoOfAPendulumShowsItsPivot) {
 }
 
 // A straight track is part of any large circle.
-TEST_F(Guess, ATrackIsNoCircle) {
-  std::mt19937_64 random(10);
-  std::normal_distribution<double> noise(0.0, 1e-3);
+TEST(Guess, ATrackIsNoCircle) {
+  Noise noise(10, 1e-3);
   std::string text = "t_s,x_m,y_m\n";
   for (int i = 0; i < 300; ++i) {
     const double along = 0.4 * std::cos(0.2 * i);
-    text +=
-        written("%.2f,%.4f,%.4f\n", 0.05 * i, along + noise(random), 0.1 * along + noise(random));
+    text += written("%.2f,%.4f,%.4f\n", 0.05 * i, along + noise(), 0.1 * along + noise());
   }
-  const std::string toml = guess_experiment({write("track.csv", text)}, ".");
+  const std::string toml = guess_experiment({test_file("track.csv", text)}, ".");
   EXPECT_THAT(toml, AllOf(HasSubstr("topology = \"planar\""), Not(HasSubstr("pivot_m"))));
 }
 
-TEST_F(Guess, OneCoordinateOrASpeedIsAlongALine) {
+TEST(Guess, OneCoordinateOrASpeedIsAlongALine) {
   std::string
       cart =
           "Data Set 1:Time(s),Data Set 1:Position(m),Data Set 1:Velocity(m/s),Acceleration(m/s²)\n",
@@ -401,29 +385,28 @@ TEST_F(Guess, OneCoordinateOrASpeedIsAlongALine) {
     car += written("%d;%.2f\n", i, 50.0 - 0.5 * i);
   }
   EXPECT_THAT(
-      guess_experiment({write("cart.csv", cart)}, "."),
+      guess_experiment({test_file("cart.csv", cart)}, "."),
       AllOf(HasSubstr("topology = \"planar\""), HasSubstr("x_m = \"Data Set 1:Position(m)\""),
             Not(HasSubstr("velocity_x_m_s ="))));
   EXPECT_THAT(
-      guess_experiment({write("car.csv", car)}, "."),
+      guess_experiment({test_file("car.csv", car)}, "."),
       AllOf(HasSubstr("topology = \"planar\""), HasSubstr("velocity_x_km_h = \"speed (km/h)\"")));
 }
 
 // θ'' = −k θ − c θ': a damped cosine, which a hand releases after 0.4 s, with readings of 3 mrad.
-TEST_F(Guess, ATorsionPendulumTurnsAboutAnUprightAxis) {
+TEST(Guess, ATorsionPendulumTurnsAboutAnUprightAxis) {
   constexpr double k = 10.5, c = 0.3, released_s = 0.4, noise_rad = 0.003;
   const double omega = std::sqrt(k - 0.25 * c * c);
   for (const double interval_s : {0.03, 0.1}) {
-    std::mt19937_64 random(5);
-    std::normal_distribution<double> noise(0.0, noise_rad);
+    Noise noise(5, noise_rad);
     std::vector<double> angle_rad;
     for (int i = 0; i < 300; ++i) {
       const double t = std::max(0.0, interval_s * i - released_s);
       angle_rad.push_back(2.2 * std::exp(-0.5 * c * t) *
                               (std::cos(omega * t) + 0.5 * c / omega * std::sin(omega * t)) +
-                          noise(random));
+                          noise());
     }
-    const fs::path file = write("wheel.csv", angles_text(angle_rad, interval_s));
+    const fs::path file = test_file("wheel.csv", angles_text(angle_rad, interval_s));
     EXPECT_THAT(guess_experiment({file}, "."),
                 AllOf(HasSubstr("axis = \"z\""), HasSubstr("in proportion to the angle")))
         << "every " << interval_s << " s";
@@ -431,23 +414,22 @@ TEST_F(Guess, ATorsionPendulumTurnsAboutAnUprightAxis) {
 }
 
 // Three rates of a telephone on a pendulum: those across the axis are small, and none has a mean.
-TEST_F(Guess, APendulumIsNoFreeBodyByItsRates) {
+TEST(Guess, APendulumIsNoFreeBodyByItsRates) {
   constexpr double omega = 3.1, c = 0.05;
-  std::mt19937_64 random(6);
-  std::normal_distribution<double> noise(0.0, 0.004);
+  Noise noise(6, 0.004);
   std::string text = "Time (s),Gyroscope x (rad/s),Gyroscope y (rad/s),Gyroscope z (rad/s)\n";
   for (int i = 0; i < 1500; ++i) {
     const double t = 0.02 * i,
                  rate_rad_s = 0.6 * std::exp(-0.5 * c * t) * std::sin(omega * t + 0.7);
-    text += written("%.9g,%.9g,%.9g,%.9g\n", t, 0.06 * rate_rad_s + noise(random),
-                    -0.08 * rate_rad_s + noise(random), rate_rad_s + 0.002 + noise(random));
+    text += written("%.9g,%.9g,%.9g,%.9g\n", t, 0.06 * rate_rad_s + noise(),
+                    -0.08 * rate_rad_s + noise(), rate_rad_s + 0.002 + noise());
   }
-  EXPECT_THAT(guess_experiment({write("phone.csv", text)}, "."),
+  EXPECT_THAT(guess_experiment({test_file("phone.csv", text)}, "."),
               AllOf(HasSubstr("topology = \"one_axis\""), HasSubstr("axis = \"x\""),
                     HasSubstr("rate_rad_s = \"Gyroscope z (rad/s)\"")));
 }
 
-TEST_F(Guess, AThrowHasTheRatiosOfItsMoments) {
+TEST(Guess, AThrowHasTheRatiosOfItsMoments) {
   const fs::path file = fs::path(testing::TempDir()) / "throw.csv";
   write_recording(file, thrown(board, {4.0, 2.0, 3.0}, 0.003, 7));
   const std::string toml = guess_experiment({file}, ".");

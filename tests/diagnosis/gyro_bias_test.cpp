@@ -7,6 +7,7 @@
 #include "attitude/observation/kinematics.h"
 #include "attitude/propagation/run.h"
 #include "tests/diagnosis/noisy_recording.h"
+#include "tests/noise.h"
 
 namespace photorque {
 namespace {
@@ -46,10 +47,9 @@ std::vector<BiasHistory> histories_of(const std::vector<NamedRecording>& recordi
 
 // Readings of a gyro of the assumed class: scale and misalignment of one per cent.
 NamedRecording with_gyro_matrix(NamedRecording r, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal(0.0, 0.01);
+  Noise normal(seed, 0.01);
   Mat3 matrix = Mat3::Identity();
-  for (double& entry : matrix.reshaped()) entry += normal(random);
+  for (double& entry : matrix.reshaped()) entry += normal();
   for (size_t row = 0; row < r.recording.time_s.size(); ++row) {
     Vec3 rate;
     for (Eigen::Index k = 0; k < 3; ++k) {

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "attitude/observation/heavy_tails.h"
+#include "tests/noise.h"
 
 namespace photorque {
 namespace {
@@ -162,12 +163,11 @@ TEST(HeavyTails, TamingMovesWithTheMotion) {
 TEST(HeavyTails, AnAttitudeIsTurnedAboutItsLabAxisAlone) {
   Observation seen;
   Prediction residuals;
-  std::mt19937_64 random(11);
-  std::normal_distribution<double> white(0.0, 1e-4);
+  Noise white(11, 1e-4);
   const Quat attitude(Eigen::AngleAxisd(1.1, Vec3(1.0, 2.0, -0.5).normalized()));
   constexpr size_t count = 60, wrong = 31;
   for (size_t i = 0; i < count; ++i) {
-    Vec3 error(white(random), white(random), white(random));
+    Vec3 error(white(), white(), white());
     if (i == wrong) error.x() = 0.01;
     seen.time_s.push_back(tail_interval_s * static_cast<double>(i));
     seen.attitude.push_back(Quat(Eigen::AngleAxisd(error.norm(), error.normalized())) * attitude);
@@ -190,11 +190,10 @@ TEST(HeavyTails, AnAttitudeIsTurnedAboutItsLabAxisAlone) {
 }
 
 TEST(Bursts, AreDroppedAndNothingElse) {
-  std::mt19937_64 random(13);
-  std::normal_distribution<double> white;
+  Noise white(13);
   LeftRun run = left_run(4000, [&](double t) {
     const bool in_burst = (t >= 100.0 && t < 102.0) || (t >= 250.0 && t < 251.2);
-    return (in_burst ? 15.0 : 1.0) * white(random) + slow_motion(t);
+    return (in_burst ? 15.0 : 1.0) * white() + slow_motion(t);
   });
   const int64_t dropped = drop_bursts(run.residuals, {}, run.seen);
   EXPECT_GE(dropped, 28);

@@ -4,11 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include "attitude/studies/budget.h"
+#include "core/files.h"
 #include "diagnosis/attitude/effects/trial.h"
 #include "tests/attitude/disturbance_bench.h"
 
@@ -100,10 +99,7 @@ TEST(KindRegistry, BudgetRanksAllButTheExceptions) {
 }
 
 std::string page() {
-  std::ifstream file(PHOTORQUE_SOURCE_DIR "/docs/disturbances.md");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
+  return read_file(PHOTORQUE_SOURCE_DIR "/docs/disturbances.md");
 }
 
 // Each kind has rows of keys, with every key of a fit.

@@ -5,14 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <fstream>
 #include <regex>
 
 #include "core/errors.h"
 #include "core/files.h"
 #include "diagnosis/light/diagnose.h"
 #include "tests/outside.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -109,13 +108,9 @@ TEST_F(LightPriors, NumbersAtTheEndOfTheirRange) {
   const Experiment experiment = read("");
   const LightLab lab(experiment);
   // In the words of the file: half a diode more is nothing that anybody wrote.
-  try {
-    nominal(lab);
-    ADD_FAILURE() << "taken";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("array.bypass_every: found "));
-    EXPECT_THAT(error.what(), testing::HasSubstr("with a sigma of 1"));
-  }
+  const std::string refusal = refusal_of([&] { nominal(lab); });
+  EXPECT_THAT(refusal, testing::HasSubstr("array.bypass_every: found "));
+  EXPECT_THAT(refusal, testing::HasSubstr("with a sigma of 1"));
 }
 
 }  // namespace

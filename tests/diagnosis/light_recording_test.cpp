@@ -1,4 +1,5 @@
 // Readers of scans, sweeps and runs: recognised by their headers, with dropped rows counted.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,24 +7,18 @@
 
 #include "core/errors.h"
 #include "diagnosis/light/model/recording.h"
+#include "tests/files.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
-
-fs::path light_file(const std::string& name, const std::string& text) {
-  const fs::path path = fs::path(testing::TempDir()) / name;
-  std::ofstream(path) << text;
-  return path;
-}
-
 TEST(LightRecordings, AScanAmongCommentsAndTornRows) {
   const auto scan = read_light_recording(
-      light_file("scan.csv",
-                 "# operator: none\nsome words of an "
-                 "instrument\nu_m,v_m,irradiance_W_m2,tilt_deg,heading_deg\n"
-                 "0.01,0.02,300.5,12,60\n0.01,0.03\n0.02,0.02,nan,12,60\n0.03,0.02,301,12,60\n"),
+      test_file("scan.csv",
+                "# operator: none\nsome words of an "
+                "instrument\nu_m,v_m,irradiance_W_m2,tilt_deg,heading_deg\n"
+                "0.01,0.02,300.5,12,60\n0.01,0.03\n0.02,0.02,nan,12,60\n0.03,0.02,301,12,60\n"),
       {});
   EXPECT_EQ(scan.kind, LightRecording::Kind::scan);
   ASSERT_EQ(scan.rows(), 2u);
@@ -37,16 +32,16 @@ TEST(LightRecordings, AScanAmongCommentsAndTornRows) {
 
 TEST(LightRecordings, SweepsAndRunsByTheirHeaders) {
   const auto sweep = read_light_recording(
-      light_file("sweep.csv", "voltage_mV,current_mA\n1000,250\n"), {Quat::Identity(), 310.0});
+      test_file("sweep.csv", "voltage_mV,current_mA\n1000,250\n"), {Quat::Identity(), 310.0});
   EXPECT_EQ(sweep.kind, LightRecording::Kind::sweep);
   EXPECT_NEAR(sweep.voltage_V[0], 1.0, 1e-12);
   EXPECT_NEAR(sweep.current_A[0], 0.25, 1e-12);
   EXPECT_EQ(sweep.temperature_K[0], 310.0);
   const auto run = read_light_recording(
-      light_file("run.csv",
-                 "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,array_power_W,"
-                 "cell_temperature_K,led_current_A\n0,1,0,0,0,8,0.3,2.4,297,0.7\n"
-                 "1,2,0,0,0,8,0.3,2.4,297,0.7\n"),
+      test_file("run.csv",
+                "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,array_power_W,"
+                "cell_temperature_K,led_current_A\n0,1,0,0,0,8,0.3,2.4,297,0.7\n"
+                "1,2,0,0,0,8,0.3,2.4,297,0.7\n"),
       {});
   EXPECT_EQ(run.kind, LightRecording::Kind::run);
   EXPECT_EQ(run.rows(), 1u);
@@ -57,11 +52,11 @@ TEST(LightRecordings, SweepsAndRunsByTheirHeaders) {
 TEST(LightRecordings, CopiesOfARowAreLeftOut) {
   std::string rows = "u_m,v_m,irradiance_W_m2\n0.01,0.02,300\n0.01,0.02,301\n";
   for (int i = 0; i < 50; ++i) rows += "0.02,0.02,310.5\n";
-  const auto scan = read_light_recording(light_file("copies.csv", rows), {});
+  const auto scan = read_light_recording(test_file("copies.csv", rows), {});
   EXPECT_EQ(scan.irradiance_W_m2, (std::vector<double>{300.0, 301.0, 310.5}));
   EXPECT_EQ(scan.rejected.at("repeated row"), 49);
   const auto sweeps = read_light_recording(
-      light_file("copied_sweep.csv", "sweep,voltage_V,current_A\n0,1,0.2\n1,1,0.2\n1,1,0.2\n"), {});
+      test_file("copied_sweep.csv", "sweep,voltage_V,current_A\n0,1,0.2\n1,1,0.2\n1,1,0.2\n"), {});
   EXPECT_EQ(sweeps.rows(), 2u);
 }
 
@@ -73,7 +68,7 @@ TEST(LightRecordings, NoiseOfTheLampsCurrentIsNoneOfTheirLight) {
     rows += std::to_string(i) + ",1,0,0,0,8,0.3," +
             std::to_string((i < 20 ? 0.7 : 0.07) + (i % 2 == 0 ? 1e-3 : -1e-3)) + "\n";
   }
-  const LightRecording noisy = read_light_recording(light_file("noisy.csv", rows), {});
+  const LightRecording noisy = read_light_recording(test_file("noisy.csv", rows), {});
   ASSERT_EQ(noisy.lamp_light.size(), 40u);
   for (size_t i = 0; i < 40; ++i) {
     EXPECT_NEAR(noisy.lamp_light[i], i < 20 ? 1.0 : 0.1, 1e-12) << i;
@@ -85,9 +80,9 @@ TEST(LightRecordings, NoiseOfTheLampsCurrentIsNoneOfTheirLight) {
 TEST(LightRecordings, DimmedLampsAreRelativeToTheirBrightest) {
   const auto with_currents = [](const char* name, const char* second) {
     return read_light_recording(
-        light_file(name, std::string("t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,"
-                                     "led_current_A\n0,1,0,0,0,8,0.3,0.7\n1,1,0,0,0,7,0.1,") +
-                             second + "\n2,1,0,0,0,8,0.3,\n"),
+        test_file(name, std::string("t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,"
+                                    "led_current_A\n0,1,0,0,0,8,0.3,0.7\n1,1,0,0,0,7,0.1,") +
+                            second + "\n2,1,0,0,0,8,0.3,\n"),
         {});
   };
   const LightRecording dimmed = with_currents("dimmed.csv", "0.175");
@@ -106,7 +101,7 @@ TEST(LightRecordings, DimmedLampsAreRelativeToTheirBrightest) {
 // Once a conversion without a meaning.
 TEST(LightRecordings, NumbersOfSweepsBeyondAllCountingAreLeftOut) {
   const auto sweep = read_light_recording(
-      light_file("many.csv", "sweep,voltage_V,current_A\n1e300,1,0.2\n-3,1,0.2\n"), {});
+      test_file("many.csv", "sweep,voltage_V,current_A\n1e300,1,0.2\n-3,1,0.2\n"), {});
   ASSERT_EQ(sweep.rows(), 1u);
   EXPECT_EQ(sweep.sweep[0], -3);
   EXPECT_EQ(sweep.rejected.at("unreadable number"), 1);
@@ -114,15 +109,9 @@ TEST(LightRecordings, NumbersOfSweepsBeyondAllCountingAreLeftOut) {
 
 TEST(LightRecordings, RowsOfAnotherLengthThanTheHeaderAreNamedWhereMostAre) {
   const fs::path path =
-      light_file("commas.csv", "voltage_V,current_A\n1,2\n0,5,0,2\n0,6,0,2\n0,7,0,2\n");
-  try {
-    read_light_recording(path, {});
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find(":3: found a row of 4 cells, expected 2"),
-              std::string::npos)
-        << error.what();
-  }
+      test_file("commas.csv", "voltage_V,current_A\n1,2\n0,5,0,2\n0,6,0,2\n0,7,0,2\n");
+  EXPECT_THAT(refusal_of([&] { read_light_recording(path, {}); }),
+              testing::HasSubstr(":3: found a row of 4 cells, expected 2"));
 }
 
 // A scan at a tilt without its heading was taken to be at the experiment's attitude.
@@ -133,34 +122,33 @@ TEST(LightRecordings, PartsOfAnAttitudeAreRefused) {
     const auto cells = static_cast<int>(std::ranges::count(header, ','));
     std::string row = "0.1,0.2,300";
     for (int i = 2; i < cells; ++i) row += ",0.5";
-    try {
-      read_light_recording(light_file("part.csv", header + "\n" + row + "\n"), {});
-      ADD_FAILURE() << columns;
-    } catch (const InputError& e) {
-      EXPECT_NE(std::string(e.what()).find("alone of an attitude"), std::string::npos) << e.what();
-    }
+    EXPECT_THAT(refusal_of([&] {
+                  read_light_recording(test_file("part.csv", header + "\n" + row + "\n"), {});
+                }),
+                testing::HasSubstr("alone of an attitude"))
+        << columns;
   }
 }
 
 TEST(LightRecordings, SpreadsheetsMayMarkTheirByteOrder) {
   const auto scan = read_light_recording(
-      light_file("marked.csv", "\xEF\xBB\xBFu_m,v_m,irradiance_W_m2\r\n0.1,0.2,300\r\n"), {});
+      test_file("marked.csv", "\xEF\xBB\xBFu_m,v_m,irradiance_W_m2\r\n0.1,0.2,300\r\n"), {});
   EXPECT_EQ(scan.kind, LightRecording::Kind::scan);
   EXPECT_EQ(scan.rows(), 1u);
 }
 
 TEST(LightRecordings, LampsWithoutAnyCurrentAreRefused) {
-  const auto file = light_file("dark.csv",
-                               "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,led_current_A\n"
-                               "0,1,0,0,0,8,0.3,0\n1,1,0,0,0,8,0.3,0\n");
+  const auto file = test_file("dark.csv",
+                              "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,led_current_A\n"
+                              "0,1,0,0,0,8,0.3,0\n1,1,0,0,0,8,0.3,0\n");
   EXPECT_THROW(read_light_recording(file, {}), InputError);
 }
 
 TEST(LightRecordings, SweepsAreReadAsInstrumentsWriteThem) {
   const auto german =
-      read_light_recording(light_file("german.csv",
-                                      "Modul 17\nSpannung [V];Strom [mA];Zelltemperatur [°C]\n"
-                                      "0,1;500;24\n0,2;NaN;24\n0,3;400;26\n"),
+      read_light_recording(test_file("german.csv",
+                                     "Modul 17\nSpannung [V];Strom [mA];Zelltemperatur [°C]\n"
+                                     "0,1;500;24\n0,2;NaN;24\n0,3;400;26\n"),
                            {});
   EXPECT_EQ(german.kind, LightRecording::Kind::sweep);
   ASSERT_EQ(german.rows(), 2u);
@@ -170,12 +158,12 @@ TEST(LightRecordings, SweepsAreReadAsInstrumentsWriteThem) {
   EXPECT_NEAR(german.temperature_K[0], 298.15, 1e-9);
   EXPECT_EQ(german.rejected.at("unreadable number"), 1);
   const auto several = read_light_recording(
-      light_file("several.csv", "Curve\tVolts\tAmps\n7\t0\t5\n7\t30\t0\n9\t0\t4\n"), {});
+      test_file("several.csv", "Curve\tVolts\tAmps\n7\t0\t5\n7\t30\t0\n9\t0\t4\n"), {});
   EXPECT_EQ(several.sweep, (std::vector{0, 0, 1}));
 }
 
 TEST(LightRecordings, ColumnsMayHaveNamesOfTheFiles) {
-  const fs::path file = light_file("named.csv", "ch1,ch2,ref\n0.1,500,900\n0.2,400,900\n");
+  const fs::path file = test_file("named.csv", "ch1,ch2,ref\n0.1,500,900\n0.2,400,900\n");
   EXPECT_FALSE(is_light_recording(file));
   const LightColumns columns = {
       {"voltage_V", "ch1"}, {"current_mA", "ch2"}, {"irradiance_W_m2", "ref"}};
@@ -192,9 +180,9 @@ TEST(LightRecordings, ColumnsMayHaveNamesOfTheFiles) {
 
 TEST(LightRecordings, AMisspeltColumnIsAbsentBesideOneOfItsQuantity) {
   const LightColumns misspelt = {{"current_A", "I_ture"}};
-  const fs::path plain = light_file("plain.csv", "voltage_V,current_A\n0.1,5\n0.2,4\n"),
+  const fs::path plain = test_file("plain.csv", "voltage_V,current_A\n0.1,5\n0.2,4\n"),
                  instrument =
-                     light_file("instrument.csv", "note I_ture\nVolts;Amps\n0.1;5\n0.2;4\n");
+                     test_file("instrument.csv", "note I_ture\nVolts;Amps\n0.1;5\n0.2;4\n");
   for (const fs::path& file : {plain, instrument}) {
     EXPECT_TRUE(read_light_recording(file, {}, misspelt).absent_columns.contains("I_ture"));
   }
@@ -202,7 +190,7 @@ TEST(LightRecordings, AMisspeltColumnIsAbsentBesideOneOfItsQuantity) {
 
 TEST(LightRecordings, ANamedColumnCountsBeforeOthersOfItsQuantity) {
   const fs::path file =
-      light_file("both.csv", "voltage_V,current_A,corrected\n0.1,5,5.1\n0.2,4,4.1\n");
+      test_file("both.csv", "voltage_V,current_A,corrected\n0.1,5,5.1\n0.2,4,4.1\n");
   for (const auto& [name, scale] :
        std::map<std::string, double>{{"current_A", 1.0}, {"current_mA", 1e-3}}) {
     const auto sweep = read_light_recording(file, {}, {{name, "corrected"}});
@@ -213,10 +201,10 @@ TEST(LightRecordings, ANamedColumnCountsBeforeOthersOfItsQuantity) {
 
 TEST(LightRecordings, OthersAreRefused) {
   const fs::path motion =
-      light_file("motion.csv", "t_s,q_w,q_x,q_y,q_z,gyro_x_rad_s\n0,1,0,0,0,0\n");
+      test_file("motion.csv", "t_s,q_w,q_x,q_y,q_z,gyro_x_rad_s\n0,1,0,0,0,0\n");
   EXPECT_FALSE(is_light_recording(motion));
   EXPECT_THROW(read_light_recording(motion, {}), InputError);
-  EXPECT_THROW(read_light_recording(light_file("empty.csv", "voltage_V,current_A\n"), {}),
+  EXPECT_THROW(read_light_recording(test_file("empty.csv", "voltage_V,current_A\n"), {}),
                InputError);
 }
 

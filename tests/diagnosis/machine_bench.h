@@ -28,6 +28,33 @@ inline Recording recording_of(double interval_s, const std::vector<Channel>& cha
   return recording;
 }
 
+inline Diagnosis diagnosed(const NominalModel& nominal, double interval_s,
+                           const std::vector<Channel>& channels) {
+  return diagnose(nominal, {{"run.csv", recording_of(interval_s, channels)}}, {});
+}
+
+// A function of the time at even times from zero on.
+template <class Function>
+std::vector<double> sampled(double interval_s, int rows, const Function& at) {
+  std::vector<double> all;
+  for (int i = 0; i < rows; ++i) all.push_back(at(interval_s * i));
+  return all;
+}
+
+// θ'' = −k θ − c θ' from a rest at 1.
+struct DampedSwing {
+  double k, c;
+
+  double omega() const { return std::sqrt(k - 0.25 * c * c); }
+  double at(double t) const {
+    return std::exp(-0.5 * c * t) *
+           (std::cos(omega() * t) + 0.5 * c / omega() * std::sin(omega() * t));
+  }
+  double rate(double t) const {
+    return -k / omega() * std::exp(-0.5 * c * t) * std::sin(omega() * t);
+  }
+};
+
 // θ'' = −k sin θ − d sign θ' − c θ' − q θ' |θ'| by the classical Runge–Kutta rule, at rest for good
 // where the weight no longer overcomes d at a turning point.
 struct Swing {

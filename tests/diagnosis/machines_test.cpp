@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 #include "attitude/estimation/segments.h"
 #include "attitude/observation/noise_levels.h"
@@ -13,8 +12,8 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/diagnose.h"
-#include "scenes/experiment/toml.h"
 #include "tests/diagnosis/machine_bench.h"
+#include "tests/noise.h"
 
 namespace photorque {
 namespace {
@@ -42,14 +41,12 @@ double coasting_rad_s(double time_s, double start_rad_s, double dry, double form
 
 TEST(Machines, AWheelThatCoastsDownIsNamedByItsDryTorqueAndItsDrag) {
   constexpr double dry = 0.01, form = 1.2e-4, start_rad_s = 30.0;
-  std::mt19937_64 random(3);
-  std::normal_distribution<double> noise(0.0, 0.003);
+  Noise noise(3, 0.003);
   Channel rate{"gyro_z_rad_s", {}};
   for (int i = 0; i < 1200; ++i) {
-    rate.values.push_back(coasting_rad_s(0.25 * i, start_rad_s, dry, form) + noise(random));
+    rate.values.push_back(coasting_rad_s(0.25 * i, start_rad_s, dry, form) + noise());
   }
-  const Diagnosis d =
-      diagnose(machine(wheel_toml), {{"wheel.csv", recording_of(0.25, {rate})}}, {});
+  const Diagnosis d = diagnosed(machine(wheel_toml), 0.25, {rate});
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("dry_friction", "air_pressure_drag"));
   for (const FoundEffect& effect : d.effects) {
     const double truth = effect.kind == "dry_friction" ? dry : form;
@@ -68,12 +65,11 @@ TEST(Machines, AWheelThatCoastsDownIsNamedByItsDryTorqueAndItsDrag) {
 // pass takes them away where it asks for what nothing can give.
 TEST(Machines, NamesBesideTheRestPassEveryGate) {
   constexpr double dry = 0.01, form = 1.2e-4, start_rad_s = 30.0;
-  std::mt19937_64 random(3);
-  std::normal_distribution<double> noise(0.0, 0.003);
+  Noise noise(3, 0.003);
   Channel rate{"gyro_z_rad_s", {}};
   for (int i = 0; i < 1200; ++i) {
     rate.values.push_back(coasting_rad_s(0.25 * i, start_rad_s, dry, form) +
-                          0.05 * std::sin(0.31 * i + 0.002 * i * i) + noise(random));
+                          0.05 * std::sin(0.31 * i + 0.002 * i * i) + noise());
   }
   const std::vector<NamedRecording> runs = {{"wheel.csv", recording_of(0.25, {rate})}};
   const auto named = [&](const DiagnoseOptions& options) {
@@ -96,14 +92,13 @@ TEST(Machines, ABodyThatTurnsFreelyLacksNothing) {
   // A body with two equal moments precesses: ωx + i ωy turns with λ = (Iz − Ix) ωz / Ix (Landau and
   // Lifshitz, Mechanics, section 36).
   constexpr double Ix = 0.02, Iz = 0.03, spin = 8.0, across = 2.0, interval_s = 0.01;
-  std::mt19937_64 random(5);
-  std::normal_distribution<double> noise(0.0, 0.002);
+  Noise noise(5, 0.002);
   std::vector<Channel> gyro = {{"gyro_x_rad_s", {}}, {"gyro_y_rad_s", {}}, {"gyro_z_rad_s", {}}};
   for (int i = 0; i < 600; ++i) {
     const double angle = (Iz - Ix) / Ix * spin * interval_s * i;
-    gyro[0].values.push_back(across * std::cos(angle) + noise(random));
-    gyro[1].values.push_back(across * std::sin(angle) + noise(random));
-    gyro[2].values.push_back(spin + noise(random));
+    gyro[0].values.push_back(across * std::cos(angle) + noise());
+    gyro[1].values.push_back(across * std::sin(angle) + noise());
+    gyro[2].values.push_back(spin + noise());
   }
   const NominalModel nominal = machine(R"([platform]
 topology = "free"
@@ -111,7 +106,7 @@ inertia_kg_m2 = { value = [[0.02, 0, 0], [0, 0.02, 0], [0, 0, 0.03]], sigma = [[
 [sensors.gyro]
 noise_rad_s = 0.002
 )");
-  const Diagnosis d = diagnose(nominal, {{"throw.csv", recording_of(interval_s, gyro)}}, {});
+  const Diagnosis d = diagnosed(nominal, interval_s, gyro);
   EXPECT_EQ(d.verdict, Verdict::consistent) << d.sentence;
   EXPECT_NEAR(d.chi2_per_sample_after, 1.0, 5.0 * std::sqrt(2.0 / (3.0 * 450.0)));
 }
@@ -210,12 +205,11 @@ TEST(Machines, RecordingsAreCutWhereSomethingHappened) {
   Platform spacecraft;
   spacecraft.topology = Topology::one_axis;
   Channel angle{"angle_rad", {}}, thruster{"thruster", {}};
-  std::mt19937_64 random(7);
-  std::normal_distribution<double> noise(0.0, 1e-7);
+  Noise noise(7, 1e-7);
   for (int i = 0; i < 60; ++i) {
     // Two segments of other rates, the firing noted in row 20; in row 40 one that was not noted.
     const double t = i < 20 ? i : i < 40 ? 20.0 - (i - 20) : 3.0 * (i - 40);
-    angle.values.push_back(1e-5 * t + noise(random));
+    angle.values.push_back(1e-5 * t + noise());
     thruster.values.push_back(i == 20 ? 1.0 : 0.0);
   }
   Recording recording = recording_of(10.0, {angle, thruster});
@@ -241,13 +235,12 @@ TEST(Machines, RecordingsAreCutWhereSomethingHappened) {
 TEST(Machines, StepsOfAnEncoderAndTheBeginningOfADecayAreNoKinks) {
   Platform axle;
   axle.topology = Topology::one_axis;
-  std::mt19937_64 random(23);
-  std::normal_distribution<double> noise(0.0, 1e-4);
+  Noise noise(23, 1e-4);
   Channel counted{"angle_rad", {}}, swings = counted, kicked = counted;
   for (int i = 0; i < 6000; ++i) {
     counted.values.push_back(0.01 * std::floor(0.1 * i));
     const double t = 0.1 * i;
-    swings.values.push_back(0.5 * std::exp(-t / 120.0) * std::cos(t) + noise(random));
+    swings.values.push_back(0.5 * std::exp(-t / 120.0) * std::cos(t) + noise());
     kicked.values.push_back(swings.values.back() + 0.8 * std::max(0.0, t - 55.0));
   }
   Channel rounded{"angle_rad", Swing{120.0, 2.3, 0.19, 0.0}.from(1.1, 0.001, 5000)};
@@ -266,13 +259,12 @@ TEST(Machines, StepsOfAnEncoderAndTheBeginningOfADecayAreNoKinks) {
 
 // A drive holds the wheel for 60 s before it coasts; now and then a count is lost.
 Channel driven_then_coasting(double noise_rad_s) {
-  std::mt19937_64 random(13);
-  std::normal_distribution<double> noise(0.0, noise_rad_s);
+  Noise noise(13, noise_rad_s);
   Channel rate{"gyro_z_rad_s", {}};
   for (int i = 0; i < 1500; ++i) {
     const double t = 0.25 * i, lost = i % 301 < 2 ? 2.0 / 3.0 : 1.0;
     rate.values.push_back(lost * coasting_rad_s(std::max(0.0, t - 60.0), 30.0, 0.01, 1.2e-4) +
-                          noise(random));
+                          noise());
   }
   return rate;
 }
@@ -296,15 +288,14 @@ TEST(Machines, TheDrivenPartOfARunIsOmitted) {
 TEST(Machines, MotionUnderOneLawIsNotCut) {
   Platform axle;
   axle.topology = Topology::one_axis;
-  std::mt19937_64 random(17);
-  std::normal_distribution<double> noise(0.0, 0.003);
+  Noise noise(17, 0.003);
   Channel stops{"gyro_z_rad_s", {}}, swings = stops, commanded = stops,
                                      command{"command_z_N_m", {}}, even = stops;
   for (int i = 0; i < 1500; ++i) {
     const double t = 0.25 * i;
-    stops.values.push_back(std::max(0.0, 30.0 - 0.15 * t) + noise(random));  // dry friction alone
-    swings.values.push_back(std::sin(0.4 * t) * std::exp(-t / 200.0) + noise(random));
-    commanded.values.push_back(30.0 + 0.15 * std::max(0.0, t - 60.0) + noise(random));
+    stops.values.push_back(std::max(0.0, 30.0 - 0.15 * t) + noise());  // dry friction alone
+    swings.values.push_back(std::sin(0.4 * t) * std::exp(-t / 200.0) + noise());
+    commanded.values.push_back(30.0 + 0.15 * std::max(0.0, t - 60.0) + noise());
     command.values.push_back(t < 60.0 ? 0.0 : 0.15);
     even.values.push_back(2.0);  // a rate that never changes by a digit
   }
@@ -325,13 +316,12 @@ kind = "dry_friction"
 torque_N_m = { value = 5e-2, sigma = 5e-2 }
 per_recording = true
 )");
-  std::mt19937_64 random(19);
-  std::normal_distribution<double> noise(0.0, 0.003);
+  Noise noise(19, 0.003);
   std::vector<NamedRecording> runs;
   for (const double dry : {0.008, 0.010, 0.013}) {
     Channel rate{"gyro_z_rad_s", {}};
     for (int i = 0; i < 1200; ++i) {
-      rate.values.push_back(coasting_rad_s(0.25 * i, 30.0, dry, 1.2e-4) + noise(random));
+      rate.values.push_back(coasting_rad_s(0.25 * i, 30.0, dry, 1.2e-4) + noise());
     }
     runs.push_back({"run.csv", recording_of(0.25, {rate})});
   }
@@ -366,8 +356,7 @@ void expect_near_truth(const Diagnosis& d, const std::string& kind, const std::s
 // encoder repeats one count.
 TEST(Machines, APendulumThatComesToRestIsFollowedBySwingAndCount) {
   const Channel angle = counted(Swing{55.0, 0.9, 0.15, 0.0}.from(1.6, 0.01, 2400), 4096);
-  const Diagnosis d =
-      diagnose(machine(pendulum_toml(-5.6)), {{"swing.csv", recording_of(0.01, {angle})}}, {});
+  const Diagnosis d = diagnosed(machine(pendulum_toml(-5.6)), 0.01, {angle});
   EXPECT_EQ(d.verdict, Verdict::missing_physics) << d.sentence;
   ASSERT_THAT(kinds_of(d), UnorderedElementsAre("dry_friction", "bearing_drag"));
   expect_near_truth(d, "dry_friction", "torque_N_m", 0.9, 0.01);
@@ -377,8 +366,8 @@ TEST(Machines, APendulumThatComesToRestIsFollowedBySwingAndCount) {
 // Swings whose period depends on their size, with no weight and no friction in the experiment.
 TEST(Machines, LargeSwingsAreNamedByWeightAndDrag) {
   const Channel angle = counted(Swing{30.0, 0.0, 0.0, 0.012}.from(2.3, 0.01, 2500), 4096);
-  const Diagnosis d = diagnose(machine("[platform]\ntopology = \"one_axis\"\naxis = \"x\"\n"),
-                               {{"swing.csv", recording_of(0.01, {angle})}}, {});
+  const Diagnosis d =
+      diagnosed(machine("[platform]\ntopology = \"one_axis\"\naxis = \"x\"\n"), 0.01, {angle});
   EXPECT_EQ(d.verdict, Verdict::missing_physics) << d.sentence;
   ASSERT_THAT(kinds_of(d), UnorderedElementsAre("static_unbalance", "air_pressure_drag"));
   expect_near_truth(d, "air_pressure_drag", "coefficient_N_m_s2", 0.012, 0.02);
@@ -390,16 +379,14 @@ TEST(Machines, LargeSwingsAreNamedByWeightAndDrag) {
 // that never changes is no rival of a drag.
 TEST(Machines, ADragHasNoRivalsInAHeadingThatNeverChanges) {
   constexpr double k = 8.0, c = 0.05, noise_rad = 0.003;
-  std::mt19937_64 random(29);
-  std::normal_distribution<double> noise(0.0, noise_rad);
+  Noise noise(29, noise_rad);
   Channel angle{"angle_rad", {}};
   for (int i = 0; i < 1200; ++i) {
     const double t = i / 30.0;
-    angle.values.push_back(0.05 * std::exp(-0.5 * c * t) * std::cos(std::sqrt(k) * t) +
-                           noise(random));
+    angle.values.push_back(0.05 * std::exp(-0.5 * c * t) * std::cos(std::sqrt(k) * t) + noise());
   }
-  const Diagnosis d = diagnose(machine(pendulum_toml(-k / standard_gravity_m_s2)),
-                               {{"swing.csv", recording_of(1.0 / 30.0, {angle})}}, {});
+  const Diagnosis d =
+      diagnosed(machine(pendulum_toml(-k / standard_gravity_m_s2)), 1.0 / 30.0, {angle});
   ASSERT_THAT(kinds_of(d), ElementsAre("bearing_drag")) << d.sentence;
   EXPECT_GT(d.confidence, 0.7);
   expect_near_truth(d, "bearing_drag", "coefficient_N_m_s", c, 0.0);
@@ -413,17 +400,16 @@ TEST(Machines, ATwistedLineIsFoundByTheRateAlone) {
   const double omega = std::sqrt(k - 0.25 * c * c);
   int right = 0;
   for (unsigned seed = 31; seed < 31 + recordings; ++seed) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> noise(0.0, noise_rad_s);
+    Noise noise(seed, noise_rad_s);
     Channel rate{"rate_rad_s", {}};
     for (int i = 0; i < 2000; ++i) {
       const double t = 0.1 * i;
       rate.values.push_back(-largest_rad * std::exp(-0.5 * c * t) *
                                 (0.5 * c * std::cos(omega * t) + omega * std::sin(omega * t)) +
-                            noise(random));
+                            noise());
     }
-    const Diagnosis d = diagnose(machine("[platform]\ntopology = \"one_axis\"\naxis = \"z\"\n"),
-                                 {{"line.csv", recording_of(0.1, {rate})}}, {});
+    const Diagnosis d =
+        diagnosed(machine("[platform]\ntopology = \"one_axis\"\naxis = \"z\"\n"), 0.1, {rate});
     std::vector<std::string> kinds = kinds_of(d);
     std::ranges::sort(kinds);
     if (kinds != std::vector<std::string>{"bearing_drag", "tether"}) continue;
@@ -451,11 +437,10 @@ TEST(Machines, AnEncoderAtRestDoesNotDetermineItsNoise) {
 }
 
 TEST(Machines, ReadingsDetermineTheirNoise) {
-  std::mt19937_64 random(11);
-  std::normal_distribution<double> noise(0.0, 0.02);
+  Noise noise(11, 0.02);
   Channel rate{"gyro_z_rad_s", {}}, steps{"gyro_y_rad_s", {}};
   for (int i = 0; i < 2000; ++i) {
-    rate.values.push_back(3.0 * std::sin(0.01 * i) + noise(random));
+    rate.values.push_back(3.0 * std::sin(0.01 * i) + noise());
     steps.values.push_back(0.5 * std::round(0.004 * i));
   }
   const std::vector<Observation> runs = {
@@ -468,14 +453,13 @@ TEST(Machines, ReadingsDetermineTheirNoise) {
 
 // Motion that the rows follow coarsely, one row in three missing: twenty readings a period.
 TEST(Machines, ReadingsDetermineTheirNoiseInFastMotionAndWithMissingRows) {
-  std::mt19937_64 random(12);
-  std::normal_distribution<double> noise(0.0, 0.003);
+  Noise noise(12, 0.003);
   Channel rate{"gyro_z_rad_s", {}};
   Recording recording;
   for (int i = 0; i < 3000; ++i) {
     if (i % 3 == 0) continue;
     recording.time_s.push_back(0.01 * i);
-    rate.values.push_back(3.0 * std::sin(2.0 * pi * 0.01 * i / 0.3) + noise(random));
+    rate.values.push_back(3.0 * std::sin(2.0 * pi * 0.01 * i / 0.3) + noise());
   }
   recording.channels = {rate};
   recording.report.rows_read = recording.report.rows_kept =
@@ -490,16 +474,15 @@ TEST(Machines, ReadingsDetermineTheirNoiseInFastMotionAndWithMissingRows) {
 TEST(Machines, ResidualsCountAsCorrelatedNoise) {
   // White noise of 1 and a process of 2 that is correlated over 5 s.
   constexpr double time_s = 5.0, interval_s = 0.1;
-  std::mt19937_64 random(13);
-  std::normal_distribution<double> normal;
+  Noise normal(13);
   Observation seen;
   Prediction left;
   const double keep = std::exp(-interval_s / time_s);
   double slow = 0.0;
   for (int i = 0; i < 60000; ++i) {
-    slow = keep * slow + 2.0 * std::sqrt(1.0 - keep * keep) * normal(random);
+    slow = keep * slow + 2.0 * std::sqrt(1.0 - keep * keep) * normal();
     WhiteRow row = WhiteRow::Constant(NAN);
-    row[5] = slow + normal(random);
+    row[5] = slow + normal();
     left.off.push_back(row);
     seen.time_s.push_back(interval_s * i);
     seen.gyro_rows.emplace_back(0.0, 0.0, 1.0);
@@ -519,13 +502,12 @@ TEST(Machines, ResidualsCountAsCorrelatedNoise) {
 // Independent residuals of 1 in means of 25 readings: so many times the noise of one reading, or a
 // fit would take each mean for five times as exact as it is. In the last quarter they are 3.
 TEST(Machines, WhatIsLeftOfMeansCountsAsTheirNoise) {
-  std::mt19937_64 random(17);
-  std::normal_distribution<double> normal;
+  Noise normal(17);
   Observation seen;
   Prediction left;
   for (int i = 0; i < 8000; ++i) {
     WhiteRow row = WhiteRow::Constant(NAN);
-    row[5] = (i < 6000 ? 1.0 : 3.0) * normal(random);
+    row[5] = (i < 6000 ? 1.0 : 3.0) * normal();
     left.off.push_back(row);
     seen.time_s.push_back(0.1 * i);
     seen.gyro_rows.emplace_back(0.0, 0.0, 25.0);
@@ -555,14 +537,12 @@ TEST(Machines, WhatIsLeftOfMeansCountsAsTheirNoise) {
 
 // A wheel that speeds up as if its drag were −5e-4 N m s, which no experiment can state.
 TEST(Machines, FittedPriorsStayWithinTheRangeOfTheirKeys) {
-  std::mt19937_64 random(3);
-  std::normal_distribution<double> noise(0.0, 0.003);
+  Noise noise(3, 0.003);
   Channel rate{"gyro_z_rad_s", {}};
   for (int i = 0; i < 1200; ++i) {
-    rate.values.push_back(3.0 * std::exp(5e-4 * 0.25 * i) + noise(random));
+    rate.values.push_back(3.0 * std::exp(5e-4 * 0.25 * i) + noise());
   }
-  const Diagnosis d =
-      diagnose(machine(wheel_toml), {{"wheel.csv", recording_of(0.25, {rate})}}, {});
+  const Diagnosis d = diagnosed(machine(wheel_toml), 0.25, {rate});
   ASSERT_EQ(d.priors_refined.size(), 1u) << d.sentence;
   EXPECT_EQ(d.priors_refined[0].key, "disturbance[0].coefficient_N_m_s");
   EXPECT_EQ(d.priors_refined[0].value[0], 0.0) << d.sentence;

@@ -9,6 +9,7 @@
 #include "attitude/model/dynamics.h"
 #include "tests/attitude/disturbance_bench.h"
 #include "tests/diagnosis/noisy_recording.h"
+#include "tests/noise.h"
 
 namespace photorque {
 namespace {
@@ -33,11 +34,10 @@ Board one_off_m(size_t marker, const Vec3& by_m) {
 
 // All of them, a fifth of a millimetre, drawn.
 Board all_off_m(unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal(0.0, 2e-4);
+  Noise normal(seed, 2e-4);
   Board errors;
   for (size_t i = 0; i < 5; ++i) {
-    const double x = normal(random), y = normal(random), z = normal(random);
+    const double x = normal(), y = normal(), z = normal();
     errors.emplace_back(x, y, z);
   }
   return errors;

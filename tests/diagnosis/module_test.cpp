@@ -1,22 +1,25 @@
 // A module in sunlight: its curve against the network of photovoltaics/, and what is named in
 // curves that the network made.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <random>
-#include <sstream>
 
 #include "diagnosis/light/module/curve.h"
 #include "diagnosis/light/module/diagnose.h"
 #include "photovoltaics/cell/table.h"
 #include "photovoltaics/network/curve.h"
 #include "scenes/experiment/toml.h"
+#include "tests/diagnosis/named.h"
+#include "tests/files.h"
 #include "tests/outside.h"
 
 namespace photorque {
 namespace {
+
+using testing::ElementsAre;
 
 constexpr int cells = 12;
 const ModuleCell usual{5.0, 2e-9, 1.1, 0.004, 40.0, 298.15};
@@ -371,16 +374,10 @@ LightRecording by_ngspice(const std::string& name, double temperature_K) {
   LightRecording r;
   r.kind = LightRecording::Kind::sweep;
   r.name = name;
-  std::ifstream in(outside::reference_data("electrical/ngspice_modules.csv"));
-  for (std::string line; std::getline(in, line);) {
-    std::stringstream fields(line);
-    std::string curve, voltage, current;
-    std::getline(fields, curve, ',');
-    std::getline(fields, voltage, ',');
-    std::getline(fields, current, ',');
-    if (curve != name) continue;
-    r.voltage_V.push_back(std::stod(voltage));
-    r.current_A.push_back(std::stod(current));
+  for (const auto& row : csv_rows(outside::reference_data("electrical/ngspice_modules.csv"))) {
+    if (row[0] != name) continue;
+    r.voltage_V.push_back(std::stod(row.at(1)));
+    r.current_A.push_back(std::stod(row.at(2)));
   }
   const size_t rows = r.voltage_V.size();
   r.temperature_K.assign(rows, temperature_K);
@@ -400,13 +397,6 @@ Diagnosis of_ngspice(const std::string& name, double temperature_K) {
   return diagnose_module(design, {by_ngspice(name, temperature_K)}, {});
 }
 
-double number_of(const FoundEffect& effect, const std::string& key) {
-  for (const auto& parameter : effect.parameters) {
-    if (parameter.key == key) return parameter.value[0];
-  }
-  return NAN;
-}
-
 TEST(ModuleOfNgspice, HasNothingMissing) {
   const Diagnosis d = of_ngspice("healthy", 313.15);
   EXPECT_EQ(d.verdict, Verdict::consistent) << d.sentence;
@@ -416,16 +406,14 @@ TEST(ModuleOfNgspice, HasNothingMissing) {
 // hide the fault: they contradict the reference and the thermometer.
 TEST(ModuleOfNgspice, NamesAContactThatTheReferenceLacks) {
   const Diagnosis d = of_ngspice("contact", 317.15);
-  ASSERT_EQ(d.effects.size(), 1u) << d.sentence;
-  EXPECT_EQ(d.effects[0].kind, "series_resistance");
-  EXPECT_NEAR(number_of(d.effects[0], "resistance_ohm"), 0.12, 0.01);
+  ASSERT_THAT(kinds_of(d), ElementsAre("series_resistance")) << d.sentence;
+  EXPECT_NEAR(parameter(d, "series_resistance", "resistance_ohm").value[0], 0.12, 0.01);
 }
 
 TEST(ModuleOfNgspice, NamesATemperatureThatTheThermometerLacks) {
   const Diagnosis d = of_ngspice("hot", 318.15);
-  ASSERT_EQ(d.effects.size(), 1u) << d.sentence;
-  EXPECT_EQ(d.effects[0].kind, "temperature");
-  EXPECT_NEAR(number_of(d.effects[0], "change_K"), 16.0, 2.5);
+  ASSERT_THAT(kinds_of(d), ElementsAre("temperature")) << d.sentence;
+  EXPECT_NEAR(parameter(d, "temperature", "change_K").value[0], 16.0, 2.5);
 }
 
 bool can_be(const FoundEffect& effect, const std::string& kind) {
@@ -436,15 +424,14 @@ TEST(ModuleOfNgspice, NamesHalfASubstringInTheShade) {
   const Diagnosis d = of_ngspice("half_shaded", 318.15);
   ASSERT_EQ(d.effects.size(), 1u) << d.sentence;
   EXPECT_TRUE(can_be(d.effects[0], "cell_shaded")) << d.sentence;
-  EXPECT_NEAR(number_of(d.effects[0], "count"), 10.0, 2.0);
+  EXPECT_NEAR(parameter(d, d.effects[0].kind, "count").value[0], 10.0, 2.0);
 }
 
 TEST(ModuleOfNgspice, NamesTwoFaults) {
   const Diagnosis shorted = of_ngspice("shorted_and_contact", 318.15);
-  ASSERT_EQ(shorted.effects.size(), 2u) << shorted.sentence;
-  EXPECT_EQ(shorted.effects[0].kind, "bypass_shorted");
-  EXPECT_EQ(shorted.effects[1].kind, "series_resistance");
-  EXPECT_NEAR(number_of(shorted.effects[1], "resistance_ohm"), 0.4, 0.02);
+  ASSERT_THAT(kinds_of(shorted), ElementsAre("bypass_shorted", "series_resistance"))
+      << shorted.sentence;
+  EXPECT_NEAR(parameter(shorted, "series_resistance", "resistance_ohm").value[0], 0.4, 0.02);
 }
 
 // The cell in the shade and the cells without voltage are under different diodes. Alone, no effect
@@ -453,7 +440,7 @@ TEST(ModuleOfNgspice, NamesAShadeBesideAShortedDiode) {
   const Diagnosis d = of_ngspice("shorted_and_shaded", 318.15);
   ASSERT_EQ(d.effects.size(), 2u) << d.sentence;
   EXPECT_TRUE(can_be(d.effects[0], "cell_shaded")) << d.sentence;
-  EXPECT_NEAR(number_of(d.effects[0], "factor"), 0.5, 0.01);
+  EXPECT_NEAR(parameter(d, d.effects[0].kind, "factor").value[0], 0.5, 0.01);
   EXPECT_EQ(d.effects[1].kind, "bypass_shorted");
 }
 

@@ -1,7 +1,6 @@
 // Recordings of the rigid body whose instruments have other noise than is stated.
 #pragma once
 
-#include "attitude/estimation/conventions.h"
 #include "tests/diagnosis/rigid_body_recording.h"
 
 namespace photorque::rigid_body {

@@ -1,13 +1,12 @@
 // Recordings of a rigid body under gravity and drag, integrated here and nowhere else.
 #pragma once
 
-#include <cmath>
 #include <functional>
-#include <random>
 
 #include "attitude/disturbances/kind.h"
 #include "core/constants.h"
 #include "diagnosis/attitude/diagnose.h"
+#include "tests/noise.h"
 
 namespace photorque::rigid_body {
 
@@ -61,10 +60,9 @@ inline NamedRecording recorded(unsigned seed, const Extra& extra, double gyro_un
                                double spin_up = 1.0) {
   constexpr double interval_s = 0.2;
   constexpr int rows = 600, steps = 10;
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  Noise normal(seed);
   const auto scatter = [&](const Vec3& sigma) {
-    const double x = normal(random), y = normal(random), z = normal(random);
+    const double x = normal(), y = normal(), z = normal();
     return Vec3(sigma.x() * x, sigma.y() * y, sigma.z() * z);
   };
   Recording recording;

@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 #include "attitude/estimation/conventions.h"
 #include "attitude/estimation/segments.h"
 #include "attitude/recordings/columns.h"
-#include "scenes/experiment/toml.h"
+#include "tests/diagnosis/machine_bench.h"
 #include "tests/diagnosis/rigid_body_recording.h"
+#include "tests/noise.h"
 
 namespace photorque {
 namespace {
@@ -20,10 +20,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
-std::vector<std::string> named_in(const Diagnosis& d) {
-  std::vector<std::string> kinds;
-  for (const FoundEffect& effect : d.effects) kinds.push_back(effect.kind);
-  return kinds;
+std::vector<double> components(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
 }
 
 // The recording of rigid_body_recording.h in other columns. `from`: the attitude as the camera saw
@@ -79,15 +77,18 @@ TEST(ScalarReadings, SequencesOfAnglesAreThatOfTheirName) {
   }
 }
 
+double matrix_tilt(const Quat& at) {
+  return std::acos(at.toRotationMatrix()(2, 2));
+}
+double matrix_yaw(const Quat& at) {
+  const Mat3 m = at.toRotationMatrix();
+  return std::atan2(m(1, 0), m(0, 0));
+}
+
 // Values from the rotation matrix; slopes by turning it.
 TEST(ScalarReadings, SlopesAreThoseOfTheAngles) {
   const Quat q = Quat(0.8, -0.2, 0.35, 0.44).normalized();
   const Vec3 rate(0.3, -0.4, 1.2);
-  const auto matrix_tilt = [](const Quat& at) { return std::acos(at.toRotationMatrix()(2, 2)); };
-  const auto matrix_yaw = [](const Quat& at) {
-    const Mat3 m = at.toRotationMatrix();
-    return std::atan2(m(1, 0), m(0, 0));
-  };
   EXPECT_NEAR(scalar_reading(Scalar::tilt, q, rate).value, matrix_tilt(q), 1e-14);
   EXPECT_NEAR(scalar_reading(Scalar::yaw, q, rate).value, matrix_yaw(q), 1e-14);
   for (int k = 0; k < 3; ++k) {
@@ -113,9 +114,8 @@ TEST(ScalarReadings, AnglesInAnotherSequenceAreReadInTheirs) {
     const NamedRecording run = rewritten(
         rigid_body::recorded(1, steep, 1.0, 3.0), {"roll_rad", "pitch_rad", "yaw_rad"},
         [&](const Quat& q) {
-          const Vec3 a =
-              angles_of_attitude(sequence, Quat(Eigen::AngleAxisd(1.0, Vec3::UnitX())) * q);
-          return std::vector<double>{a[0], a[1], a[2]};
+          return components(
+              angles_of_attitude(sequence, Quat(Eigen::AngleAxisd(1.0, Vec3::UnitX())) * q));
         },
         true);
     const Segments read = observe_segments(run.recording, run.name, {});
@@ -132,11 +132,7 @@ TEST(ScalarReadings, AnglesInDegreesUnderRadiansAreFoundAndTheUsualSequenceIsLef
   for (const double unit : {1.0, 1.0 / degree_rad}) {
     const NamedRecording run = rewritten(
         rigid_body::recorded(2, dipole_torque, 1.0, 2.0), {"roll_rad", "pitch_rad", "yaw_rad"},
-        [&](const Quat& q) {
-          const Vec3 a = unit * angles_of_attitude("zyx", q);
-          return std::vector<double>{a[0], a[1], a[2]};
-        },
-        true);
+        [&](const Quat& q) { return components(unit * angles_of_attitude("zyx", q)); }, true);
     const Segments read = observe_segments(run.recording, run.name, {});
     ASSERT_TRUE(read.angles);
     EXPECT_EQ(read.angles->sequence, "zyx");
@@ -150,8 +146,8 @@ TEST(ScalarReadings, AGyroWithExchangedAxesIsNotTakenForAnotherSequence) {
   NamedRecording run = rewritten(
       rigid_body::recorded(3, dipole_torque, 1.0, 3.0), {"roll_rad", "pitch_rad", "yaw_rad"},
       [](const Quat& q) {
-        const Vec3 a = angles_of_attitude("zyx", Quat(Eigen::AngleAxisd(1.0, Vec3::UnitX())) * q);
-        return std::vector<double>{a[0], a[1], a[2]};
+        return components(
+            angles_of_attitude("zyx", Quat(Eigen::AngleAxisd(1.0, Vec3::UnitX())) * q));
       },
       true);
   std::swap(run.recording.channels[3].values, run.recording.channels[5].values);
@@ -174,19 +170,21 @@ TEST(ScalarReadings, AGyroWithExchangedAxesIsNotTakenForAnotherSequence) {
   EXPECT_EQ(seen.gyro_rad_s[10].z(), before.x());
 }
 
+NamedRecording by_tilt_and_heading(unsigned seed, const rigid_body::Extra& torque) {
+  return rewritten(
+      rigid_body::recorded(seed, torque), {"tilt_rad", "yaw_rad"},
+      [](const Quat& q) {
+        return std::vector<double>{matrix_tilt(q), matrix_yaw(q)};
+      },
+      false);
+}
+
 TEST(ScalarReadings, ADipoleIsNamedByTiltAndHeadingAlone) {
-  const auto written = [](unsigned seed) {
-    return rewritten(
-        rigid_body::recorded(seed, dipole_torque), {"tilt_rad", "yaw_rad"},
-        [](const Quat& q) {
-          const Mat3 m = q.toRotationMatrix();
-          return std::vector<double>{std::acos(m(2, 2)), std::atan2(m(1, 0), m(0, 0))};
-        },
-        false);
-  };
-  const Diagnosis d = diagnose(rigid_body::nominal_model(), {written(1), written(2)}, {});
+  const Diagnosis d =
+      diagnose(rigid_body::nominal_model(),
+               {by_tilt_and_heading(1, dipole_torque), by_tilt_and_heading(2, dipole_torque)}, {});
   EXPECT_EQ(d.verdict, Verdict::missing_physics) << d.sentence;
-  ASSERT_THAT(named_in(d), ElementsAre("magnetic_dipole")) << d.sentence;
+  ASSERT_THAT(kinds_of(d), ElementsAre("magnetic_dipole")) << d.sentence;
   const FittedParameter& dipole = d.effects.front().parameters.front();
   // The mirror image of the motion reads the same: its dipole has the other sign about z.
   const Vec3 truth(0.03, -0.02, 0.04);
@@ -202,55 +200,50 @@ TEST(ScalarReadings, ADipoleIsNamedByTiltAndHeadingAlone) {
 
 TEST(ScalarReadings, NothingIsNamedByTiltAndHeadingWhereNothingIsMissing) {
   const auto nothing = [](const rigid_body::State&) -> Vec3 { return Vec3::Zero(); };
-  const NamedRecording run = rewritten(
-      rigid_body::recorded(4, nothing), {"tilt_rad", "yaw_rad"},
-      [](const Quat& q) {
-        const Mat3 m = q.toRotationMatrix();
-        return std::vector<double>{std::acos(m(2, 2)), std::atan2(m(1, 0), m(0, 0))};
-      },
-      false);
-  const Diagnosis d = diagnose(rigid_body::nominal_model(), {run}, {});
+  const Diagnosis d = diagnose(rigid_body::nominal_model(), {by_tilt_and_heading(4, nothing)}, {});
   EXPECT_EQ(d.verdict, Verdict::consistent) << d.sentence;
   EXPECT_LT(d.chi2_per_sample_after, 1.3);
 }
 
-// The length of the rate of a body with three different moments that turns freely, Euler's
-// equations by the classical Runge–Kutta method; with a drag by the square of the rate or without.
+// A body with three different moments that turns freely, with a drag by the square of the rate or
+// without: Euler's equations.
+struct FreeBody {
+  Vec3 inertia{1.0, 0.8, 0.5};
+  double drag_N_m_s2 = 0.0;
+
+  Vec3 acceleration(const Vec3& w) const {
+    const Vec3 momentum = inertia.cwiseProduct(w);
+    const Vec3 torque = -drag_N_m_s2 * w.norm() * w - w.cross(momentum);
+    return torque.cwiseQuotient(inertia);
+  }
+  // By the classical Runge–Kutta method.
+  Vec3 after(const Vec3& w, double h) const {
+    const Vec3 a = acceleration(w), b = acceleration(w + 0.5 * h * a),
+               c = acceleration(w + 0.5 * h * b), e = acceleration(w + h * c);
+    return w + h / 6.0 * (a + 2.0 * b + 2.0 * c + e);
+  }
+};
+
+// The length of its rate.
 Recording length_of_rate(double drag_N_m_s2, uint64_t seed) {
   constexpr double interval_s = 0.02, noise_rad_s = 2e-3;
   constexpr int rows = 900, steps = 4;
-  const Vec3 inertia(1.0, 0.8, 0.5);
-  const auto slope = [&](const Vec3& w) {
-    const Vec3 momentum = inertia.cwiseProduct(w);
-    const Vec3 torque = -drag_N_m_s2 * w.norm() * w - w.cross(momentum);
-    return Vec3(torque.cwiseQuotient(inertia));
-  };
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise(0.0, noise_rad_s);
-  Recording recording;
-  recording.channels = {{"rate_magnitude_rad_s", {}}};
+  const FreeBody body{.drag_N_m_s2 = drag_N_m_s2};
+  Noise noise(seed, noise_rad_s);
+  Channel length{"rate_magnitude_rad_s", {}};
   Vec3 w(2.0, 3.0, 0.7);
   for (int row = 0; row < rows; ++row) {
-    recording.time_s.push_back(interval_s * row);
-    recording.channels[0].values.push_back(w.norm() + noise(random));
-    for (int k = 0; k < steps; ++k) {
-      constexpr double h = interval_s / steps;
-      const Vec3 a = slope(w), b = slope(w + 0.5 * h * a), c = slope(w + 0.5 * h * b),
-                 e = slope(w + h * c);
-      w += h / 6.0 * (a + 2.0 * b + 2.0 * c + e);
-    }
+    length.values.push_back(w.norm() + noise());
+    for (int k = 0; k < steps; ++k) w = body.after(w, interval_s / steps);
   }
-  recording.report.rows_read = recording.report.rows_kept = rows;
-  recording.report.median_interval_s = interval_s;
-  return recording;
+  return recording_of(interval_s, {length});
 }
 
 NominalModel free_body() {
-  return read_attitude_model(Settings(std::make_shared<const SettingsNode>(
-      parse_toml("[platform]\ntopology = \"free\"\n"
-                 "inertia_kg_m2 = [[1, 0, 0], [0, 0.8, 0], [0, 0, 0.5]]\n"
-                 "[sensors.gyro]\nnoise_rad_s = 0.002\n",
-                 "free.toml"))));
+  return machine(
+      "[platform]\ntopology = \"free\"\n"
+      "inertia_kg_m2 = [[1, 0, 0], [0, 0.8, 0], [0, 0, 0.5]]\n"
+      "[sensors.gyro]\nnoise_rad_s = 0.002\n");
 }
 
 TEST(ScalarReadings, TheLengthOfARateNamesTheDragOfABody) {
@@ -258,7 +251,7 @@ TEST(ScalarReadings, TheLengthOfARateNamesTheDragOfABody) {
   EXPECT_EQ(none.verdict, Verdict::consistent) << none.sentence;
   EXPECT_LT(none.chi2_per_sample_before, 1.3);
   const Diagnosis drag = diagnose(free_body(), {{"drag.csv", length_of_rate(0.005, 2)}}, {});
-  ASSERT_THAT(named_in(drag), Contains("air_pressure_drag")) << drag.sentence;
+  ASSERT_THAT(kinds_of(drag), Contains("air_pressure_drag")) << drag.sentence;
   ASSERT_TRUE(drag.holdout);
   EXPECT_LT(drag.holdout->chi2_per_sample_after, 2.0);
 }
@@ -270,7 +263,7 @@ TEST(ScalarReadings, AnUndeclaredAccelerometerIsNotCompared) {
     run.recording.channels.push_back({name, std::vector<double>(run.recording.rows(), 3.0)});
   }
   const Diagnosis d = diagnose(rigid_body::nominal_model(), {run}, {});
-  EXPECT_THAT(named_in(d), ElementsAre("magnetic_dipole")) << d.sentence;
+  EXPECT_THAT(kinds_of(d), ElementsAre("magnetic_dipole")) << d.sentence;
   EXPECT_THAT(d.warnings, Contains(HasSubstr("accel_x_m_s2, accel_y_m_s2, accel_z_m_s2 are not "
                                              "compared")));
 }
@@ -280,41 +273,31 @@ TEST(ScalarReadings, AnUndeclaredAccelerometerIsNotCompared) {
 TEST(ScalarReadings, AnAccelerometerOfAFreeBodyDependsOnItsPosition) {
   constexpr double interval_s = 0.01;
   constexpr int rows = 600;
-  const Vec3 inertia(1.0, 0.8, 0.5), place_m(0.1, -0.05, 0.02);
-  const auto turning = [&](const Vec3& w) {
-    return Vec3((-w.cross(Vec3(inertia.cwiseProduct(w)))).cwiseQuotient(inertia));
-  };
-  std::mt19937_64 random(8);
-  std::normal_distribution<double> normal;
-  Recording recording;
+  const Vec3 place_m(0.1, -0.05, 0.02);
+  const FreeBody body;
+  Noise normal(8);
+  std::vector<Channel> channels;
   for (const char* name : {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s", "accel_x_m_s2",
                            "accel_y_m_s2", "accel_z_m_s2"}) {
-    recording.channels.push_back({name, {}});
+    channels.push_back({name, {}});
   }
   Vec3 w(2.0, 3.0, 0.7);
   for (int row = 0; row < rows; ++row) {
-    recording.time_s.push_back(interval_s * row);
-    const Vec3 force = turning(w).cross(place_m) + w.cross(w.cross(place_m));
+    const Vec3 force = body.acceleration(w).cross(place_m) + w.cross(w.cross(place_m));
     for (int k = 0; k < 3; ++k) {
-      recording.channels[static_cast<size_t>(k)].values.push_back(w[k] + 2e-3 * normal(random));
-      recording.channels[static_cast<size_t>(3 + k)].values.push_back(force[k] +
-                                                                      5e-3 * normal(random));
+      channels[static_cast<size_t>(k)].values.push_back(w[k] + 2e-3 * normal());
+      channels[static_cast<size_t>(3 + k)].values.push_back(force[k] + 5e-3 * normal());
     }
-    const double h = interval_s;
-    const Vec3 a = turning(w), b = turning(w + 0.5 * h * a), c = turning(w + 0.5 * h * b),
-               e = turning(w + h * c);
-    w += h / 6.0 * (a + 2.0 * b + 2.0 * c + e);
+    w = body.after(w, interval_s);
   }
-  recording.report.rows_read = recording.report.rows_kept = rows;
-  recording.report.median_interval_s = interval_s;
   NominalModel nominal = free_body();
   nominal.sensors.accelerometer.emplace().noise_m_s2 = 5e-3;
   nominal.sensors.accelerometer->position_m = place_m;
-  const Diagnosis right = diagnose(nominal, {{"flight.csv", recording}}, {});
+  const Diagnosis right = diagnosed(nominal, interval_s, channels);
   EXPECT_EQ(right.verdict, Verdict::consistent) << right.sentence;
   EXPECT_NEAR(right.chi2_per_sample_after, 1.0, 0.15);
   nominal.sensors.accelerometer->position_m = Vec3(0.1, -0.05, 0.05);
-  const Diagnosis wrong = diagnose(nominal, {{"flight.csv", recording}}, {});
+  const Diagnosis wrong = diagnosed(nominal, interval_s, channels);
   EXPECT_NE(wrong.verdict, Verdict::consistent);
   EXPECT_GT(wrong.chi2_per_sample_before, 20.0);
 }

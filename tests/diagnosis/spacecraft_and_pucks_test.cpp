@@ -7,13 +7,15 @@
 #include <cmath>
 #include <fstream>
 #include <random>
+#include <sstream>
 
 #include "attitude/propagation/run.h"
 #include "core/constants.h"
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/guess/guess.h"
-#include "scenes/experiment/toml.h"
 #include "tests/diagnosis/machine_bench.h"
+#include "tests/files.h"
+#include "tests/noise.h"
 
 namespace photorque {
 namespace {
@@ -28,8 +30,7 @@ const char* const puck_toml =
 
 // Down a slope under viscous drag: v → −g s/c exponentially, each axis alone.
 Recording puck(double slope_x, double slope_y, double drag_1_s, uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise(0.0, 3e-4);
+  Noise noise(seed, 3e-4);
   Channel x{"x_m", {}}, y{"y_m", {}};
   const auto way = [&](double t, double v, double slope) {
     const double a = -standard_gravity_m_s2 * slope;
@@ -39,8 +40,8 @@ Recording puck(double slope_x, double slope_y, double drag_1_s, uint64_t seed) {
   };
   for (int i = 0; i < 800; ++i) {
     const double t = 0.05 * i;
-    x.values.push_back(way(t, 0.3, slope_x) + noise(random));
-    y.values.push_back(way(t, 0.1, slope_y) + noise(random));
+    x.values.push_back(way(t, 0.3, slope_x) + noise());
+    y.values.push_back(way(t, 0.1, slope_y) + noise());
   }
   return recording_of(0.05, {x, y});
 }
@@ -66,19 +67,17 @@ TEST(Pucks, FreelyTheyAreConsistent) {
 // Straight on and slower and slower by μ g: a slope or a spring would do as well, and neither is
 // said. The path carries a wave that no law has, ten times the noise, as a real table does.
 TEST(Pucks, ASlideToRestIsBrakedByFriction) {
-  std::mt19937_64 random(7);
-  std::normal_distribution<double> noise(0.0, 3e-4);
+  Noise noise(7, 3e-4);
   Channel x{"x_m", {}}, y{"y_m", {}};
   constexpr double coefficient = 0.19, start_m_s = 1.5, interval_s = 0.005;
   for (int i = 0; i < 150; ++i) {
     const double t = interval_s * i;
     const double way = start_m_s * t - 0.5 * coefficient * standard_gravity_m_s2 * t * t +
                        3e-3 * std::sin(25.0 * t);
-    x.values.push_back(0.8 * way + noise(random));
-    y.values.push_back(0.6 * way + noise(random));
+    x.values.push_back(0.8 * way + noise());
+    y.values.push_back(0.6 * way + noise());
   }
-  const Diagnosis d =
-      diagnose(machine(puck_toml), {{"slide.csv", recording_of(interval_s, {x, y})}}, {});
+  const Diagnosis d = diagnosed(machine(puck_toml), interval_s, {x, y});
   ASSERT_THAT(kinds_of(d), ElementsAre("sliding_friction"));
   EXPECT_EQ(d.verdict, Verdict::unexplained);  // the wave is left
   EXPECT_NEAR(parameter(d, "sliding_friction", "coefficient").value[0], coefficient, 0.02);
@@ -150,15 +149,14 @@ noise_arcsec = 31
 }
 
 TEST(Pucks, AreGuessedByTheirColumns) {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "puck.csv";
-  std::ofstream file(path);
+  std::ostringstream file;
   file << "time (s),x (mm),y (mm)\n";
   const Recording seen = puck(1e-3, 0, 0, 4);
   for (size_t i = 0; i < seen.rows(); ++i) {
     file << seen.time_s[i] << ',' << 1e3 * seen.channels[0].values[i] << ','
          << 1e3 * seen.channels[1].values[i] << '\n';
   }
-  file.close();
+  const auto path = test_file("puck.csv", file.str());
   const std::string toml = guess_experiment({path}, path.parent_path());
   EXPECT_THAT(toml, HasSubstr("topology = \"planar\""));
   EXPECT_THAT(toml, HasSubstr("x_mm = \"x (mm)\""));
@@ -179,19 +177,18 @@ noise_arcsec = 0.1
 // is constant over a segment, and shakes by a white torque besides; an initial state for each.
 template <typename Torque>
 Recording roll(const Torque& torque, double shaking, uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  Noise normal(seed);
   Channel angle{"roll_rad", {}}, thruster{"thruster", {}};
   constexpr double step_s = 1800.0;
   double roll_rad = 0.0, rate = 0.0;
   for (int i = 0; i < 2400; ++i) {
     const bool fires = i % 20 == 0;
-    if (fires) rate = -roll_rad / 36000.0 + 2e-9 * normal(random);
-    angle.values.push_back(roll_rad + 0.1 * arcsecond_rad * normal(random));
+    if (fires) rate = -roll_rad / 36000.0 + 2e-9 * normal();
+    angle.values.push_back(roll_rad + 0.1 * arcsecond_rad * normal());
     thruster.values.push_back(fires ? 1.0 : 0.0);
     const double a = torque(step_s * (i + 0.5), roll_rad + 0.5 * rate * step_s);
     roll_rad += rate * step_s + 0.5 * a * step_s * step_s;
-    rate += a * step_s + shaking * std::sqrt(step_s) * normal(random);
+    rate += a * step_s + shaking * std::sqrt(step_s) * normal();
   }
   return recording_of(step_s, {angle, thruster});
 }

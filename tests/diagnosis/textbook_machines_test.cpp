@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "attitude/estimation/segments.h"
 #include "core/constants.h"
 #include "tests/diagnosis/machine_bench.h"
+#include "tests/noise.h"
 
 namespace photorque {
 namespace {
@@ -23,9 +23,8 @@ std::string about(const std::string& axis, const std::string& noise) {
 }
 
 Channel noisy(const std::string& name, std::vector<double> values, double sigma, uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise(0.0, sigma);
-  for (double& value : values) value += noise(random);
+  Noise noise(seed, sigma);
+  for (double& value : values) value += noise();
   return {name, std::move(values)};
 }
 
@@ -49,9 +48,8 @@ TEST(TextbookMachines, APendulumHeldByAHandAtFirst) {
     std::vector<double> angle_rad = {1.15, 1.16, 1.20, 1.28, 1.35, 1.39, 1.43};
     const std::vector<double> free = pendulum.from(released_rad, frame_s, rows - 7);
     angle_rad.insert(angle_rad.end(), free.begin(), free.end());
-    const Diagnosis d = diagnose(
-        machine(about("x", "angle]\nnoise_arcsec = 620")),
-        {{"video.csv", recording_of(frame_s, {noisy("angle_rad", angle_rad, 0.003, 3)})}}, {});
+    const Diagnosis d = diagnosed(machine(about("x", "angle]\nnoise_arcsec = 620")), frame_s,
+                                  {noisy("angle_rad", angle_rad, 0.003, 3)});
     EXPECT_THAT(d.warnings, Contains(HasSubstr("a hand holds it"))) << rows << " rows";
     EXPECT_THAT(kinds_of(d), Contains("static_unbalance")) << rows << " rows: " << d.sentence;
     EXPECT_THAT(kinds_of(d),
@@ -64,16 +62,11 @@ TEST(TextbookMachines, APendulumHeldByAHandAtFirst) {
 // θ'' = −k θ − c θ', ten readings a second, twenty a period.
 TEST(TextbookMachines, ATorsionPendulumInTwentyReadingsAPeriod) {
   constexpr double k = 10.63, c = 0.43, interval_s = 0.1;
-  const double omega = std::sqrt(k - 0.25 * c * c);
-  std::vector<double> angle_rad;
-  for (int i = 0; i < 200; ++i) {
-    const double t = interval_s * i;
-    angle_rad.push_back(2.2 * std::exp(-0.5 * c * t) *
-                        (std::cos(omega * t) + 0.5 * c / omega * std::sin(omega * t)));
-  }
-  const Diagnosis d = diagnose(
-      machine(about("z", "angle]\nnoise_arcsec = 834")),
-      {{"wheel.csv", recording_of(interval_s, {noisy("angle_rad", angle_rad, 0.004, 4)})}}, {});
+  const DampedSwing swing{k, c};
+  const std::vector<double> angle_rad =
+      sampled(interval_s, 200, [&](double t) { return 2.2 * swing.at(t); });
+  const Diagnosis d = diagnosed(machine(about("z", "angle]\nnoise_arcsec = 834")), interval_s,
+                                {noisy("angle_rad", angle_rad, 0.004, 4)});
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("tether", "bearing_drag")) << d.sentence;
   expect_number(d, "tether", "stiffness_N_m_per_rad", 0, k);
   expect_number(d, "bearing_drag", "coefficient_N_m_s", 0, c);
@@ -83,16 +76,11 @@ TEST(TextbookMachines, ATorsionPendulumInTwentyReadingsAPeriod) {
 TEST(TextbookMachines, AFlywheelThatAMotorSpinsUp) {
   constexpr double torque = 208.0, c = 0.76, interval_s = 0.02, noise_rad_s = 4.9;
   constexpr int recordings = 4;
-  std::vector<double> rate_rad_s;
-  for (int i = 0; i < 196; ++i) {
-    rate_rad_s.push_back(torque / c * (1.0 - std::exp(-c * interval_s * i)));
-  }
+  const std::vector<double> rate_rad_s =
+      sampled(interval_s, 196, [](double t) { return torque / c * (1.0 - std::exp(-c * t)); });
   for (uint64_t seed = 6; seed < 6 + recordings; ++seed) {
-    const Diagnosis d =
-        diagnose(machine(about("z", "gyro]\nnoise_rad_s = 4.9")),
-                 {{"run_up.csv",
-                   recording_of(interval_s, {noisy("rate_rad_s", rate_rad_s, noise_rad_s, seed)})}},
-                 {});
+    const Diagnosis d = diagnosed(machine(about("z", "gyro]\nnoise_rad_s = 4.9")), interval_s,
+                                  {noisy("rate_rad_s", rate_rad_s, noise_rad_s, seed)});
     ASSERT_THAT(kinds_of(d), UnorderedElementsAre("bearing_drag", "room_draft")) << d.sentence;
     expect_number(d, "room_draft", "torque_lab_N_m", 2, torque);
     expect_number(d, "bearing_drag", "coefficient_N_m_s", 0, c);
@@ -104,23 +92,16 @@ TEST(TextbookMachines, AFlywheelThatAMotorSpinsUp) {
 // after, which the first row lacks and which is too small by sin(ωh)/(ωh).
 TEST(TextbookMachines, ATorsionPendulumWithItsZeroBesideItsRest) {
   constexpr double k = 8.4, c = 0.047, rest_rad = -0.023, interval_s = 0.11;
-  const double omega = std::sqrt(k - 0.25 * c * c);
-  const auto angle_at = [&](double t) {
-    return rest_rad + 2.1 * std::exp(-0.5 * c * t) *
-                          (std::cos(omega * t) + 0.5 * c / omega * std::sin(omega * t));
-  };
-  std::vector<double> angle_rad, rate_rad_s;
-  for (int i = 0; i < 240; ++i) {
-    const double t = interval_s * i;
-    angle_rad.push_back(angle_at(t));
-    rate_rad_s.push_back(
-        i == 0 ? NAN : 0.5 / interval_s * (angle_at(t + interval_s) - angle_at(t - interval_s)));
-  }
-  const Diagnosis d = diagnose(
-      machine("[platform]\ntopology = \"one_axis\"\n"),
-      {{"school.csv", recording_of(interval_s, {{"angle_rad", rounded(angle_rad, 0.01)},
-                                                {"rate_rad_s", rounded(rate_rad_s, 0.001)}})}},
-      {});
+  const DampedSwing swing{k, c};
+  const auto angle_at = [&](double t) { return rest_rad + 2.1 * swing.at(t); };
+  const std::vector<double> angle_rad = sampled(interval_s, 240, angle_at);
+  const std::vector<double> rate_rad_s = sampled(interval_s, 240, [&](double t) {
+    return t == 0.0 ? NAN
+                    : 0.5 / interval_s * (angle_at(t + interval_s) - angle_at(t - interval_s));
+  });
+  const Diagnosis d = diagnosed(
+      machine("[platform]\ntopology = \"one_axis\"\n"), interval_s,
+      {{"angle_rad", rounded(angle_rad, 0.01)}, {"rate_rad_s", rounded(rate_rad_s, 0.001)}});
   EXPECT_THAT(d.warnings, Contains(HasSubstr("difference of neighbouring angles")));
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("tether", "bearing_drag")) << d.sentence;
   expect_number(d, "tether", "stiffness_N_m_per_rad", 0, k);
@@ -132,17 +113,11 @@ TEST(TextbookMachines, ATorsionPendulumWithItsZeroBesideItsRest) {
 // sensor reads to a millimetre.
 TEST(TextbookMachines, ACartOnASpringByOneCoordinate) {
   constexpr double k = 27.0, c = 0.21, rest_m = 0.42, interval_s = 0.06;
-  const double omega = std::sqrt(k - 0.25 * c * c);
-  std::vector<double> distance_m;
-  for (int i = 0; i < 260; ++i) {
-    const double t = interval_s * i;
-    distance_m.push_back(rest_m +
-                         0.11 * std::exp(-0.5 * c * t) *
-                             (std::cos(omega * t) + 0.5 * c / omega * std::sin(omega * t)));
-  }
-  const Diagnosis d =
-      diagnose(machine("[platform]\ntopology = \"planar\"\n"),
-               {{"cart.csv", recording_of(interval_s, {noisy("x_m", distance_m, 0.001, 12)})}}, {});
+  const DampedSwing swing{k, c};
+  const std::vector<double> distance_m =
+      sampled(interval_s, 260, [&](double t) { return rest_m + 0.11 * swing.at(t); });
+  const Diagnosis d = diagnosed(machine("[platform]\ntopology = \"planar\"\n"), interval_s,
+                                {noisy("x_m", distance_m, 0.001, 12)});
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("sliding_spring", "sliding_drag")) << d.sentence;
   expect_number(d, "sliding_spring", "stiffness_N_per_m", 0, k);
   expect_number(d, "sliding_spring", "pull_N", 0, k * rest_m);
@@ -154,10 +129,9 @@ TEST(TextbookMachines, ACartOnASpringByOneCoordinate) {
 std::vector<double> drifting(double sigma, double scale_s, double interval_s, size_t rows,
                              uint64_t seed) {
   const double kept = std::exp(-interval_s / scale_s);
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> fresh(0.0, sigma * std::sqrt(1.0 - kept * kept));
+  Noise fresh(seed, sigma * std::sqrt(1.0 - kept * kept));
   std::vector<double> all = {0.0};
-  while (all.size() < rows) all.push_back(kept * all.back() + fresh(random));
+  while (all.size() < rows) all.push_back(kept * all.back() + fresh());
   return all;
 }
 
@@ -186,10 +160,8 @@ TEST(TextbookMachines, DryAndViscousFrictionBesideAResidual) {
 TEST(TextbookMachines, APendulumInSixReadingsAPeriod) {
   constexpr double k = 8.06, viscous = 0.023, interval_s = 0.4167, noise_rad = 0.052;
   const std::vector<double> angle_rad = Swing{k, 0.0, viscous, 0.0}.from(1.4, interval_s, 59);
-  const Diagnosis d = diagnose(
-      machine("[platform]\ntopology = \"one_axis\"\naxis = \"x\"\n"),
-      {{"frames.csv", recording_of(interval_s, {noisy("angle_rad", angle_rad, noise_rad, 8)})}},
-      {});
+  const Diagnosis d = diagnosed(machine("[platform]\ntopology = \"one_axis\"\naxis = \"x\"\n"),
+                                interval_s, {noisy("angle_rad", angle_rad, noise_rad, 8)});
   EXPECT_THAT(kinds_of(d), Contains("static_unbalance")) << d.sentence;
   expect_number(d, "static_unbalance", "offset_m", 2, -k / 9.80665);
 }
@@ -197,16 +169,11 @@ TEST(TextbookMachines, APendulumInSixReadingsAPeriod) {
 // ω' = T − q ω² from a rest of 0.6 s: θ = ln cosh(√(T q) t)/q, by an encoder of 1024 steps.
 TEST(TextbookMachines, AFanThatIsSwitchedOn) {
   constexpr double torque = 80.0, form = 0.038, interval_s = 0.01, rest_s = 0.6;
-  std::vector<double> angle_rad;
-  for (int i = 0; i < 340; ++i) {
-    const double t = std::max(0.0, interval_s * i - rest_s);
-    angle_rad.push_back(std::log(std::cosh(std::sqrt(torque * form) * t)) / form);
-  }
-  const Diagnosis d =
-      diagnose(machine(about("z", "angle]\nnoise_arcsec = 365")),
-               {{"fan.csv",
-                 recording_of(interval_s, {{"angle_rad", rounded(angle_rad, 2.0 * pi / 1024.0)}})}},
-               {});
+  const std::vector<double> angle_rad = sampled(interval_s, 340, [](double t) {
+    return std::log(std::cosh(std::sqrt(torque * form) * std::max(0.0, t - rest_s))) / form;
+  });
+  const Diagnosis d = diagnosed(machine(about("z", "angle]\nnoise_arcsec = 365")), interval_s,
+                                {{"angle_rad", rounded(angle_rad, 2.0 * pi / 1024.0)}});
   EXPECT_THAT(d.warnings, Contains(HasSubstr("it rests and then sets off at once")));
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("room_draft", "air_pressure_drag")) << d.sentence;
   expect_number(d, "air_pressure_drag", "coefficient_N_m_s2", 0, form);
@@ -230,15 +197,11 @@ TEST(TextbookMachines, MotionFromTheFirstRowIsNotARest) {
 // θ'' = −k θ − c θ' known by its rate alone, from any instant of the swing, with a bias.
 TEST(TextbookMachines, ATorsionPendulumByItsRateAlone) {
   constexpr double k = 5.97, c = 0.0103, interval_s = 0.02;
-  const double omega = std::sqrt(k - 0.25 * c * c);
-  std::vector<double> rate_rad_s;
-  for (int i = 0; i < 2500; ++i) {
-    const double t = interval_s * (i + 44);
-    rate_rad_s.push_back(0.002 - 1.8 * k / omega * std::exp(-0.5 * c * t) * std::sin(omega * t));
-  }
-  const Diagnosis d = diagnose(
-      machine(about("z", "gyro]\nnoise_rad_s = 0.01")),
-      {{"gyro.csv", recording_of(interval_s, {noisy("gyro_z_rad_s", rate_rad_s, 0.01, 9)})}}, {});
+  const DampedSwing swing{k, c};
+  const std::vector<double> rate_rad_s = sampled(
+      interval_s, 2500, [&](double t) { return 0.002 + 1.8 * swing.rate(t + 44 * interval_s); });
+  const Diagnosis d = diagnosed(machine(about("z", "gyro]\nnoise_rad_s = 0.01")), interval_s,
+                                {noisy("gyro_z_rad_s", rate_rad_s, 0.01, 9)});
   EXPECT_THAT(kinds_of(d), testing::IsSupersetOf({"tether", "bearing_drag"})) << d.sentence;
   expect_number(d, "tether", "stiffness_N_m_per_rad", 0, k);
   expect_number(d, "bearing_drag", "coefficient_N_m_s", 0, c);
@@ -247,15 +210,11 @@ TEST(TextbookMachines, ATorsionPendulumByItsRateAlone) {
 // About a level axis the same readings are those of a weight; small swings are harmonic.
 TEST(TextbookMachines, APendulumByItsRateAlone) {
   constexpr double k = 9.1, c = 0.1, interval_s = 0.02, swing_rad = 0.05;
-  const double omega = std::sqrt(k - 0.25 * c * c);
-  std::vector<double> rate_rad_s;
-  for (int i = 0; i < 1500; ++i) {
-    const double t = interval_s * (i + 20);
-    rate_rad_s.push_back(-swing_rad * k / omega * std::exp(-0.5 * c * t) * std::sin(omega * t));
-  }
-  const Diagnosis d = diagnose(
-      machine(about("x", "gyro]\nnoise_rad_s = 0.002")),
-      {{"gyro.csv", recording_of(interval_s, {noisy("gyro_x_rad_s", rate_rad_s, 0.002, 10)})}}, {});
+  const DampedSwing swing{k, c};
+  const std::vector<double> rate_rad_s = sampled(
+      interval_s, 1500, [&](double t) { return swing_rad * swing.rate(t + 20 * interval_s); });
+  const Diagnosis d = diagnosed(machine(about("x", "gyro]\nnoise_rad_s = 0.002")), interval_s,
+                                {noisy("gyro_x_rad_s", rate_rad_s, 0.002, 10)});
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("static_unbalance", "bearing_drag")) << d.sentence;
   expect_number(d, "static_unbalance", "offset_m", 2, -k / 9.80665);
   expect_number(d, "bearing_drag", "coefficient_N_m_s", 0, c);
@@ -274,8 +233,7 @@ TEST(TextbookMachines, ARateComputedFromTheAngleIsLeftOut) {
   }
   const NominalModel pendulum = machine(about("x", "angle]\nnoise_arcsec = 200"));
   const Channel angle{"angle_rad", angle_rad}, rate{"rate_rad_s", rate_rad_s};
-  const Diagnosis d =
-      diagnose(pendulum, {{"swing.csv", recording_of(interval_s, {angle, rate})}}, {});
+  const Diagnosis d = diagnosed(pendulum, interval_s, {angle, rate});
   EXPECT_THAT(d.warnings, Contains(HasSubstr("difference of neighbouring angles")));
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("static_unbalance", "bearing_drag")) << d.sentence;
   expect_number(d, "bearing_drag", "coefficient_N_m_s", 0, viscous);

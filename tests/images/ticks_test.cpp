@@ -2,7 +2,6 @@
 
 #include <random>
 
-#include "core/text/format.h"
 #include "images/drawing/axis.h"
 
 namespace photorque {

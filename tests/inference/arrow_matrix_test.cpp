@@ -1,10 +1,10 @@
 // Elimination run by run against the same matrix as a whole.
 #include "inference/estimator/arrow_matrix.h"
+#include "tests/noise.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <random>
 
 namespace photorque::inference {
 namespace {
@@ -16,11 +16,10 @@ struct Arrow {
 
   // Jᵀ J of random slopes, run by run, and a prior of 1 on everything.
   explicit Arrow(uint64_t seed) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
+    Noise normal(seed);
     for (Eigen::Index run = 0; run < runs; ++run) {
       Eigen::MatrixXd J(20, per_run + shared);
-      for (double& x : J.reshaped()) x = normal(random);
+      for (double& x : J.reshaped()) x = normal();
       arrow.add(run, J.transpose() * J);
       Eigen::MatrixXd of_all = Eigen::MatrixXd::Zero(20, size);
       of_all.middleCols(run * per_run, per_run) = J.leftCols(per_run);

@@ -26,6 +26,11 @@ Decision decided(const std::vector<Explanation>& trials,
   return decide(trials, candidates, {[](size_t) { return 0.0; }}, limits);
 }
 
+// Nothing missing, "first", and both.
+std::vector<Explanation> nested(double first, double both) {
+  return {explanation({}, 0.0, 40.0), explanation({0}, first, 1.0), explanation({0, 1}, both, 1.0)};
+}
+
 TEST(Decide, NamesPredictiveEffects) {
   const Decision d = decided({explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0)});
   EXPECT_EQ(d.finding, Finding::named);
@@ -48,8 +53,7 @@ TEST(Decide, AnEffectWithoutPredictiveGainIsNotReported) {
 
 // More evidence than any other, and never compared with the held-out data, where the others were.
 TEST(Decide, AnEffectWithoutPredictionIsNotReported) {
-  std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
-                                     explanation({0, 1}, 200.0, 1.0)};
+  std::vector<Explanation> trials = nested(100.0, 200.0);
   trials[2].predictive.reset();
   EXPECT_EQ(decided(trials).finding, Finding::unknown);
   // Without a recording to predict nothing was asked of anybody.
@@ -60,8 +64,7 @@ TEST(Decide, AnEffectWithoutPredictionIsNotReported) {
 
 // 3 of log evidence are odds of 20 to 1 for the second name, and too few to report it.
 TEST(Decide, ANameThatHardlyImprovesTheFitIsNotReported) {
-  const std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
-                                           explanation({0, 1}, 103.0, 1.0)};
+  const std::vector<Explanation> trials = nested(100.0, 103.0);
   EXPECT_EQ(decided(trials).chosen, 1u);
   // A further possible effect makes the name no less sure.
   EXPECT_GT(decided(trials).confidence, 0.99);
@@ -85,8 +88,7 @@ TEST(Decide, ANameThatPredictsWorseIsNotReported) {
 // say. Or it grows by more, and a fit to all recordings agrees with the held-out ones only with
 // both.
 TEST(Decide, ANameWithWrongParametersIsReported) {
-  std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
-                                     explanation({0, 1}, 120.0, 1.0)};
+  std::vector<Explanation> trials = nested(100.0, 120.0);
   trials[0].holdout_chi2_per_sample = 9000.0;
   trials[1].holdout_chi2_per_sample = 47.0;
   trials[2].holdout_chi2_per_sample = 90.0;

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <random>
 
 #include "inference/domain.h"
 #include "inference/whiteness.h"
+#include "tests/noise.h"
 
 namespace photorque::inference::line {
 
@@ -407,12 +407,11 @@ inline Term smooth(Eigen::Index bumps) {
 
 // Noise along a separate line, with `signal` added.
 inline Series recorded(uint64_t seed, const Eigen::VectorXd& signal, double sign = 1.0) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  Noise normal(seed);
   Series run{grid(signal.size()), signal, sign};
-  const double intercept = 3.0 * normal(random);
+  const double intercept = 3.0 * normal();
   for (Eigen::Index i = 0; i < signal.size(); ++i) {
-    run.y[i] += intercept + 0.5 * run.x[i] + normal(random);
+    run.y[i] += intercept + 0.5 * run.x[i] + normal();
   }
   return run;
 }

@@ -1,10 +1,10 @@
 #include "inference/whiteness.h"
+#include "tests/noise.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-#include <random>
 
 namespace photorque::inference {
 namespace {
@@ -20,13 +20,12 @@ TEST(MeanSigma, IsThatOfANormalNumber) {
 
 // For noise it is normal: its mean square is 1, with a standard deviation of √(2/n) for n draws.
 TEST(MeanSigma, OfNoiseIsNormal) {
-  std::mt19937_64 random(3);
-  std::normal_distribution<double> normal;
+  Noise normal(3);
   constexpr int draws = 4000;
   double squares = 0.0;
   for (int i = 0; i < draws; ++i) {
     std::vector<double> x(16);
-    for (double& value : x) value = normal(random);
+    for (double& value : x) value = normal();
     squares += std::pow(mean_sigma(x), 2);
   }
   EXPECT_NEAR(squares / draws, 1.0, 5.0 * std::sqrt(2.0 / draws) + 0.02);

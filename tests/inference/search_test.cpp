@@ -49,6 +49,19 @@ Answered answer(const std::vector<Term>& terms, const std::vector<Series>& train
   return a;
 }
 
+// Recordings of a signal, one to fit and one to predict.
+struct Recorded {
+  std::vector<Series> train, held;
+
+  explicit Recorded(const Eigen::VectorXd& signal, uint64_t seed = 1)
+      : train{recorded(2 * seed, signal)}, held{recorded(2 * seed + 1, signal)} {}
+};
+
+Answered answer(const std::vector<Term>& terms, const Recorded& seen,
+                const Thresholds& limits = {}) {
+  return answer(terms, seen.train, seen.held, limits);
+}
+
 using Names = std::multiset<std::string>;
 
 double two_sided(double sigmas) {
@@ -89,12 +102,11 @@ TEST(Search, FindsNothingInNoise) {
   mutant.decision.min_log_odds = -10.0;
   mutant.decision.min_significance = 2.0;
   for (uint64_t seed = 1; seed <= 100; ++seed) {
-    const std::vector<Series> train = {recorded(2 * seed, nothing())},
-                              held = {recorded(2 * seed + 1, nothing())};
-    const Answered a = answer(known_terms(), train, held);
+    const Recorded seen(nothing(), seed);
+    const Answered a = answer(known_terms(), seen);
     alarms += a.decision.finding == Finding::nothing_missing ? 0 : 1;
     EXPECT_TRUE(a.names.empty());
-    const Answered b = answer(known_terms(), train, held, mutant);
+    const Answered b = answer(known_terms(), seen, mutant);
     alarms_of_mutant += b.decision.finding == Finding::nothing_missing ? 0 : 1;
   }
   // A name needs 4.75 σ: six terms and fifty frequencies reach it once in 5000 recordings or so.
@@ -107,14 +119,13 @@ TEST(Search, NamesTheTermsThatWereAdded) {
   mutant.search.max_effects = 1;
   for (uint64_t seed = 1; seed <= 20; ++seed) {
     const Eigen::VectorXd signal = of_degree(3, 12.0) + of_degree(6, -15.0);
-    const std::vector<Series> train = {recorded(2 * seed, signal)},
-                              held = {recorded(2 * seed + 1, signal)};
-    const Answered a = answer(known_terms(), train, held);
+    const Recorded seen(signal, seed);
+    const Answered a = answer(known_terms(), seen);
     EXPECT_EQ(a.decision.finding, Finding::named);
     EXPECT_EQ(a.names, (Names{"degree 3", "degree 6"})) << seed;
     EXPECT_GT(a.decision.confidence, 0.9);
     EXPECT_NEAR(*a.trials[a.decision.chosen].holdout_chi2_per_sample, 1.0, 0.5);
-    EXPECT_NE(answer(known_terms(), train, held, mutant).names, a.names);
+    EXPECT_NE(answer(known_terms(), seen, mutant).names, a.names);
   }
 }
 
@@ -124,12 +135,11 @@ TEST(Search, ScansForAFrequency) {
   for (uint64_t seed = 1; seed <= 10; ++seed) {
     const Eigen::VectorXd signal =
         tone().shape({grid(samples), {}, 1.0}, 23.0) * Eigen::Vector2d(6.0, -9.0);
-    const std::vector<Series> train = {recorded(2 * seed, signal)},
-                              held = {recorded(2 * seed + 1, signal)};
-    const Answered a = answer(known_terms(), train, held);
+    const Recorded seen(signal, seed);
+    const Answered a = answer(known_terms(), seen);
     EXPECT_EQ(a.names, Names{"tone"});
     EXPECT_EQ(a.trials[a.decision.chosen].searched, std::vector<double>{23.0});
-    EXPECT_NE(answer(known_terms(), train, held, mutant).names, a.names);
+    EXPECT_NE(answer(known_terms(), seen, mutant).names, a.names);
   }
 }
 
@@ -181,13 +191,12 @@ TEST(Search, IsUnexplainedIfOnlyTheEmpiricalTermFits) {
   mutant.decision.min_log_odds = 1e9;
   mutant.decision.max_excess_sigma = mutant.decision.max_predictive_sigma = 1e9;
   for (uint64_t seed = 1; seed <= 10; ++seed) {
-    const std::vector<Series> train = {recorded(2 * seed, signal)},
-                              held = {recorded(2 * seed + 1, signal)};
-    const Answered a = answer(known_terms(), train, held);
+    const Recorded seen(signal, seed);
+    const Answered a = answer(known_terms(), seen);
     EXPECT_EQ(a.decision.finding, Finding::unknown);
     EXPECT_EQ(a.names.count("smooth"), 1u);
     EXPECT_GT(a.decision.confidence, 0.9);
-    EXPECT_NE(answer(known_terms(), train, held, mutant).decision.finding, Finding::unknown);
+    EXPECT_NE(answer(known_terms(), seen, mutant).decision.finding, Finding::unknown);
   }
 }
 
@@ -229,10 +238,9 @@ TEST(Search, NamesAnAppendageThatASlowTermImitates) {
   mutant.search.explained_sigma = 1e9;
   for (uint64_t seed = 1; seed <= 5; ++seed) {
     const Eigen::VectorXd signal = of_swing(40.0, 40.0);
-    const std::vector<Series> train = {recorded(2 * seed, signal)},
-                              held = {recorded(2 * seed + 1, signal)};
-    EXPECT_EQ(answer(terms_with_swing(2), train, held, limits).names, Names{"swing"}) << seed;
-    EXPECT_NE(answer(terms_with_swing(2), train, held, mutant).names, Names{"swing"}) << seed;
+    const Recorded seen(signal, seed);
+    EXPECT_EQ(answer(terms_with_swing(2), seen, limits).names, Names{"swing"}) << seed;
+    EXPECT_NE(answer(terms_with_swing(2), seen, mutant).names, Names{"swing"}) << seed;
   }
 }
 
@@ -269,11 +277,10 @@ TEST(Search, NamesAnAppendageThatOnlyTheHeldOutRunExcites) {
 TEST(Search, NamesTwoThatSwing) {
   for (uint64_t seed = 1; seed <= 5; ++seed) {
     const Eigen::VectorXd signal = of_swing(20.0, 40.0) + of_swing(33.0, 50.0);
-    const std::vector<Series> train = {recorded(2 * seed, signal)},
-                              held = {recorded(2 * seed + 1, signal)};
+    const Recorded seen(signal, seed);
     const Names both{"swing", "swing"};
-    EXPECT_EQ(answer(terms_with_swing(2), train, held).names, both) << seed;
-    EXPECT_NE(answer(terms_with_swing(1), train, held).names, both) << seed;
+    EXPECT_EQ(answer(terms_with_swing(2), seen).names, both) << seed;
+    EXPECT_NE(answer(terms_with_swing(1), seen).names, both) << seed;
   }
 }
 

@@ -1,10 +1,10 @@
 // Gains of sets of terms, predicted about a fit, against least squares of every single set.
 #include "inference/subsets.h"
+#include "tests/noise.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
-#include <random>
 
 namespace photorque::inference {
 namespace {
@@ -18,11 +18,10 @@ struct Bench {
   Eigen::VectorXd y = Eigen::VectorXd(rows);
 
   explicit Bench(uint64_t seed) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
-    for (double& x : J.reshaped()) x = normal(random);
+    Noise normal(seed);
+    for (double& x : J.reshaped()) x = normal();
     J.col(2) += 0.9 * J.col(5);  // terms that look alike
-    for (double& x : y) x = normal(random);
+    for (double& x : y) x = normal();
     y += 3.0 * J.col(0) - 2.0 * J.col(5);
   }
 

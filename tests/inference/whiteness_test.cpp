@@ -1,20 +1,18 @@
 // Noise and outliers, from residuals whose statistics are known.
 #include "inference/whiteness.h"
+#include "tests/noise.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
-#include <random>
 
 namespace photorque::inference {
 namespace {
 
 std::vector<double> white(uint64_t seed, size_t count, double size = 1.0) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal(0.0, size);
+  Noise normal(seed, size);
   std::vector<double> r(count);
-  for (double& x : r) x = normal(random);
+  for (double& x : r) x = normal();
   return r;
 }
 

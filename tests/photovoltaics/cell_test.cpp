@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -286,22 +285,18 @@ TEST(PhotovoltaicCell, ModuleInOtherConditionsIsDeSotos) {
   module.gap_eV = 1.121;
   module.gap_slope_1_K = -0.0002677;
   module.photocurrent_slope_1_K = 0.004539 / 5.114;
-  std::ifstream in(reference::file("de_soto"));
-  std::string line;
-  std::getline(in, line);
-  int rows = 0;
-  for (; std::getline(in, line); ++rows) {
-    double irradiance_W_m2 = 0, kelvin = 0, short_A = 0, open_V = 0, maximum_W = 0;
-    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf", &irradiance_W_m2, &kelvin, &short_A,
-                          &open_V, &maximum_W),
-              5);
+  const auto rows = csv_rows(reference::file("de_soto"));
+  for (size_t r = 1; r < rows.size(); ++r) {
+    const auto cell_of_row = [&](size_t column) { return std::stod(rows[r].at(column)); };
+    const double irradiance_W_m2 = cell_of_row(0), kelvin = cell_of_row(1),
+                 short_A = cell_of_row(2), open_V = cell_of_row(3), maximum_W = cell_of_row(4);
     const double light_A = 5.114 * irradiance_W_m2 / 1000.0 * photocurrent_factor(module, kelvin);
     const CellCurve cell(in_light(parameters_at(module, 1.0, kelvin), light_A));
-    EXPECT_NEAR(cell.short_circuit_A(light_A), short_A, 1e-8 * short_A) << line;
-    EXPECT_NEAR(cell.open_circuit_V(light_A), open_V, 1e-8 * open_V) << line;
-    EXPECT_NEAR(cell.maximum_power(light_A).power_W(), maximum_W, 1e-8 * maximum_W) << line;
+    EXPECT_NEAR(cell.short_circuit_A(light_A), short_A, 1e-8 * short_A) << r;
+    EXPECT_NEAR(cell.open_circuit_V(light_A), open_V, 1e-8 * open_V) << r;
+    EXPECT_NEAR(cell.maximum_power(light_A).power_W(), maximum_W, 1e-8 * maximum_W) << r;
   }
-  EXPECT_EQ(rows, 20);
+  EXPECT_EQ(rows.size(), 21u);
 }
 
 TEST(PhotovoltaicCell, ParametersOutOfRangeAreNamed) {

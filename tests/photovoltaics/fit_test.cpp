@@ -17,6 +17,7 @@
 #include "ivcurves.h"
 #include "photovoltaics/fit/conditions.h"
 #include "photovoltaics/fit/curve_text.h"
+#include "tests/files.h"
 
 namespace photorque {
 namespace {
@@ -350,13 +351,11 @@ TEST(PhotovoltaicFit, TwoPointsPredictTheRestOfEveryMeasuredModule) {
 }
 
 IvSweep third_party_sweep(const std::string& path) {
-  std::ifstream in(outside::third_party(path));
   IvSweep sweep;
-  std::string line;
-  for (std::getline(in, line); std::getline(in, line);) {
-    const size_t comma = line.find(',');
-    sweep.voltage_V.push_back(std::stod(line.substr(0, comma)));
-    sweep.current_A.push_back(std::stod(line.substr(comma + 1)));
+  const auto rows = csv_rows(outside::third_party(path));
+  for (size_t r = 1; r < rows.size(); ++r) {
+    sweep.voltage_V.push_back(std::stod(rows[r].at(0)));
+    sweep.current_A.push_back(std::stod(rows[r].at(1)));
   }
   return sweep;
 }

@@ -4,9 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 
-#include "core/errors.h"
 #include "core/numerics/random.h"
 #include "photovoltaics/array/array.h"
 #include "photovoltaics/array/supply.h"

@@ -1,14 +1,12 @@
 // The published curves and parameters of cwhanse/ivcurves.
 #pragma once
 
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "core/constants.h"
 #include "reference.h"
+#include "tests/files.h"
 
 namespace photorque::ivcurves {
 
@@ -59,19 +57,13 @@ inline double quoted_number(const std::string& json, const std::string& key, siz
 // The curves of a case; each with the parameters of its line, or of the only line.
 inline std::vector<Curve> read(const std::string& name) {
   const auto folder = outside::third_party("reference/ivcurves");
-  std::ifstream in(folder / (name + ".json"));
-  std::stringstream text;
-  text << in.rdbuf();
-  const std::string json = text.str();
+  const std::string json = file_text(folder / (name + ".json"));
   if (json.empty()) return {};
   std::vector<Truth> truths;
-  std::ifstream csv(folder / (name + ".csv"));
-  std::string line;
-  for (std::getline(csv, line); std::getline(csv, line);) {
-    std::stringstream cells(line);
-    std::vector<double> c;
-    for (std::string x; std::getline(cells, x, ',');) c.push_back(std::stod(x));
-    if (c.size() == 7) truths.push_back({c[1], c[2], c[3], c[4], c[5], c[6]});
+  const auto rows = csv_rows(folder / (name + ".csv"));
+  for (size_t r = 1; r < rows.size(); ++r) {
+    const auto c = [&](size_t column) { return std::stod(rows[r][column]); };
+    if (rows[r].size() == 7) truths.push_back({c(1), c(2), c(3), c(4), c(5), c(6)});
   }
   std::vector<Curve> curves;
   size_t at = json.find("\"IV Curves\"");

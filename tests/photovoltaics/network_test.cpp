@@ -1,8 +1,5 @@
 // Networks of cells against plain bisection, against another program's system, and by laws.
 #include <algorithm>
-#include <array>
-#include <limits>
-#include <map>
 
 #include "bisection.h"
 #include "core/errors.h"

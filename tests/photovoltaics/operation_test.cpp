@@ -1,11 +1,9 @@
 // Trackers, losses, a day with battery, and the search for a wiring.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "core/errors.h"
 #include "core/numerics/random.h"
 #include "photovoltaics/array/day.h"
 #include "photovoltaics/array/layout.h"

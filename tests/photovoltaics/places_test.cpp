@@ -1,6 +1,7 @@
 // Cells found in a mesh, and rectangles anywhere.
 #include "photovoltaics/array/places.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -182,19 +183,15 @@ TEST(CellPlaces, WrongPlacesNameTheirKey) {
   };
   const SettingsNode good = rectangle({0, 0}, {100, 100});
   EXPECT_EQ(message({{"rectangle", rectangles({good, rectangle({100, 0}, {200, 100})})}}), "");
-  EXPECT_NE(message({{"rectangle", rectangles({good, rectangle({50, 0}, {150, 100})})}})
-                .find("a cell over cell 0"),
-            std::string::npos);
-  EXPECT_NE(message({{"rectangle", rectangles({rectangle({0, 0}, {300, 100})})}})
-                .find("a rectangle within u = 0.000000 to 0.290000"),
-            std::string::npos);
-  EXPECT_NE(message({{"rectangle", rectangles({rectangle({0, 0, 1}, {300, 100})})}}).find("[u, v]"),
-            std::string::npos);
-  EXPECT_NE(message({{"cells", fixtures::node_of("meshh")}}).find("did you mean"),
-            std::string::npos);
-  EXPECT_NE(message({{"cells", fixtures::node_of("mesh")}, {"gap_m", fixtures::node_of(0.1)}})
-                .find("gap_m"),
-            std::string::npos);
+  EXPECT_THAT(message({{"rectangle", rectangles({good, rectangle({50, 0}, {150, 100})})}}),
+              testing::HasSubstr("a cell over cell 0"));
+  EXPECT_THAT(message({{"rectangle", rectangles({rectangle({0, 0}, {300, 100})})}}),
+              testing::HasSubstr("a rectangle within u = 0.000000 to 0.290000"));
+  EXPECT_THAT(message({{"rectangle", rectangles({rectangle({0, 0, 1}, {300, 100})})}}),
+              testing::HasSubstr("[u, v]"));
+  EXPECT_THAT(message({{"cells", fixtures::node_of("meshh")}}), testing::HasSubstr("did you mean"));
+  EXPECT_THAT(message({{"cells", fixtures::node_of("mesh")}, {"gap_m", fixtures::node_of(0.1)}}),
+              testing::HasSubstr("gap_m"));
   EXPECT_FALSE(read_cell_places(fixtures::settings_of(
                                     {{"cells", fixtures::node_of(std::vector<double>{3.0, 2.0})}}),
                                 scene, grid)

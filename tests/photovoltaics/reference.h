@@ -7,9 +7,7 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -17,6 +15,7 @@
 #include "photovoltaics/array/design.h"
 #include "photovoltaics/cell/table.h"
 #include "photovoltaics/network/curve.h"
+#include "tests/files.h"
 #include "tests/outside.h"
 
 namespace photorque::reference {
@@ -27,12 +26,9 @@ inline std::filesystem::path file(const std::string& name) {
 
 // All numbers of a CSV file without header; lines that begin with # are comments.
 inline std::vector<double> numbers(const std::filesystem::path& file) {
-  std::ifstream in(file);
   std::vector<double> all;
-  for (std::string line; std::getline(in, line);) {
-    if (line.empty() || line[0] == '#') continue;
-    std::stringstream cells(line);
-    for (std::string cell; std::getline(cells, cell, ',');) all.push_back(std::stod(cell));
+  for (const auto& row : csv_rows(file)) {
+    for (const std::string& cell : row) all.push_back(std::stod(cell));
   }
   return all;
 }

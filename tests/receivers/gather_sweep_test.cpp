@@ -1,7 +1,6 @@
 // Gathered light keeps its stated error for any profile, aperture, distance, tilt and bins.
 #include <gtest/gtest.h>
 
-#include "core/constants.h"
 #include "raytrace/direct/disc_light.h"
 #include "receivers/gather/gather.h"
 #include "tests/receivers/random_lamps.h"

@@ -5,6 +5,8 @@
 #include "gltf_test_model.h"
 #include "raytrace/surfaces/bsdf.h"
 #include "scenes/surfaces/settings.h"
+#include "tests/files.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -19,21 +21,8 @@ const std::string small_table =
     "scatter_deg, incidence_deg,azimuth_deg,brdf_1_sr,sigma\r\n"
     "0,60,0,0.3,0\r\n60,60,0,0.2,0\r\n0,0,0,0.1,0\r\n60,0,0,0.3,0\r\n";
 
-std::string message_from(const std::function<void()>& read) {
-  try {
-    read();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
 std::string brdf_error(const std::string& text) {
-  return message_from([&] { read_brdf(text, "scan.csv"); });
-}
-
-std::string with_text(std::string text, const std::string& old_text, const std::string& new_text) {
-  return text.replace(text.find(old_text), old_text.size(), new_text);
+  return refusal_of([&] { read_brdf(text, "scan.csv"); });
 }
 
 TEST(BrdfFile, TakesColumnsAndRowsInAnyOrder) {
@@ -45,18 +34,18 @@ TEST(BrdfFile, TakesColumnsAndRowsInAnyOrder) {
 }
 
 TEST(BrdfFile, NamesTheLineOfTheMistake) {
-  EXPECT_EQ(brdf_error(with_text(small_table, "brdf_1_sr", "brdf")),
+  EXPECT_EQ(brdf_error(replaced(small_table, "brdf_1_sr", "brdf")),
             "scan.csv:3: brdf_1_sr: found no such column, expected a header with incidence_deg, "
             "scatter_deg, azimuth_deg and brdf_1_sr");
-  EXPECT_EQ(brdf_error(with_text(small_table, "60,60,0,0.2", "60,60,0,-0.2")),
+  EXPECT_EQ(brdf_error(replaced(small_table, "60,60,0,0.2", "60,60,0,-0.2")),
             "scan.csv:5: brdf_1_sr: found \"-0.2\", expected a number from 0 to 1e+09");
-  EXPECT_EQ(brdf_error(with_text(small_table, "60,60,0", "95,60,0")),
+  EXPECT_EQ(brdf_error(replaced(small_table, "60,60,0", "95,60,0")),
             "scan.csv:5: scatter_deg: found \"95\", expected a number from 0 to 90");
-  EXPECT_EQ(brdf_error(with_text(small_table, "0,0,0,0.1,0", "0,0,0,0.1")),
+  EXPECT_EQ(brdf_error(replaced(small_table, "0,0,0,0.1,0", "0,0,0,0.1")),
             "scan.csv:6: found 4 fields, expected 5, as in the header");
-  EXPECT_EQ(brdf_error(with_text(small_table, "0,0,0,0.1", "0,60,0,0.1")),
+  EXPECT_EQ(brdf_error(replaced(small_table, "0,0,0,0.1", "0,60,0,0.1")),
             "scan.csv:6: found angles that an earlier row has, expected each once");
-  EXPECT_THAT(brdf_error(with_text(small_table, "0,0,0,0.1,0\r\n", "")),
+  EXPECT_THAT(brdf_error(replaced(small_table, "0,0,0,0.1,0\r\n", "")),
               HasSubstr("found no row for incidence 0, scatter 0, azimuth 0 deg"));
   EXPECT_THAT(brdf_error("# nothing\n"), HasSubstr("scan.csv: found no rows"));
 }
@@ -104,7 +93,7 @@ TEST(MeasuredMaterial, ScattersByItsFileWhichIsAnInput) {
 // One of the pairs (0, 0), (60, 0), (60, 60) differs; in the small table none differs.
 TEST(MeasuredMaterial, ThatIsNotReciprocalIsReported) {
   const GltfModel model = painted_with(material_with({{"brdf_file", {"scan.csv"}}}),
-                                       with_text(small_table, "60,0,0,0.3", "60,0,0,0.1"));
+                                       replaced(small_table, "60,0,0,0.3", "60,0,0,0.1"));
   EXPECT_THAT(model.notices, Contains(HasSubstr("scan.csv: f(i, o) and f(o, i) differ by 66.6")));
 }
 
@@ -126,18 +115,18 @@ TEST(MeasuredMaterial, MeasurementOverFewAnglesIsReported) {
 
 TEST(MeasuredMaterial, ThatShinesOrIsMissingIsRefused) {
   const Settings plain = material_with({{"brdf_file", {"scan.csv"}}});
-  EXPECT_EQ(message_from([&] {
+  EXPECT_EQ(refusal_of([&] {
               painted_with(plain, "incidence_deg,scatter_deg,azimuth_deg,brdf_1_sr\n0,0,0,0.35\n");
             }),
             "lab.toml:4: material[0].brdf_file: found a reflectance of 1.1 at 0 deg, expected at "
             "most 1 at every angle, or a brdf_scale");
-  EXPECT_EQ(message_from([&] {
+  EXPECT_EQ(refusal_of([&] {
               painted_with(material_with({{"brdf_file", {"scam.csv"}}}), "");
             }),
             "lab.toml:4: material[0].brdf_file: found \"scam.csv\", expected an existing file, "
             "relative to "
             "the folder of the experiment");
-  EXPECT_THAT(message_from([&] {
+  EXPECT_THAT(refusal_of([&] {
                 painted_with(material_with({{"brdf_file", {"scan.csv"}}, {"absorptance", {1.0}}}),
                              small_table);
               }),

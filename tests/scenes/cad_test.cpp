@@ -1,10 +1,7 @@
 // STL and OBJ: the same bodies as in other formats, with areas and volumes from geometry, and what
 // is wrong with a file in one line.
 #include <cmath>
-#include <fstream>
-#include <tuple>
 
-#include "core/constants.h"
 #include "gltf_test_model.h"
 #include "scenes/cad/model.h"
 #include "scenes/cad/part.h"

@@ -226,48 +226,43 @@ TEST(CoincidentFaces, ThatTransmitAreOneSheet) {
   }
 }
 
+// White and black sheets in one plane reflect these parts of the light from the front and from
+// behind.
+void expect_sides(Scene scene, double front, double back) {
+  for (const Instance& instance : scene.instances) {
+    scene.surfaces[instance.front_surface] =
+        grey_surface("s", 0.0, instance.material == "white" ? 1.0 : 0.0);
+  }
+  for (const Vec3& towards : {Vec3(0, 0, -1), Vec3(0.3, 0.2, -0.8)}) {
+    const Vec3 down = towards.normalized(), up = -down;
+    const Vec3 front_N = textbook_N(front, down, Vec3::UnitZ());
+    const Vec3 back_N = textbook_N(back, up, -Vec3::UnitZ());
+    const Vec3 on_front_N = sunlit(scene, down).head<3>().matrix();
+    const Vec3 on_back_N = sunlit(scene, up).head<3>().matrix();
+    EXPECT_LT((on_front_N - front_N).norm(), 1e-5 * front_N.norm());
+    EXPECT_LT((on_back_N - back_N).norm(), 1e-5 * back_N.norm());
+  }
+}
+
 TEST(CoincidentFaces, BackToBackHaveTheOpticsOfTheirOwnSides) {
   for (const char* back : {"f 4 3 2 1\n", "f 3 2 1 4\n"}) {
-    GltfModel model =
+    const GltfModel model =
         model_of(unit_square + "o a\nusemtl cell\nf 1 2 3 4\no b\nusemtl white\n" + back);
     EXPECT_THAT(about_coincidence(model),
                 ElementsAre(HasSubstr("4 triangles of \"a\" and \"b\" coincide back to back")));
-    for (const Instance& instance : model.scene.instances) {
-      model.scene.surfaces[instance.front_surface] =
-          grey_surface("s", 0.0, instance.material == "white" ? 1.0 : 0.0);
-    }
-    for (const Vec3& towards : {Vec3(0, 0, -1), Vec3(0.3, 0.2, -0.8)}) {
-      const Vec3 down = towards.normalized(), up = -down;
-      const WrenchSum on_front = sunlit(model.scene, down), on_back = sunlit(model.scene, up);
-      const Vec3 black_N = textbook_N(0.0, down, Vec3::UnitZ());
-      const Vec3 white_N = textbook_N(1.0, up, -Vec3::UnitZ());
-      EXPECT_LT((on_front.head<3>().matrix() - black_N).norm(), 1e-5 * black_N.norm());
-      EXPECT_LT((on_back.head<3>().matrix() - white_N).norm(), 1e-5 * white_N.norm());
-    }
+    expect_sides(model.scene, 0.0, 1.0);
   }
 }
 
 // A foil on a panel, drawn in one plane and the same way: each side is that of the face that light
 // meets first there, and of no other.
 TEST(CoincidentFaces, AlikeHaveTheFrontOfTheFirstAndTheBackOfTheLast) {
-  GltfModel model = model_of(unit_square + "o foil\nusemtl white\nf 1 2 3 4\no panel\nusemtl " +
-                             "black\nf 2 3 4 1\n");
+  const GltfModel model =
+      model_of(unit_square + "o foil\nusemtl white\nf 1 2 3 4\no panel\nusemtl black\nf 2 3 4 1\n");
   EXPECT_THAT(about_coincidence(model),
               ElementsAre(HasSubstr("light from the front meets only the first, of \"foil\", light "
                                     "from behind only the last, of \"panel\"")));
-  for (const Instance& instance : model.scene.instances) {
-    model.scene.surfaces[instance.front_surface] =
-        grey_surface("s", 0.0, instance.material == "white" ? 1.0 : 0.0);
-  }
-  for (const Vec3& towards : {Vec3(0, 0, -1), Vec3(0.3, 0.2, -0.8)}) {
-    const Vec3 down = towards.normalized(), up = -down;
-    const Vec3 white_N = textbook_N(1.0, down, Vec3::UnitZ());
-    const Vec3 black_N = textbook_N(0.0, up, -Vec3::UnitZ());
-    const Vec3 on_front_N = sunlit(model.scene, down).head<3>().matrix();
-    const Vec3 on_back_N = sunlit(model.scene, up).head<3>().matrix();
-    EXPECT_LT((on_front_N - white_N).norm(), 1e-5 * white_N.norm());
-    EXPECT_LT((on_back_N - black_N).norm(), 1e-5 * black_N.norm());
-  }
+  expect_sides(model.scene, 1.0, 0.0);
 }
 
 TEST(CoincidentFaces, OfSolidsThatTouchStayAndOthersAreNotTouched) {

@@ -8,6 +8,8 @@
 
 #include "scenes/experiment/experiment.h"
 #include "scenes/experiment/named_files.h"
+#include "tests/files.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -59,19 +61,8 @@ std::string join(const std::vector<std::string>& lines) {
   return text;
 }
 
-std::filesystem::path write_file(const std::string& name, const std::string& text) {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
-  std::ofstream(path, std::ios::binary) << text;
-  return path;
-}
-
 std::string message_of(const std::filesystem::path& path) {
-  try {
-    read_experiment(path);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return refusal_of([&] { read_experiment(path); });
 }
 
 class BrokenExperiment : public testing::TestWithParam<Broken> {};
@@ -81,15 +72,15 @@ TEST_P(BrokenExperiment, GivesOneLineWithPlaceKeyAndExpectation) {
   std::vector<std::string> lines = good_lines();
   if (broken.line > 0) lines[static_cast<size_t>(broken.line - 1)] = broken.text;
   const std::string text = broken.line < 0 ? broken.text : join(lines);
-  const std::filesystem::path path = write_file("broken_" + broken.name + ".toml", text);
+  const auto path = test_file("broken_" + broken.name + ".toml", text);
   const std::string message = message_of(path);
   EXPECT_EQ(message.rfind(path.string() + broken.where, 0), 0u) << message;
-  EXPECT_NE(message.find(broken.message), std::string::npos) << message;
+  EXPECT_THAT(message, testing::HasSubstr(broken.message));
   EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }
 
 TEST(Experiment, TheUnbrokenFileIsRead) {
-  EXPECT_EQ(message_of(write_file("unbroken.toml", join(good_lines()))), "no error");
+  EXPECT_EQ(message_of(test_file("unbroken.toml", join(good_lines()))), "");
 }
 
 const Broken cases[] = {
@@ -187,20 +178,20 @@ INSTANTIATE_TEST_SUITE_P(AllCases, BrokenExperiment, testing::ValuesIn(cases),
                          [](const auto& tested) { return tested.param.name; });
 
 TEST(BrokenScene, WithoutTrianglesIsRefused) {
-  const auto scene = write_file("empty.gltf", R"({"asset": {"version": "2.0"}, "scene": 0,
+  const auto scene = test_file("empty.gltf", R"({"asset": {"version": "2.0"}, "scene": 0,
       "scenes": [{"nodes": [0]}], "nodes": [{"name": "nothing"}]})");
   std::vector<std::string> lines = good_lines();
   lines[1] = "file = \"empty.gltf\"";
-  const std::string message = message_of(write_file("empty_scene.toml", join(lines)));
+  const std::string message = message_of(test_file("empty_scene.toml", join(lines)));
   EXPECT_EQ(message,
             scene.string() + ": found no triangles, expected a scene with at least one mesh");
 }
 
 TEST(BrokenScene, ThatIsNoJsonIsRefused) {
-  const auto scene = write_file("text.gltf", "no glTF");
+  const auto scene = test_file("text.gltf", "no glTF");
   std::vector<std::string> lines = good_lines();
   lines[1] = "file = \"text.gltf\"";
-  const std::string message = message_of(write_file("text_scene.toml", join(lines)));
+  const std::string message = message_of(test_file("text_scene.toml", join(lines)));
   EXPECT_EQ(message.rfind(scene.string(), 0), 0u) << message;
 }
 

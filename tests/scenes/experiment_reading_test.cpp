@@ -6,6 +6,7 @@
 
 #include "core/constants.h"
 #include "scenes/experiment/experiment.h"
+#include "tests/files.h"
 
 namespace photorque {
 namespace {
@@ -97,12 +98,12 @@ TEST(Experiment, OverridesReachSourcesReceiversAndOptions) {
 }
 
 TEST(Experiment, MaterialsMayBeReplacedByName) {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "mirror.toml";
-  std::ofstream(path)
-      << "[scene]\nfile = \"" << (scenes / "stasis/stasis.gltf").string() << "\"\n"
-      << "[[material]]\nname = \"solar_cell\"\nabsorptance = 0.25\nspecular = 0.75\n"
-      << "[[source]]\nkind = \"sun\"\ndirection = [0, 0, -1]\n";
-  const Experiment experiment = read_experiment(path);
+  const Experiment experiment = read_experiment(
+      test_file("mirror.toml",
+                "[scene]\nfile = \"" + (scenes / "stasis/stasis.gltf").string() +
+                    "\"\n"
+                    "[[material]]\nname = \"solar_cell\"\nabsorptance = 0.25\nspecular = 0.75\n"
+                    "[[source]]\nkind = \"sun\"\ndirection = [0, 0, -1]\n"));
   const auto array = experiment.scene.instances_of("solar_array");
   ASSERT_EQ(array.size(), 1u);
   const uint32_t surface = experiment.scene.instances[array[0]].front_surface;
@@ -119,10 +120,10 @@ TEST(Experiment, InputsNameEveryFileAndOverride) {
 }
 
 TEST(ExperimentFile, TablesOfOthersKeepTheirOwnRecordOfKeys) {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "others.toml";
-  std::ofstream(path) << "[platform]\nmass_kg = 7\ntypo = 1\n"
-                      << "[[disturbance]]\nkind = \"a\"\n[[disturbance]]\nkind = \"b\"\nx = 1\n";
-  const ExperimentFile file = read_experiment_file(path);
+  const ExperimentFile file = read_experiment_file(
+      test_file("others.toml",
+                "[platform]\nmass_kg = 7\ntypo = 1\n"
+                "[[disturbance]]\nkind = \"a\"\n[[disturbance]]\nkind = \"b\"\nx = 1\n"));
   EXPECT_FALSE(file.scene_file);
   EXPECT_NO_THROW(file.settings.finish());  // not ours to judge
 
@@ -140,18 +141,18 @@ TEST(ExperimentFile, TablesOfOthersKeepTheirOwnRecordOfKeys) {
 }
 
 TEST(ExperimentFile, WithoutTorqueMapTiltsToAllSidesAreLookedAt) {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "tilted.toml";
   const std::string attitude = "[attitude]\ntilt_deg = 20\nheading_deg = -90\n";
-  std::ofstream(path) << attitude;
-  const AttitudeGrid all = read_experiment_file(path).torque_map;
+  const AttitudeGrid all = read_experiment_file(test_file("tilted.toml", attitude)).torque_map;
   ASSERT_EQ(all.tilt_rad.size(), 4u);
   EXPECT_EQ(all.tilt_rad.front(), 0.0);
   EXPECT_DOUBLE_EQ(all.tilt_rad.back(), 30 * degree_rad);
   ASSERT_EQ(all.heading_rad.size(), 8u);
   EXPECT_DOUBLE_EQ(all.heading_rad.back(), 315 * degree_rad);
   // An axis that the table leaves out is the experiment's own attitude.
-  std::ofstream(path) << attitude << "[torque_map]\ntilt_deg = [0, 10]\n";
-  const AttitudeGrid stated = read_experiment_file(path).torque_map;
+  const AttitudeGrid stated =
+      read_experiment_file(
+          test_file("tilted.toml", attitude + "[torque_map]\ntilt_deg = [0, 10]\n"))
+          .torque_map;
   EXPECT_EQ(stated.tilt_rad.size(), 2u);
   ASSERT_EQ(stated.heading_rad.size(), 1u);
   EXPECT_DOUBLE_EQ(stated.heading_rad[0], -90 * degree_rad);

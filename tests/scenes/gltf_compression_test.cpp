@@ -13,12 +13,7 @@ namespace {
 using ::testing::HasSubstr;
 
 std::string message_of(const TestModel& model) {
-  try {
-    model.read();
-    return "";
-  } catch (const InputError& error) {
-    return error.what();
-  }
+  return refusal_of([&] { model.read(); });
 }
 
 // The triangle of triangle_model() in integers, with the scale that the file gives to undo it.

@@ -1,10 +1,10 @@
 // One model in every container, and with files beside it.
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include "gltf_test_model.h"
+#include "tests/files.h"
 
 namespace photorque {
 namespace {
@@ -48,31 +48,11 @@ TEST(GltfContainers, UnknownChunksAndTrailingBytesAreReported) {
   EXPECT_THAT(read.notices, Contains("GLB chunk 2 is of unknown type and ignored"));
 }
 
-// A folder that is removed with everything in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("photorque_gltf_" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(path_ / "sub");
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  void write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path_ / name, std::ios::binary) << bytes;
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 TEST(GltfFiles, ExternalBuffersAreFoundBesideTheModelAndRecorded) {
-  const TemporaryFolder folder;
   TestModel model = triangle_model();
   model.json["buffers"] = {{{"byteLength", model.buffer.size()}, {"uri", "sub/my%20data+1.bin"}}};
-  folder.write("sub/my data+1.bin", model.buffer + "more bytes than declared are legal");
-  folder.write("model.gltf", model.json.dump());
-  const GltfModel read = read_gltf(folder.path() / "model.gltf");
+  test_file("sub/my data+1.bin", model.buffer + "more bytes than declared are legal");
+  const GltfModel read = read_gltf(test_file("model.gltf", model.json.dump()));
   EXPECT_NEAR(size_of(read.scene).area_m2, 6.0, 1e-15);
   ASSERT_EQ(read.inputs.size(), 2u);
   EXPECT_EQ(read.inputs[0].first, "model.gltf");

@@ -1,8 +1,7 @@
 // Files that are wrong: the corpus of the Khronos validator, and mistakes made one at a time.
 #include <filesystem>
-#include <fstream>
-#include <set>
 
+#include "core/files.h"
 #include "gltf_test_model.h"
 #include "tests/outside.h"
 
@@ -49,11 +48,6 @@ const std::map<std::string, std::string> refused = {
     {"node/valid.gltf", "found a skinned mesh, expected rigid meshes"},
 };
 
-std::string bytes_of_file(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 TEST(GltfCorpus, EveryErrorThatMattersIsRefusedInOneLine) {
   PHOTORQUE_NEEDS_THIRD_PARTY("models/malformed");
   size_t wrong_files = 0, right_files = 0;
@@ -61,7 +55,7 @@ TEST(GltfCorpus, EveryErrorThatMattersIsRefusedInOneLine) {
     const std::string extension = entry.path().extension().string();
     if (extension != ".gltf" && extension != ".glb") continue;
     const std::string name = std::filesystem::relative(entry.path(), corpus).generic_string();
-    const json report = json::parse(bytes_of_file(entry.path().string() + ".report.json"));
+    const json report = json::parse(read_file(entry.path().string() + ".report.json"));
     const bool is_wrong = report["issues"]["numErrors"].get<int>() > 0;
     (is_wrong ? wrong_files : right_files) += 1;
     const std::string message = refusal_of([&] { read_gltf(entry.path()); });
@@ -93,6 +87,10 @@ class GltfMistakes : public ::testing::TestWithParam<Mistake> {};
 
 json& primitive_of(TestModel& model) {
   return model.json["meshes"][0]["primitives"][0];
+}
+
+std::function<void(TestModel&)> set(const char* place, const json& value) {
+  return [=](TestModel& m) { m.json[json::json_pointer(place)] = value; };
 }
 
 // A model in which everything that a mistake needs exists: see TestModel, plus indices.
@@ -129,14 +127,12 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Mistake{"no_asset", [](TestModel& m) { m.json.erase("asset"); },
                 "/asset: found nothing, expected an object"},
-        Mistake{"old_version", [](TestModel& m) { m.json["asset"]["version"] = "1.0"; },
+        Mistake{"old_version", set("/asset/version", "1.0"),
                 "/asset/version: found \"1.0\", expected \"2.0\""},
-        Mistake{"later_minimum", [](TestModel& m) { m.json["asset"]["minVersion"] = "2.1"; },
+        Mistake{"later_minimum", set("/asset/minVersion", "2.1"),
                 "/asset/minVersion: found \"2.1\", expected \"2.0\""},
         Mistake{"required_extension",
-                [](TestModel& m) {
-                  m.json["extensionsRequired"] = {"KHR_materials_ior", "VENDOR_folded_space"};
-                },
+                set("/extensionsRequired", {"KHR_materials_ior", "VENDOR_folded_space"}),
                 "/extensionsRequired/1: found \"VENDOR_folded_space\", expected extensions that "
                 "this program supports"},
         Mistake{"draco_without_data",
@@ -146,14 +142,13 @@ INSTANTIATE_TEST_SUITE_P(
                 },
                 "/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression/bufferView: found "
                 "nothing, expected a whole number"},
-        Mistake{"text_for_number", [](TestModel& m) { m.json["accessors"][0]["count"] = "3"; },
+        Mistake{"text_for_number", set("/accessors/0/count", "3"),
                 "/accessors/0/count: found \"3\", expected an integer >= 1"},
-        Mistake{"fraction_for_integer", [](TestModel& m) { m.json["accessors"][0]["count"] = 3.5; },
+        Mistake{"fraction_for_integer", set("/accessors/0/count", 3.5),
                 "/accessors/0/count: found 3.5, expected an integer"},
-        Mistake{"absurd_count",
-                [](TestModel& m) { m.json["accessors"][0]["count"] = 1ull << 54; },
+        Mistake{"absurd_count", set("/accessors/0/count", 1ull << 54),
                 "/accessors/0/count: found 18014398509481984, expected an integer"},
-        Mistake{"huge_count", [](TestModel& m) { m.json["accessors"][0]["count"] = 1ull << 52; },
+        Mistake{"huge_count", set("/accessors/0/count", 1ull << 52),
                 "/accessors/0: found 4503599627370496 elements that end at byte"},
         Mistake{"huge_count_of_nothing",
                 [](TestModel& m) {
@@ -162,9 +157,9 @@ INSTANTIATE_TEST_SUITE_P(
                 },
                 "/meshes/0/primitives/0: found 3000000000 items of 4 bytes, expected a model that "
                 "takes at most 4294967296 bytes"},
-        Mistake{"negative_index", [](TestModel& m) { m.json["nodes"][0]["mesh"] = -1; },
+        Mistake{"negative_index", set("/nodes/0/mesh", -1),
                 "/nodes/0/mesh: found -1, expected an index below 1, the number of meshes"},
-        Mistake{"default_scene_missing", [](TestModel& m) { m.json["scene"] = 0; },
+        Mistake{"default_scene_missing", set("/scene", 0),
                 "/scene: found 0, expected an index below 0, the number of scenes"},
         Mistake{"short_buffer",
                 [](TestModel& m) {
@@ -172,20 +167,11 @@ INSTANTIATE_TEST_SUITE_P(
                                         {"uri", "model.bin"}}};
                 },
                 "/buffers/0/byteLength: found 43, expected at most the 42 bytes that are there"},
-        Mistake{"missing_file",
-                [](TestModel& m) {
-                  m.json["buffers"] = {{{"byteLength", 4}, {"uri", "gone.bin"}}};
-                },
+        Mistake{"missing_file", set("/buffers", {{{"byteLength", 4}, {"uri", "gone.bin"}}}),
                 "/buffers/0/uri: found \"gone.bin\", which does not exist"},
-        Mistake{"absolute_path",
-                [](TestModel& m) {
-                  m.json["buffers"] = {{{"byteLength", 4}, {"uri", "/etc/passwd"}}};
-                },
+        Mistake{"absolute_path", set("/buffers", {{{"byteLength", 4}, {"uri", "/etc/passwd"}}}),
                 "/buffers/0/uri: found \"/etc/passwd\", expected a relative path"},
-        Mistake{"other_scheme",
-                [](TestModel& m) {
-                  m.json["buffers"] = {{{"byteLength", 4}, {"uri", "file:model.bin"}}};
-                },
+        Mistake{"other_scheme", set("/buffers", {{{"byteLength", 4}, {"uri", "file:model.bin"}}}),
                 "/buffers/0/uri: found \"file:model.bin\", expected a relative path"},
         Mistake{"broken_base64",
                 [](TestModel& m) {
@@ -199,20 +185,18 @@ INSTANTIATE_TEST_SUITE_P(
                   m.json["buffers"] = {{{"byteLength", m.buffer.size()}}};
                 },
                 "/accessors/0/bufferView: found buffer 0 without bytes"},
-        Mistake{"view_beyond_buffer",
-                [](TestModel& m) { m.json["bufferViews"][0]["byteLength"] = 43; },
+        Mistake{"view_beyond_buffer", set("/bufferViews/0/byteLength", 43),
                 "/bufferViews/0/byteLength: found 43 from byte 0, expected an end within the 42"},
-        Mistake{"accessor_beyond_view", [](TestModel& m) { m.json["accessors"][0]["count"] = 4; },
+        Mistake{"accessor_beyond_view", set("/accessors/0/count", 4),
                 "/accessors/0: found 4 elements that end at byte 48, expected an end within the 36 "
                 "bytes of bufferView 0"},
-        Mistake{"misaligned", [](TestModel& m) { m.json["accessors"][0]["byteOffset"] = 2; },
+        Mistake{"misaligned", set("/accessors/0/byteOffset", 2),
                 "/accessors/0/byteOffset: found 2 in a view at 0, expected multiples of 4"},
-        Mistake{"short_stride", [](TestModel& m) { m.json["bufferViews"][0]["byteStride"] = 8; },
+        Mistake{"short_stride", set("/bufferViews/0/byteStride", 8),
                 "/accessors/0: found elements of 12 bytes, expected at most the stride of 8"},
-        Mistake{"odd_stride", [](TestModel& m) { m.json["bufferViews"][0]["byteStride"] = 13; },
+        Mistake{"odd_stride", set("/bufferViews/0/byteStride", 13),
                 "/bufferViews/0/byteStride: found 13, expected a multiple of 4 >= 4 and <= 252"},
-        Mistake{"stride_of_indices",
-                [](TestModel& m) { m.json["bufferViews"][1]["byteStride"] = 4; },
+        Mistake{"stride_of_indices", set("/bufferViews/1/byteStride", 4),
                 "/accessors/1: found 3 elements that end at byte 10"},
         Mistake{"positions_of_shorts",
                 [](TestModel& m) {
@@ -224,8 +208,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"indices_of_floats",
                 [](TestModel& m) { primitive_of(m)["indices"] = m.add_accessor<float>({0, 1, 2}, "SCALAR"); },
                 "/meshes/0/primitives/0/indices: found SCALAR of 5126, expected SCALAR of 5121"},
-        Mistake{"index_too_large",
-                [](TestModel& m) { m.buffer[40] = 3; },
+        Mistake{"index_too_large", [](TestModel& m) { m.buffer[40] = 3; },
                 "/accessors/1: found index 3 at element 2, expected an index below 3"},
         Mistake{"attribute_counts_differ",
                 [](TestModel& m) {
@@ -234,7 +217,7 @@ INSTANTIATE_TEST_SUITE_P(
                 },
                 "/meshes/0/primitives/0/attributes/NORMAL: found 2 elements, expected as many as "
                 "POSITION, 3"},
-        Mistake{"two_corners", [](TestModel& m) { m.json["accessors"][1]["count"] = 2; },
+        Mistake{"two_corners", set("/accessors/1/count", 2),
                 "/meshes/0/primitives/0: found 2 corners, expected a multiple of 3"},
         Mistake{"two_corners_of_a_strip",
                 [](TestModel& m) {
@@ -247,11 +230,9 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"texture_coordinates_of_three",
                 [](TestModel& m) { primitive_of(m)["attributes"]["TEXCOORD_0"] = 0; },
                 "/meshes/0/primitives/0/attributes/TEXCOORD_0: found VEC3 of 5126, expected VEC2"},
-        Mistake{"position_not_a_number",
-                [](TestModel& m) { replace_float(m, 4, NAN); },
+        Mistake{"position_not_a_number", [](TestModel& m) { replace_float(m, 4, NAN); },
                 "/accessors/0: found a position that is not finite at element 1"},
-        Mistake{"position_infinite",
-                [](TestModel& m) { replace_float(m, 8, INFINITY); },
+        Mistake{"position_infinite", [](TestModel& m) { replace_float(m, 8, INFINITY); },
                 "/accessors/0: found a position that is not finite at element 2"},
         Mistake{"sparse_indices_fall", [](TestModel& m) { add_sparse(m, {2, 1}); },
                 "/accessors/0/sparse/indices: found 1 at 1, expected rising indices below 3"},
@@ -265,7 +246,7 @@ INSTANTIATE_TEST_SUITE_P(
                   m.json["accessors"][0]["sparse"]["values"]["byteOffset"] = 4;
                 },
                 "/accessors/0/sparse/values: found 1 elements that end at byte 16"},
-        Mistake{"node_below_itself", [](TestModel& m) { m.json["nodes"][0]["children"] = {0}; },
+        Mistake{"node_below_itself", set("/nodes/0/children", {0}),
                 "/nodes/0/children: found a node below itself"},
         Mistake{"cycle_beside_the_scene",
                 [](TestModel& m) {
@@ -279,7 +260,7 @@ INSTANTIATE_TEST_SUITE_P(
                   m.add_node({{"children", {0}}});
                 },
                 "/nodes/2/children/0: found node 0, already a child of node 1"},
-        Mistake{"root_twice", [](TestModel& m) { m.json["scenes"] = {{{"nodes", {0, 0}}}}; },
+        Mistake{"root_twice", set("/scenes", {{{"nodes", {0, 0}}}}),
                 "/scenes/0/nodes/1: found node 0 a second time"},
         Mistake{"child_as_root",
                 [](TestModel& m) {
@@ -292,22 +273,17 @@ INSTANTIATE_TEST_SUITE_P(
                   for (int i = 0; i < 1000; ++i) m.add_node({{"children", {i}}});
                 },
                 "/nodes/0: found a hierarchy deeper than 1000"},
-        Mistake{"scale_zero", [](TestModel& m) { m.json["nodes"][0]["scale"] = {1, 0, 1}; },
+        Mistake{"scale_zero", set("/nodes/0/scale", {1, 0, 1}),
                 "/nodes/0/scale: found a transform that flattens (zero scale)"},
         Mistake{"flat_matrix",
-                [](TestModel& m) {
-                  m.json["nodes"][0]["matrix"] = {1, 2, 3, 0, 2, 4, 6, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-                },
+                set("/nodes/0/matrix", {1, 2, 3, 0, 2, 4, 6, 0, 0, 0, 1, 0, 0, 0, 0, 1}),
                 "/nodes/0/matrix: found a transform that flattens"},
-        Mistake{"short_matrix", [](TestModel& m) { m.json["nodes"][0]["matrix"] = {1, 0, 0}; },
+        Mistake{"short_matrix", set("/nodes/0/matrix", {1, 0, 0}),
                 "/nodes/0/matrix: found an array of 3, expected 16 numbers"},
         Mistake{"projection",
-                [](TestModel& m) {
-                  m.json["nodes"][0]["matrix"] = {1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-                },
+                set("/nodes/0/matrix", {1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}),
                 "/nodes/0/matrix: found a last row other than 0, 0, 0, 1"},
-        Mistake{"rotation_of_length_two",
-                [](TestModel& m) { m.json["nodes"][0]["rotation"] = {0, 0, 0, 2}; },
+        Mistake{"rotation_of_length_two", set("/nodes/0/rotation", {0, 0, 0, 2}),
                 "/nodes/0/rotation: found a length of 2.000000, expected a unit quaternion"},
         Mistake{"matrix_and_scale",
                 [](TestModel& m) {
@@ -321,8 +297,7 @@ INSTANTIATE_TEST_SUITE_P(
                   m.add_node({{"children", {0}}, {"scale", {1e100, 1, 1}}});
                 },
                 "/nodes/0: found a product of transforms that is singular or overflows"},
-        Mistake{"far_away",
-                [](TestModel& m) { m.json["nodes"][0]["translation"] = {0, 1e15, 0}; },
+        Mistake{"far_away", set("/nodes/0/translation", {0, 1e15, 0}),
                 "/nodes/0: found a mesh up to 1e+15 m away, expected at most 1e9 m"},
         Mistake{"skin",
                 [](TestModel& m) {
@@ -345,16 +320,11 @@ INSTANTIATE_TEST_SUITE_P(
                 "/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes: found 1 elements, "
                 "expected as many as the other attributes, 3"},
         Mistake{"gpu_instance_flat",
-                [](TestModel& m) {
-                  m.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
-                      {"SCALE", 0}};
-                },
+                set("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes", {{"SCALE", 0}}),
                 "/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes: found instance 0, "
                 "singular or not finite"},
         Mistake{"metallic_beyond_one",
-                [](TestModel& m) {
-                  m.json["materials"] = {{{"pbrMetallicRoughness", {{"metallicFactor", 1.5}}}}};
-                },
+                set("/materials", {{{"pbrMetallicRoughness", {{"metallicFactor", 1.5}}}}}),
                 "/materials/0/pbrMetallicRoughness/metallicFactor: found 1.5, expected a number"}),
     [](const auto& test) { return test.param.name; });
 

@@ -2,8 +2,8 @@
 // gives a sane scene, or throws InputError; under the sanitizers also: touches no memory it should
 // not.
 #include <filesystem>
-#include <fstream>
 
+#include "core/files.h"
 #include "core/numerics/random.h"
 #include "gltf_test_model.h"
 #include "tests/outside.h"
@@ -180,17 +180,13 @@ TEST(GltfMutations, BitsFlippedAnywhere) {
 
 TEST(GltfMutations, BitsFlippedInExportersFiles) {
   PHOTORQUE_NEEDS_THIRD_PARTY("models/in/TwoCubes.glb");
-  std::ifstream in(photorque::outside::third_party("models/in/TwoCubes.glb"), std::ios::binary);
-  flip_bits({std::istreambuf_iterator<char>(in), {}}, "a.glb", 1000);
+  flip_bits(read_file(photorque::outside::third_party("models/in/TwoCubes.glb")), "a.glb", 1000);
 }
 
 TEST(GltfMutations, BitsFlippedInPackedFiles) {
   PHOTORQUE_NEEDS_THIRD_PARTY("models");
   const std::filesystem::path models = photorque::outside::third_party("models");
-  const auto bytes_of = [&](const char* file) {
-    std::ifstream in(models / file, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(in), {});
-  };
+  const auto bytes_of = [&](const char* file) { return read_file(models / file); };
   flip_bits(bytes_of("in/BoxMeshopt.glb"), "a.glb", 1000);
   // The document is good, the Draco streams of its buffer are not.
   const std::string text = bytes_of("2CylinderEngine_draco/2CylinderEngine.gltf");

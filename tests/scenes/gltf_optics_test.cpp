@@ -4,6 +4,7 @@
 #include "gltf_test_model.h"
 #include "raytrace/surfaces/bsdf.h"
 #include "scenes/surfaces/settings.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -32,15 +33,6 @@ SettingsNode node_of(const std::vector<double>& numbers) {
 Settings settings_of(const SettingsNode::Table& table) {
   return Settings(std::make_shared<const SettingsNode>(SettingsNode{table, written_at}),
                   "material[0]");
-}
-
-std::string error_of(const std::function<void()>& read) {
-  try {
-    read();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(SurfaceSettings, OneFractionLeftOutIsTheRest) {
@@ -83,7 +75,7 @@ TEST(SurfaceSettings, SumsToRoundingWhenWrittenToNineDigits) {
 
 TEST(SurfaceSettings, WrongFractionsAreRefused) {
   const auto error = [](const SettingsNode::Table& table, int bands = 1) {
-    return error_of([&] { read_surface(settings_of(table), bands, "x"); });
+    return refusal_of([&] { read_surface(settings_of(table), bands, "x"); });
   };
   EXPECT_EQ(error({}),
             "experiment.toml:7: material[0]: found no optical property, expected "
@@ -157,9 +149,8 @@ TEST(SurfaceSettings, GlassRoughnessAndSlopesReachTheSurface) {
 }
 
 TEST(SurfaceSettings, SlopeErrorsHaveAShapeAndTwoSizes) {
-  const SettingsNode two{SettingsNode::Array{node_of(6.0), node_of(2.0)}, written_at};
-  const SettingsNode axis{SettingsNode::Array{node_of(0.0), node_of(2.0), node_of(0.0)},
-                          written_at};
+  const SettingsNode two = node_of(std::vector{6.0, 2.0});
+  const SettingsNode axis = node_of(std::vector{0.0, 2.0, 0.0});
   const SettingsNode pillbox{std::string("pillbox"), written_at};
   const Settings settings = settings_of({{"specular", node_of(1.0)},
                                          {"slope_error_mrad", two},
@@ -173,15 +164,13 @@ TEST(SurfaceSettings, SlopeErrorsHaveAShapeAndTwoSizes) {
   EXPECT_NEAR(1 - surface.bsdf->specular->mean_direction(1.0).z(), 0.5 * 40e-6, 1e-8);
   const auto error = [](SettingsNode::Table table) {
     table.insert({"specular", node_of(1.0)});
-    return error_of([&] { read_sheet(settings_of(table), 1, "x"); });
+    return refusal_of([&] { read_sheet(settings_of(table), 1, "x"); });
   };
   EXPECT_THAT(error({{"slope_error_mrad", two}}), HasSubstr("slope_error_axis beside"));
-  const SettingsNode three{SettingsNode::Array{node_of(6.0), node_of(2.0), node_of(1.0)},
-                           written_at};
+  const SettingsNode three = node_of(std::vector{6.0, 2.0, 1.0});
   EXPECT_THAT(error({{"slope_error_mrad", three}, {"slope_error_axis", axis}}),
               HasSubstr("found an array of 3, expected one number, or two"));
-  const SettingsNode nowhere{SettingsNode::Array{node_of(0.0), node_of(0.0), node_of(0.0)},
-                             written_at};
+  const SettingsNode nowhere = node_of(std::vector{0.0, 0.0, 0.0});
   EXPECT_THAT(error({{"slope_error_mrad", two}, {"slope_error_axis", nowhere}}),
               HasSubstr("found a vector without length"));
 }
@@ -205,7 +194,7 @@ TEST(SurfaceSettings, HeatIsOfTheWholeSheet) {
 
 TEST(SurfaceSettings, BsdfsThatMakeNoSenseAreRefused) {
   const auto error = [](SettingsNode::Table table) {
-    return error_of([&] { read_sheet(settings_of(table), 1, "x"); });
+    return refusal_of([&] { read_sheet(settings_of(table), 1, "x"); });
   };
   const SettingsNode half = node_of(0.5);
   EXPECT_EQ(error({{"absorptance", node_of(1.0)}, {"refractive_index", node_of(0.5)}}),
@@ -266,14 +255,14 @@ TEST(GltfOptics, ExtrasAreTakenAsTheyAre) {
 TEST(GltfOptics, UnknownKeysInExtrasSuggestTheKnown) {
   const TestModel model =
       painted_model({{"extras", {{"photorque", {{"absorptance", 1}, {"transmitance", 0}}}}}});
-  EXPECT_EQ(error_of([&] { model.read(); }),
+  EXPECT_EQ(refusal_of([&] { model.read(); }),
             "model.gltf: /materials/0/extras/photorque.transmitance: found an unknown key, "
             "expected a known key, perhaps \"transmittance\"");
   const TestModel text = painted_model({{"extras", {{"photorque", "black"}}}});
-  EXPECT_THAT(error_of([&] { text.read(); }),
+  EXPECT_THAT(refusal_of([&] { text.read(); }),
               HasSubstr("/materials/0/extras/photorque: found \"black\", expected an object"));
   const TestModel null = painted_model({{"extras", {{"photorque", {{"diffuse", nullptr}}}}}});
-  EXPECT_THAT(error_of([&] { null.read(); }), HasSubstr("found null"));
+  EXPECT_THAT(refusal_of([&] { null.read(); }), HasSubstr("found null"));
 }
 
 TEST(GltfOptics, ExperimentWinsOverExtras) {
@@ -292,10 +281,10 @@ TEST(GltfOptics, ExperimentMustNameAMaterialOnce) {
   const auto material = [](const std::string& name) {
     return settings_of({{"name", node_of(name)}, {"diffuse", node_of(1.0)}});
   };
-  EXPECT_EQ(error_of([&] { model.read({.materials = {material("solarcell")}}); }),
+  EXPECT_EQ(refusal_of([&] { model.read({.materials = {material("solarcell")}}); }),
             "experiment.toml:7: material[0].name: found \"solarcell\", expected a material of "
             "model.gltf: perhaps \"solar_cell\"");
-  EXPECT_THAT(error_of([&] {
+  EXPECT_THAT(refusal_of([&] {
                 model.read({.materials = {material("solar_cell"), material("solar_cell")}});
               }),
               HasSubstr("a second time"));

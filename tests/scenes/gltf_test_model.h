@@ -12,6 +12,7 @@
 
 #include "core/errors.h"
 #include "scenes/gltf/reader.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 
@@ -183,16 +184,6 @@ inline SceneSize size_of(const Scene& scene) {
     }
   }
   return size;
-}
-
-// The message of reading: empty when it works. Anything but InputError ends the test.
-inline std::string refusal_of(const std::function<void()>& read) {
-  try {
-    read();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 }  // namespace photorque

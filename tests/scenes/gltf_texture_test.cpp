@@ -2,6 +2,7 @@
 #include "scenes/gltf/texture.h"
 
 #include "gltf_test_model.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -160,12 +161,7 @@ TEST(GltfTexture, WrongReferencesAreRefusedWhenPicturesAreAsked) {
     TestModel model = pictured_model();
     edit(model.json);
     EXPECT_NO_THROW(model.read());
-    try {
-      model.read(with_pictures());
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return refusal_of([&] { model.read(with_pictures()); });
   };
   EXPECT_THAT(message([](auto& json) { json["textures"][0]["source"] = 7; }),
               HasSubstr("baseColorTexture: found 7, expected one of images"));

@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/constants.h"
 #include "core/errors.h"
 #include "scenes/experiment/experiment.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -20,12 +20,7 @@ ExperimentFile with_joint(const std::string& joint) {
 }
 
 std::string error_of(const std::string& joint) {
-  try {
-    resolve_experiment(with_joint(joint));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { resolve_experiment(with_joint(joint)); });
 }
 
 // A quarter turn about y takes (x, y, z) to (z, y, −x): the wings' cells then look along +x.

@@ -1,5 +1,6 @@
 #include "scenes/gltf/mesh_closure.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/raytrace/test_scenes.h"
@@ -33,7 +34,7 @@ TEST(MeshClosure, FindsTJunctions) {
   mesh.triangles = {{0, 1, 2}, {0, 4, 3}, {3, 4, 1}};
   const MeshClosure closure = closure_of(scene_of(mesh));
   EXPECT_EQ(closure.t_junctions, 1u);
-  EXPECT_NE(describe_closure(closure).find("1 of them"), std::string::npos);
+  EXPECT_THAT(describe_closure(closure), testing::HasSubstr("1 of them"));
   mesh.vertices_m[3].y() = -0.01;  // away from the edge: a gap that is drawn
   EXPECT_EQ(closure_of(scene_of(mesh)).t_junctions, 0u);
 }

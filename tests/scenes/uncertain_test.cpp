@@ -5,6 +5,7 @@
 
 #include "core/errors.h"
 #include "scenes/experiment/toml.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -52,12 +53,7 @@ coefficient = { value = 1, sigma = 2 }
 TEST(Uncertain, PairsWithAMisspeltOrMissingKeyAreNamed) {
   const auto message = [](const char* power) {
     SettingsNode root = parse_toml(std::string("[[source]]\npower_W = ") + power, "lamps.toml");
-    try {
-      take_uncertainty(root);
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("taken");
+    return refusal_of([&] { take_uncertainty(root); });
   };
   EXPECT_THAT(message("{ value = 4, sigm = 0.2 }"),
               testing::HasSubstr("lamps.toml:2: source[0].power_W.sigm: found an unknown key"));

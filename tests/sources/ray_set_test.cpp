@@ -3,7 +3,6 @@
 
 #include <filesystem>
 
-#include "core/constants.h"
 #include "core/files.h"
 #include "sampling.h"
 #include "sources/lamps/ray_file.h"

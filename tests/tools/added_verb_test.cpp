@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/files.h"
 #include "tools/program/command_line.h"
 
 namespace photorque {

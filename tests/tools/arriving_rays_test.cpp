@@ -8,14 +8,11 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::string nominal_file = std::string(PHOTORQUE_SOURCE_DIR) + "/scenes/stasis/nominal.toml";
-
 class ArrivingRaysCommand : public CommandTest {
  protected:
   std::string saved(const std::string& name, const std::string& options) {
-    const Outcome done = run("trace " + nominal_file + " --set trace.rays=65536 " + options +
-                             " --set trace.arriving_rays=100000 --out " + at(name));
-    EXPECT_EQ(done.status, 0) << done.err;
+    const Outcome done = succeed("trace " + nominal_file + " --set trace.rays=65536 " + options +
+                                 " --set trace.arriving_rays=100000 --out " + at(name));
     EXPECT_THAT(done.out, HasSubstr("rays_solar_array.tm25ray"));
     return read_file(at(name) + "/rays_solar_array.tm25ray");
   }

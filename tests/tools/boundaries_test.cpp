@@ -27,14 +27,12 @@ class Boundaries : public CommandTest {
 TEST_F(Boundaries, PicturesHaveALeastFieldOfView) {
   const std::string experiment = plate("lamp", "[camera]\nwidth = 32\nheight = 24\n");
   for (const char* angle : {"1e-300", "1e-30", "179.5"}) {
-    const Outcome outcome = run("render " + experiment +
-                                " --set camera.field_of_view_deg=" + angle + " --out " + at("o"));
-    EXPECT_EQ(outcome.status, 2) << angle;
-    EXPECT_THAT(outcome.err, testing::HasSubstr("field_of_view_deg")) << angle;
+    EXPECT_THAT(refused("render " + experiment + " --set camera.field_of_view_deg=" + angle +
+                        " --out " + at("o")),
+                testing::HasSubstr("field_of_view_deg"))
+        << angle;
   }
-  EXPECT_EQ(
-      run("render " + experiment + " --set camera.field_of_view_deg=0.001 --out " + at("o")).status,
-      0);
+  succeed("render " + experiment + " --set camera.field_of_view_deg=0.001 --out " + at("o"));
 }
 
 // Titles, colours and the like of a terminal are not for names to set, nor formulae in CSV.
@@ -45,8 +43,7 @@ TEST_F(Boundaries, NamesReachTerminalsAndTablesClean) {
             "[array]\nreceiver = \"solar_array\"\ncells = [2, 2]\n[[published]]\n"
             "quantity = \"array_power_W\"\nvalue = 1\nsource = \"" +
                 name + "\"\n");
-  const Outcome outcome = run("power " + experiment + " --verbose --out " + at("o"));
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Outcome outcome = succeed("power " + experiment + " --verbose --out " + at("o"));
   EXPECT_THAT(outcome.out, testing::HasSubstr("PWNED"));
   const auto is_raw = [](unsigned char c) {
     return (c < 0x20 && c != '\n' && c != '\t') || c == 0x7f;
@@ -70,14 +67,10 @@ TEST_F(Boundaries, ErrorsReachTerminalsCleanAndShort) {
         "trace " + experiment + " --set \"" + name + "=1\"",
         "trace " + experiment + " --set \"source[0].name='" + name + "'\"",
         "trace " + experiment + " --out \"/etc/" + name + "\""}) {
-    const Outcome outcome = run(command);
-    EXPECT_EQ(outcome.status, 2) << command;
-    EXPECT_EQ(clean_text(outcome.err), outcome.err.substr(0, outcome.err.size() - 1) + " ")
-        << command;
+    const std::string outcome = refused(command);
+    EXPECT_EQ(clean_text(outcome), outcome.substr(0, outcome.size() - 1) + " ") << command;
   }
-  const Outcome twice = run("check " + experiment + " --set receiver[0].bins=[0,0]");
-  EXPECT_EQ(twice.status, 2);
-  EXPECT_EQ(std::ranges::count(twice.err, '\n'), 1) << twice.err;
+  refused("check " + experiment + " --set receiver[0].bins=[0,0]");
   std::string unknown;
   for (int i = 0; i < 2000; ++i) unknown += "[t" + std::to_string(i) + "]\n";
   const Outcome many = run("check " + plate("lamp", unknown));
@@ -90,10 +83,9 @@ TEST_F(Boundaries, ErrorsReachTerminalsCleanAndShort) {
 TEST_F(Boundaries, EfficienciesKeepResultsFinite) {
   const std::string experiment =
       plate("lamp", "[array]\nreceiver = \"solar_array\"\ncells = [2, 2]\n");
-  const Outcome outcome = run("power " + experiment +
-                              " --set array.chain.wall_plug_efficiency=5e-324 --out " + at("o"));
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, testing::HasSubstr("wall_plug_efficiency"));
+  EXPECT_THAT(refused("power " + experiment +
+                      " --set array.chain.wall_plug_efficiency=5e-324 --out " + at("o")),
+              testing::HasSubstr("wall_plug_efficiency"));
 }
 
 // The address space ends before the libraries of pictures are loaded, or (at 620 MB) would end
@@ -101,16 +93,13 @@ TEST_F(Boundaries, EfficienciesKeepResultsFinite) {
 TEST_F(Boundaries, LittleMemoryIsOneLineAndStatusThree) {
   const std::string experiment = plate("lamp", "");
   for (const int kibibytes : {620000, 450000, 400000}) {
-    const std::string command = "(ulimit -v " + std::to_string(kibibytes) + "; exec " +
-                                PHOTORQUE_BINARY_DIR + "/photorque trace " + experiment +
-                                " --quiet --threads 1 --out " + at("o") + ") 2>" + at("err");
-    const int status = std::system(command.c_str());
-    ASSERT_TRUE(WIFEXITED(status)) << kibibytes;
-    if (WEXITSTATUS(status) == 0) continue;
-    EXPECT_EQ(WEXITSTATUS(status), 3) << kibibytes << file_text(at("err"));
-    EXPECT_THAT(file_text(at("err")),
-                testing::AnyOf(testing::StartsWith("numerical failure: not enough memory"),
-                               testing::HasSubstr("Embree")))
+    const Outcome got =
+        shell("(ulimit -v " + std::to_string(kibibytes) + "; exec " + program_file + " trace " +
+              experiment + " --quiet --threads 1 --out " + at("o") + ")");
+    if (got.status == 0) continue;
+    EXPECT_EQ(got.status, 3) << kibibytes << got.err;
+    EXPECT_THAT(got.err, testing::AnyOf(testing::StartsWith("numerical failure: not enough memory"),
+                                        testing::HasSubstr("Embree")))
         << kibibytes;
   }
 }
@@ -118,43 +107,34 @@ TEST_F(Boundaries, LittleMemoryIsOneLineAndStatusThree) {
 // The limit does not hold for the superuser. Libraries of pictures aborted, or waited without end.
 TEST_F(Boundaries, TooFewThreadsAreOneLineAndStatusThree) {
   const std::string other = ::geteuid() == 0 ? "setpriv --reuid=65534 --clear-groups " : "";
-  const std::string program = std::string(PHOTORQUE_BINARY_DIR) + "/photorque";
-  if (std::system((other + program + " --version >/dev/null 2>&1").c_str()) != 0) {
+  if (std::system((other + program_file + " --version >/dev/null 2>&1").c_str()) != 0) {
     GTEST_SKIP() << "no other user can run the program";
   }
-  const std::string command = other + "prlimit --nproc=8 " + program + " trace " +
-                              plate("lamp", "") + " --quiet --out " + at("o") + " 2>" + at("err");
-  const int status = std::system(command.c_str());
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 3);
-  EXPECT_THAT(file_text(at("err")),
-              testing::ContainsRegex("^numerical failure: not enough .*\\(.*-u\\)\n$"));
+  const Outcome got = shell(other + "prlimit --nproc=8 " + program_file + " trace " +
+                            plate("lamp", "") + " --quiet --out " + at("o"));
+  EXPECT_EQ(got.status, 3);
+  EXPECT_THAT(got.err, testing::ContainsRegex("^numerical failure: not enough .*\\(.*-u\\)\n$"));
 }
 
 TEST_F(Boundaries, ASmallStackIsRefused) {
-  const std::string command = "(ulimit -s 64; exec " + std::string(PHOTORQUE_BINARY_DIR) +
-                              "/photorque trace " + plate("lamp", "") + " --quiet --out " +
-                              at("o") + ") 2>" + at("err");
-  const int status = std::system(command.c_str());
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 2);
-  EXPECT_THAT(file_text(at("err")), testing::HasSubstr("ulimit -s"));
+  const Outcome got = shell("(ulimit -s 64; exec " + program_file + " trace " + plate("lamp", "") +
+                            " --quiet --out " + at("o") + ")");
+  EXPECT_EQ(got.status, 2);
+  EXPECT_THAT(got.err, testing::HasSubstr("ulimit -s"));
 }
 
 // Integrals over the aperture of a lamp had a tolerance of zero, and no end.
 TEST_F(Boundaries, NumbersBelowAllSizesAreRefused) {
-  const std::string walls = std::string(PHOTORQUE_SOURCE_DIR) + "/tests/data/keys/walls.toml";
-  const Outcome outcome = run("check " + walls + " --set source[0].power_W=5e-324");
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, testing::HasSubstr("power_W"));
-  EXPECT_THAT(outcome.err, testing::HasSubstr("1e-100"));
-  EXPECT_EQ(run("check " + walls + " --set source[0].power_W=1e-100").status, 0);
+  const std::string walls = source_folder + "/tests/data/keys/walls.toml";
+  const std::string outcome = refused("check " + walls + " --set source[0].power_W=5e-324");
+  EXPECT_THAT(outcome, testing::HasSubstr("power_W"));
+  EXPECT_THAT(outcome, testing::HasSubstr("1e-100"));
+  succeed("check " + walls + " --set source[0].power_W=1e-100");
 }
 
 // The last resort: faults that would end the program by a signal.
 TEST_F(Boundaries, FaultsAreOneLineAndStatusThree) {
-  const std::string command = std::string(PHOTORQUE_BINARY_DIR) + "/photorque serve " +
-                              std::string(PHOTORQUE_SOURCE_DIR) +
+  const std::string command = program_file + " serve " + source_folder +
                               "/docs/realtime/stasis.toml --set serve.port=0 --out " + at("o") +
                               " >" + at("stdout") + " 2>" + at("err") +
                               " & p=$!; for i in $(seq 300); do"
@@ -170,9 +150,8 @@ TEST_F(Boundaries, FaultsAreOneLineAndStatusThree) {
 
 // The short form of the campaign over all numeric keys; docs/reliability.md has the long one.
 TEST_F(Boundaries, HostileNumbersEndWithOneLineOrAResult) {
-  const std::string source = PHOTORQUE_SOURCE_DIR;
-  EXPECT_EQ(std::system(("python3 " + source + "/tools/hostile " + PHOTORQUE_BINARY_DIR +
-                         "/photorque --runs 12 --seed 1 --timeout 600 >" + at("said") + " 2>&1")
+  EXPECT_EQ(std::system(("python3 " + source_folder + "/tools/hostile " + program_file +
+                         " --runs 12 --seed 1 --timeout 600 >" + at("said") + " 2>&1")
                             .c_str()),
             0)
       << file_text(at("said"));

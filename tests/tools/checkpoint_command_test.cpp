@@ -12,18 +12,16 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-const fs::path shipped_scenes = fs::path(PHOTORQUE_SOURCE_DIR) / "scenes";
 const std::string every = " --checkpoint 0.0005";  // 30 ms
 
 class CheckpointCommand : public CommandTest {
  protected:
   // The exit status of `photorque ARGUMENTS`, or −1 where it was killed after so long.
   int killed_after(const std::string& arguments, std::chrono::milliseconds length) const {
-    const std::string command = "exec " + std::string(PHOTORQUE_BINARY_DIR) + "/photorque " +
-                                arguments + " >>" + at("stdout") + " 2>>" + at("stderr");
+    const std::string command =
+        "exec " + program_file + " " + arguments + " >>" + at("stdout") + " 2>>" + at("stderr");
     const pid_t child = ::fork();
     if (child == 0) {
       ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
@@ -72,7 +70,7 @@ class CheckpointCommand : public CommandTest {
 TEST_F(CheckpointCommand, KilledRunsEndAsIfTheyHadNotBeen) {
   const std::string run_it = "propagate " + (shipped_scenes / "stasis/attitude.toml").string() +
                              " --set propagate.duration_s=1200";
-  ASSERT_EQ(run(run_it + " --out " + at("whole")).status, 0);
+  succeed(run_it + " --out " + at("whole"));
   kill_until_done(run_it, 6, 700);
   const auto whole = numbers("whole");
   EXPECT_TRUE(whole.contains("recording.csv"));
@@ -89,7 +87,7 @@ TEST_F(CheckpointCommand, KilledTorqueMapsEndAsIfTheyHadNotBeen) {
         direct + "\"'";
     fs::remove_all(at("o"));
     const std::string whole = "whole_" + direct;
-    ASSERT_EQ(run(run_it + " --out " + at(whole)).status, 0);
+    succeed(run_it + " --out " + at(whole));
     kill_until_done(run_it, 2, 2000);
     EXPECT_TRUE(numbers(whole).contains("wrench_table_body.csv"));
     EXPECT_EQ(numbers("o"), numbers(whole));
@@ -101,7 +99,7 @@ TEST_F(CheckpointCommand, KilledRunsInLightEndAsIfTheyHadNotBeen) {
   const std::string run_it =
       "propagate " + (shipped_scenes / "stasis/day.toml").string() +
       " --set propagate.duration_s=40 --set 'light.mode=\"trace\"' --set light.rays=1024";
-  ASSERT_EQ(run(run_it + " --out " + at("whole")).status, 0);
+  succeed(run_it + " --out " + at("whole"));
   kill_until_done(run_it, 4, 3000);
   const auto whole = numbers("whole");
   EXPECT_TRUE(whole.contains("power.csv"));
@@ -118,10 +116,9 @@ TEST_F(CheckpointCommand, StateOfAnotherRunIsRefused) {
   ASSERT_TRUE(fs::exists(at("o/propagate.checkpoint")));
   const std::string state = file_text(at("o/propagate.checkpoint"));
   const auto expect_refused = [&](const std::string& more, const std::string& found) {
-    const Outcome got = run("propagate " + at("e.toml") + short_run + more);
-    EXPECT_EQ(got.status, 2) << more;
-    EXPECT_THAT(got.err, HasSubstr("propagate.checkpoint: found " + found)) << more;
-    EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1);
+    EXPECT_THAT(refused("propagate " + at("e.toml") + short_run + more),
+                HasSubstr("propagate.checkpoint: found " + found))
+        << more;
     EXPECT_EQ(file_text(at("o/propagate.checkpoint")).size(), state.size());
   };
   const std::string another = "a checkpoint of another program, experiment, seed or input file";
@@ -140,15 +137,14 @@ TEST_F(CheckpointCommand, StateOfAnotherRunIsRefused) {
   write("o/propagate.checkpoint", damaged);
   expect_refused("", "a damaged checkpoint");
   write("o/propagate.checkpoint", state);
-  EXPECT_EQ(run("propagate " + at("e.toml") + short_run).status, 0);
+  succeed("propagate " + at("e.toml") + short_run);
 }
 
 TEST_F(CheckpointCommand, TakesMinutesAboveZero) {
   for (const char* minutes : {"0", "-1", "soon"}) {
-    const Outcome got = run("propagate " + (shipped_scenes / "stasis/attitude.toml").string() +
-                            " --checkpoint " + minutes + " --out " + at("o"));
-    EXPECT_EQ(got.status, 2);
-    EXPECT_THAT(got.err, HasSubstr("expected a number of minutes > 0"));
+    EXPECT_THAT(refused("propagate " + (shipped_scenes / "stasis/attitude.toml").string() +
+                        " --checkpoint " + minutes + " --out " + at("o")),
+                HasSubstr("expected a number of minutes > 0"));
   }
 }
 

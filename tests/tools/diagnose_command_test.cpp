@@ -46,8 +46,7 @@ noise_rad_s = 2e-4
 duration_s = 30
 initial_rate_rad_s = [0.01, 0.02, 0.05]
 )");
-    const Outcome propagated = run("propagate " + experiment_ + " --quiet -o " + at("propagated"));
-    ASSERT_EQ(propagated.status, 0) << propagated.err;
+    succeed("propagate " + experiment_ + " --quiet -o " + at("propagated"));
     recording_ = at("propagated/recording.csv");
   }
 
@@ -55,57 +54,45 @@ initial_rate_rad_s = [0.01, 0.02, 0.05]
 };
 
 TEST_F(DiagnoseCommand, ImprovedExperimentsFindTheirFiles) {
-  const Outcome found = run("diagnose " + experiment_ + " --recording " + recording_ +
-                            " --quiet --out " + at("deep/down/answer"));
-  ASSERT_EQ(found.status, 0) << found.err;
+  succeed("diagnose " + experiment_ + " --recording " + recording_ + " --quiet --out " +
+          at("deep/down/answer"));
   EXPECT_THAT(file_text(at("deep/down/answer/improved.toml")), HasSubstr("../../../sun.csv"));
-  const Outcome again =
-      run("propagate " + at("deep/down/answer/improved.toml") + " --quiet --out " + at("again"));
-  EXPECT_EQ(again.status, 0) << again.err;
+  succeed("propagate " + at("deep/down/answer/improved.toml") + " --quiet --out " + at("again"));
 }
 
 TEST_F(DiagnoseCommand, ImprovedExperimentsHaveTheChangesOfTheCommandLine) {
-  const Outcome found = run("diagnose " + experiment_ + " --recording " + recording_ +
-                            " --set platform.mass_kg=12 --set environment.gravity_m_s2=0 --quiet "
-                            "--out " +
-                            at("answer"));
-  ASSERT_EQ(found.status, 0) << found.err;
+  succeed("diagnose " + experiment_ + " --recording " + recording_ +
+          " --set platform.mass_kg=12 --set environment.gravity_m_s2=0 --quiet "
+          "--out " +
+          at("answer"));
   const std::string improved = file_text(at("answer/improved.toml"));
   EXPECT_THAT(improved, HasSubstr("mass_kg = 12"));
   EXPECT_THAT(improved, HasSubstr("gravity_m_s2 = 0"));
-  const Outcome again =
-      run("propagate " + at("answer/improved.toml") + " --quiet --out " + at("again"));
-  EXPECT_EQ(again.status, 0) << again.err;
+  succeed("propagate " + at("answer/improved.toml") + " --quiet --out " + at("again"));
 }
 
 TEST_F(DiagnoseCommand, FiguresAreWrittenInTheFormatsThatAreAskedFor) {
   const std::string command = "diagnose " + experiment_ + " --recording " + recording_ +
                               " --quiet --style paper --out " + at("answer");
-  ASSERT_EQ(run(command).status, 0);
+  succeed(command);
   EXPECT_FALSE(std::filesystem::exists(at("answer/gyro_z_rad_s.svg")));
-  const Outcome drawn = run(command + " --format svg,pdf");
-  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  succeed(command + " --format svg,pdf");
   EXPECT_TRUE(std::filesystem::exists(at("answer/diagnosis.json")));
   EXPECT_THAT(file_text(at("answer/gyro_z_rad_s.svg")), HasSubstr("nominal model"));
   EXPECT_THAT(file_text(at("answer/gyro_z_rad_s.pdf")), HasSubstr("%PDF-"));
-  const Outcome refused = run(command + " --format jpg");
-  EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.err, HasSubstr("found \"jpg\", expected"));
+  EXPECT_THAT(refused(command + " --format jpg"), HasSubstr("found \"jpg\", expected"));
 }
 
 TEST_F(DiagnoseCommand, RecordingsOfTwoKindsAreListedByName) {
   const std::string curve = write("curve.csv", "voltage_V,current_A\n0,1\n0.3,0.9\n0.5,0\n");
   for (const std::string& both : {"--recording " + recording_ + " --recording " + curve,
                                   "--recording " + recording_ + " --holdout " + curve}) {
-    const Outcome found =
-        run("diagnose " + experiment_ + " " + both + " --quiet --out " + at("answer"));
-    EXPECT_EQ(found.status, 2);
-    EXPECT_THAT(found.err, HasSubstr("curve.csv: found a recording of light"));
+    EXPECT_THAT(refused("diagnose " + experiment_ + " " + both + " --quiet --out " + at("answer")),
+                HasSubstr("curve.csv: found a recording of light"));
   }
-  const Outcome list = run("diagnose " + experiment_ + " --recording " + recording_ + " " + curve +
-                           " --out " + at("answer"));
-  EXPECT_EQ(list.status, 2);
-  EXPECT_THAT(list.err, HasSubstr("repeat --recording before each of several"));
+  EXPECT_THAT(refused("diagnose " + experiment_ + " --recording " + recording_ + " " + curve +
+                      " --out " + at("answer")),
+              HasSubstr("repeat --recording before each of several"));
 }
 
 // A plate that turns under a lamp straight above it, on a platform that nothing else acts on: what
@@ -181,37 +168,30 @@ mode = "off"
 duration_s = 30
 initial_rate_rad_s = [0, 0, 0.05]
 )");
-  Outcome got = run("power " + lab + " --quiet --out " + at("power"));
-  ASSERT_EQ(got.status, 0) << got.err;
-  got = run("propagate " + lab + " --quiet --out " + at("propagated"));
-  ASSERT_EQ(got.status, 0) << got.err;
+  succeed("power " + lab + " --quiet --out " + at("power"));
+  succeed("propagate " + lab + " --quiet --out " + at("propagated"));
   const auto power = nlohmann::json::parse(file_text(at("power/summary.json")));
   const auto figure = [&](const char* name) { return power[name]["value"].dump(); };
   const std::string both = write(
       "run.csv",
       with_columns(file_text(at("propagated/recording.csv")), ",array_voltage_V,array_current_A",
                    "," + figure("array_voltage_V") + "," + figure("array_current_A")));
-  got = run("diagnose " + lab + " --recording " + both + " --quiet --out " + at("answer"));
-  ASSERT_EQ(got.status, 0) << got.err;
+  succeed("diagnose " + lab + " --recording " + both + " --quiet --out " + at("answer"));
   const auto json = nlohmann::json::parse(file_text(at("answer/diagnosis.json")));
   EXPECT_EQ(json["verdict"], "consistent") << json["sentence"];
   ASSERT_EQ(json["domains"].size(), 2u);
   EXPECT_EQ(json["domains"][0]["of"], "motion");
   EXPECT_EQ(json["domains"][1]["of"], "light");
   EXPECT_THAT(file_text(at("answer/report.html")), HasSubstr("array_voltage_V"));
-  got = run("check " + at("answer/improved.toml"));
-  EXPECT_EQ(got.status, 0) << got.err;
+  succeed("check " + at("answer/improved.toml"));
   // No light among the recordings, no light held out.
-  got = run("diagnose " + lab + " --recording " + at("propagated/recording.csv") + " --holdout " +
-            both + " --quiet --out " + at("answer"));
-  EXPECT_EQ(got.status, 2);
-  EXPECT_THAT(got.err, HasSubstr("run.csv: found a recording of light"));
+  EXPECT_THAT(refused("diagnose " + lab + " --recording " + at("propagated/recording.csv") +
+                      " --holdout " + both + " --quiet --out " + at("answer")),
+              HasSubstr("run.csv: found a recording of light"));
 }
 
 TEST_F(DiagnoseCommand, AnExperimentWithoutACommandIsReported) {
-  const Outcome alone = run(experiment_);
-  EXPECT_EQ(alone.status, 2);
-  EXPECT_THAT(alone.err, HasSubstr("expected a command before it"));
+  EXPECT_THAT(refused(experiment_), HasSubstr("expected a command before it"));
 }
 
 }  // namespace

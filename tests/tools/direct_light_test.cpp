@@ -7,20 +7,16 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::string stasis_file = std::string(PHOTORQUE_SOURCE_DIR) + "/scenes/stasis/nominal.toml";
-
 class DirectRouteCommand : public CommandTest {};
 
 TEST_F(DirectRouteCommand, ManyPairsAreLeftToTheRaysWithANote) {
   const std::string few_rays =
-      "trace " + stasis_file + " --set trace.rays=65536 --verbose --out " + at("o");
+      "trace " + nominal_file + " --set trace.rays=65536 --verbose --out " + at("o");
   // 49 lamps over 640 × 640 bins: 2.01 s at 0.1 µs a pair.
-  const Outcome left = run(few_rays + " --set receiver[0].bins=[640,640]");
-  ASSERT_EQ(left.status, 0) << left.err;
+  const Outcome left = succeed(few_rays + " --set receiver[0].bins=[640,640]");
   EXPECT_THAT(left.out, HasSubstr("by rays alone"));
   EXPECT_THAT(left.out, Not(HasSubstr("\n  direct light on solar_array: gathered")));
-  const Outcome gathered = run(few_rays);
-  ASSERT_EQ(gathered.status, 0) << gathered.err;
+  const Outcome gathered = succeed(few_rays);
   EXPECT_THAT(gathered.out, HasSubstr("\n  direct light on solar_array: gathered"));
 }
 

@@ -9,20 +9,18 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 class GuessCommand : public CommandTest {
  protected:
   // A guess from a recording, then a diagnosis with it as it stands.
   nlohmann::json diagnosed(const fs::path& recording) const {
-    const Outcome guess = run("diagnose --guess " + recording.string() + " --out " + at("guess"));
-    EXPECT_EQ(guess.status, 0) << guess.err;
+    succeed("diagnose --guess " + recording.string() + " --out " + at("guess"));
     fs::path name = recording.filename();
     while (name.has_extension()) name = name.stem();
-    const Outcome got = run("diagnose " + at("guess/" + name.string() + ".toml") + " --recording " +
-                            recording.string() + " --json --quiet --out " + at("out"));
-    EXPECT_EQ(got.status, 0) << got.err;
+    const Outcome got =
+        succeed("diagnose " + at("guess/" + name.string() + ".toml") + " --recording " +
+                recording.string() + " --json --quiet --out " + at("out"));
     fs::remove_all(at("guess"));
     return got.status == 0 ? nlohmann::json::parse(got.out) : nlohmann::json();
   }
@@ -38,29 +36,22 @@ class GuessCommand : public CommandTest {
     }
     return write("thinned.csv", text);
   }
-  static std::vector<std::string> names(const nlohmann::json& answer) {
-    std::vector<std::string> kinds;
-    for (const auto& effect : answer.at("effects")) kinds.push_back(effect.at("kind"));
-    return kinds;
-  }
 };
 
 TEST_F(GuessCommand, PrintsItsFilesAndKeepsChangedOnes) {
   std::string rows = "t_s,angle_deg\n";
   for (int i = 0; i < 100; ++i) rows += std::to_string(i) + "," + std::to_string(i * i) + "\n";
   const std::string recording = write("disc.csv", rows);
-  const Outcome first = run("diagnose --guess " + recording + " --out " + at("guess"));
-  ASSERT_EQ(first.status, 0) << first.err;
+  const Outcome first = succeed("diagnose --guess " + recording + " --out " + at("guess"));
   const std::string text = file_text(at("guess/disc.toml"));
   EXPECT_THAT(text, HasSubstr("topology = \"one_axis\""));
   EXPECT_EQ(first.out.substr(0, text.size()), text);
   EXPECT_THAT(first.out, HasSubstr("# photorque diagnose " + at("guess/disc.toml")));
   // A repeated guess is no loss; what was confirmed would be.
-  EXPECT_EQ(run("diagnose --guess " + recording + " --out " + at("guess")).status, 0);
+  succeed("diagnose --guess " + recording + " --out " + at("guess"));
   write("guess/disc.toml", text + "# confirmed\n");
-  const Outcome again = run("diagnose --guess " + recording + " --out " + at("guess"));
-  EXPECT_EQ(again.status, 2);
-  EXPECT_THAT(again.err, HasSubstr("another file of this name"));
+  EXPECT_THAT(refused("diagnose --guess " + recording + " --out " + at("guess")),
+              HasSubstr("another file of this name"));
   EXPECT_THAT(file_text(at("guess/disc.toml")), HasSubstr("# confirmed"));
 }
 
@@ -93,11 +84,11 @@ TEST_F(GuessCommand, RealRecordingsAreDiagnosedByTheirGuess) {
   const fs::path real = photorque::outside::third_party("recordings");
   using testing::Contains;
   // 4000 rows a second would take five times as long and say no more.
-  EXPECT_THAT(names(diagnosed(thinned(real / "throw_flywheel/body_37.csv.gz", 8))),
+  EXPECT_THAT(kinds_in(diagnosed(thinned(real / "throw_flywheel/body_37.csv.gz", 8))),
               Contains("wheel_momentum"));
-  EXPECT_THAT(names(diagnosed(real / "racquet_tumble/flight_081.csv.gz")),
+  EXPECT_THAT(kinds_in(diagnosed(real / "racquet_tumble/flight_081.csv.gz")),
               Contains("air_pressure_drag"));
-  EXPECT_THAT(names(diagnosed(real / "wheel_coastdown/grandprix406_left_120psi.csv.gz")),
+  EXPECT_THAT(kinds_in(diagnosed(real / "wheel_coastdown/grandprix406_left_120psi.csv.gz")),
               Contains("air_pressure_drag"));
   EXPECT_EQ(diagnosed(real / "pv_iv_shading/curve_058.csv.gz").at("verdict"), "consistent");
   EXPECT_EQ(diagnosed(real / "pv_iv_shading/curve_067.csv.gz").at("verdict"), "unexplained");

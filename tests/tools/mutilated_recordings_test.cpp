@@ -12,7 +12,6 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::IsSupersetOf;
 
@@ -70,31 +69,20 @@ class MutilatedRecordings : public CommandTest {
     PHOTORQUE_NEEDS_THIRD_PARTY("recordings");
     CommandTest::SetUp();
   }
-  // Diagnosed with an experiment of docs/real.
-  Outcome diagnosed(const std::string& experiment, const CopiedTable& table) const {
-    const std::string file = write("copy.csv", table.text());
-    return run("diagnose " + std::string(PHOTORQUE_SOURCE_DIR) + "/docs/real/" + experiment +
-               ".toml --recording " + file + " --json --quiet --out " + at("out"));
-  }
-  static std::vector<std::string> names_of(const nlohmann::json& answer) {
-    std::vector<std::string> kinds;
-    for (const auto& effect : answer.at("effects")) kinds.push_back(effect.at("kind"));
-    return kinds;
+  // Arguments that diagnose it with an experiment of docs/real.
+  std::string diagnose(const std::string& experiment, const CopiedTable& table) const {
+    return "diagnose " + source_folder + "/docs/real/" + experiment + ".toml --recording " +
+           write("copy.csv", table.text()) + " --json --quiet --out " + at("out");
   }
   void expect_found(const std::string& experiment, const CopiedTable& table,
                     const std::vector<std::string>& names, const std::string& note) const {
-    const Outcome got = diagnosed(experiment, table);
-    ASSERT_EQ(got.status, 0) << got.err;
-    const nlohmann::json answer = nlohmann::json::parse(got.out);
-    EXPECT_THAT(names_of(answer), IsSupersetOf(names));
+    const auto answer = nlohmann::json::parse(succeed(diagnose(experiment, table)).out);
+    EXPECT_THAT(kinds_in(answer), IsSupersetOf(names));
     EXPECT_THAT(answer.at("warnings").dump(), HasSubstr(note));
   }
   void expect_refused(const std::string& experiment, const CopiedTable& table,
                       const std::string& what) const {
-    const Outcome got = diagnosed(experiment, table);
-    EXPECT_EQ(got.status, 2);
-    EXPECT_THAT(got.err, HasSubstr(what));
-    EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;
+    EXPECT_THAT(refused(diagnose(experiment, table)), HasSubstr(what));
   }
 };
 

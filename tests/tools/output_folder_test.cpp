@@ -13,12 +13,9 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 using Clock = std::chrono::steady_clock;
 
-const std::string lit_platform =
-    (fs::path(PHOTORQUE_SOURCE_DIR) / "scenes" / "stasis" / "nominal.toml").string();
 const std::string quick = " --set trace.rays=16384", endless = " --set trace.rays=3e10";
 
 double seconds_since(Clock::time_point start) {
@@ -29,8 +26,8 @@ class OutputFolders : public CommandTest {
  protected:
   // `photorque trace` on its own, as another process.
   pid_t start(const std::string& arguments) const {
-    const std::string command = "exec " + std::string(PHOTORQUE_BINARY_DIR) + "/photorque trace " +
-                                lit_platform + arguments + " >/dev/null 2>&1";
+    const std::string command =
+        "exec " + program_file + " trace " + nominal_file + arguments + " >/dev/null 2>&1";
     const pid_t child = ::fork();
     if (child == 0) {
       ::signal(SIGINT, SIG_DFL);  // background processes of a shell ignore it
@@ -61,9 +58,8 @@ TEST_F(OutputFolders, ThatAreFilesAreFoundBeforeTheWork) {
   write("taken", "mine");
   const auto begin = Clock::now();
   for (const std::string out : {"taken", "taken/below"}) {
-    const Outcome got = run("trace " + lit_platform + endless + " --out " + at(out));
-    EXPECT_EQ(got.status, 2);
-    EXPECT_THAT(got.err, HasSubstr("--out: found"));
+    EXPECT_THAT(refused("trace " + nominal_file + endless + " --out " + at(out)),
+                HasSubstr("--out: found"));
   }
   EXPECT_LT(seconds_since(begin), 10.0);
   EXPECT_EQ(file_text(at("taken")), "mine");
@@ -71,23 +67,22 @@ TEST_F(OutputFolders, ThatAreFilesAreFoundBeforeTheWork) {
 
 // An improved.toml that is diagnosed again into its own folder, say.
 TEST_F(OutputFolders, ResultsThatReplaceTheInputAreRejectedBeforeTheRun) {
-  const std::string text = file_text(lit_platform);
+  const std::string text = file_text(nominal_file);
   fs::create_directories(at("o"));
   write("o/again.toml", text);
   write("o/files.json", R"({"schema": "photorque.files/1",
                             "commands": {"trace": {"files": ["again.toml"]}}})");
-  const Outcome got = run("trace " + at("o/again.toml") + endless + " --out " + at("o"));
-  EXPECT_EQ(got.status, 2);
-  EXPECT_THAT(got.err, HasSubstr("whose again.toml the run would replace"));
+  EXPECT_THAT(refused("trace " + at("o/again.toml") + endless + " --out " + at("o")),
+              HasSubstr("whose again.toml the run would replace"));
   EXPECT_EQ(file_text(at("o/again.toml")), text);
 }
 
 TEST_F(OutputFolders, AWorkingFolderThatWasRemovedIsNamed) {
   const std::string gone = at("gone");
   fs::create_directories(gone);
-  const int status = std::system(("cd " + gone + " && rmdir " + gone + " && " +
-                                  PHOTORQUE_BINARY_DIR + "/photorque check x.toml 2>" + at("err"))
-                                     .c_str());
+  const int status = std::system(
+      ("cd " + gone + " && rmdir " + gone + " && " + program_file + " check x.toml 2>" + at("err"))
+          .c_str());
   EXPECT_EQ(WEXITSTATUS(status), 2);
   EXPECT_EQ(
       file_text(at("err")),
@@ -95,9 +90,8 @@ TEST_F(OutputFolders, AWorkingFolderThatWasRemovedIsNamed) {
 }
 
 TEST_F(OutputFolders, AFullStandardOutputIsNamed) {
-  const int status = std::system((std::string(PHOTORQUE_BINARY_DIR) + "/photorque schema --key " +
-                                  "trace.rays >/dev/full 2>" + at("err"))
-                                     .c_str());
+  const int status = std::system(
+      (program_file + " schema --key " + "trace.rays >/dev/full 2>" + at("err")).c_str());
   EXPECT_EQ(WEXITSTATUS(status), 2);
   EXPECT_EQ(
       file_text(at("err")),
@@ -106,15 +100,13 @@ TEST_F(OutputFolders, AFullStandardOutputIsNamed) {
 
 TEST_F(OutputFolders, ThatCannotBeWrittenAreFoundBeforeTheWork) {
   fs::create_directory_symlink("loop", at("loop"));
-  const Outcome loop = run("trace " + lit_platform + endless + " --out " + at("loop"));
-  EXPECT_EQ(loop.status, 2);
-  EXPECT_THAT(loop.err, HasSubstr("expected a folder that can be made"));
+  EXPECT_THAT(refused("trace " + nominal_file + endless + " --out " + at("loop")),
+              HasSubstr("expected a folder that can be made"));
   fs::create_directories(at("locked"));
   fs::permissions(at("locked"), fs::perms::owner_read | fs::perms::owner_exec);
   if (::access(at("locked").c_str(), W_OK) == 0) GTEST_SKIP() << "the superuser may write anywhere";
-  const Outcome locked = run("trace " + lit_platform + endless + " --out " + at("locked"));
-  EXPECT_EQ(locked.status, 2);
-  EXPECT_THAT(locked.err, HasSubstr("a folder that is not writable"));
+  EXPECT_THAT(refused("trace " + nominal_file + endless + " --out " + at("locked")),
+              HasSubstr("a folder that is not writable"));
 }
 
 TEST_F(OutputFolders, AreNotLeftBehindByRunsThatAreRefused) {
@@ -134,9 +126,9 @@ TEST_F(OutputFolders, OfTheSystemAreRefused) {
   for (const std::string& out :
        {std::string("/"), std::string("//"), std::string("/usr/bin"), std::string("/usr/bin/../.."),
         std::string("/dev"), std::string("/tmp"), at("link"), at("link") + "/photorque"}) {
-    const Outcome got = run("trace " + lit_platform + endless + " --out " + out);
-    EXPECT_EQ(got.status, 2) << out;
-    EXPECT_THAT(got.err, HasSubstr("--out: found a folder of the system")) << out;
+    EXPECT_THAT(refused("trace " + nominal_file + endless + " --out " + out),
+                HasSubstr("--out: found a folder of the system"))
+        << out;
   }
 }
 
@@ -144,9 +136,8 @@ TEST_F(OutputFolders, OfTheSystemAreRefused) {
 TEST_F(OutputFolders, OfOtherUsersAreRefused) {
   fs::create_directories(at("theirs"));
   if (::chown(at("theirs").c_str(), 12345, 12345) != 0) GTEST_SKIP() << "no right to give away";
-  const Outcome got = run("trace " + lit_platform + endless + " --out " + at("theirs"));
-  EXPECT_EQ(got.status, 2);
-  EXPECT_THAT(got.err, HasSubstr("--out: found a folder of user 12345"));
+  EXPECT_THAT(refused("trace " + nominal_file + endless + " --out " + at("theirs")),
+              HasSubstr("--out: found a folder of user 12345"));
   EXPECT_TRUE(fs::is_empty(at("theirs")));
 }
 
@@ -154,13 +145,12 @@ TEST_F(OutputFolders, BelongToOneRunAtATime) {
   const pid_t first = start(endless + " --out " + at("o"));
   wait_until([&] { return fs::exists(at("o")); });
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  const Outcome second = run("trace " + lit_platform + quick + " --out " + at("o"));
+  const Outcome second = run("trace " + nominal_file + quick + " --out " + at("o"));
   ::kill(first, SIGKILL);
   ::waitpid(first, nullptr, 0);
-  EXPECT_EQ(second.status, 2);
-  EXPECT_THAT(second.err, HasSubstr("a folder that another run is writing into"));
+  EXPECT_THAT(refusal_in(second), HasSubstr("a folder that another run is writing into"));
   // A killed run holds no lock.
-  EXPECT_EQ(run("trace " + lit_platform + quick + " --out " + at("o")).status, 0);
+  succeed("trace " + nominal_file + quick + " --out " + at("o"));
 }
 
 TEST_F(OutputFolders, AreLeftCleanBySignalsWithinASecond) {
@@ -185,9 +175,9 @@ TEST_F(OutputFolders, AreLeftCleanBySignalsWithinASecond) {
 
 // A reader as `head` does not end the run, so that its results are complete.
 TEST_F(OutputFolders, HoldAllResultsWhenTheReaderOfTheTextLeaves) {
-  const std::string command = "{ " + std::string(PHOTORQUE_BINARY_DIR) + "/photorque trace " +
-                              lit_platform + " --set trace.rays=4096 --out " + at("o") + " 2>" +
-                              at("err") + "; echo $? >" + at("status") + "; } | true";
+  const std::string command = "{ " + program_file + " trace " + nominal_file +
+                              " --set trace.rays=4096 --out " + at("o") + " 2>" + at("err") +
+                              "; echo $? >" + at("status") + "; } | true";
   ASSERT_EQ(std::system(command.c_str()), 0);
   EXPECT_EQ(file_text(at("status")), "2\n");
   EXPECT_THAT(file_text(at("err")), HasSubstr("a reader"));
@@ -204,8 +194,7 @@ TEST_F(OutputFolders, AreFreeAsSoonAsARunWasStopped) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     ::kill(child, SIGINT);
     ::waitpid(child, nullptr, 0);
-    const Outcome next = run("trace " + lit_platform + " --set trace.rays=4096 --out " + at("o"));
-    EXPECT_EQ(next.status, 0) << next.err;
+    succeed("trace " + nominal_file + " --set trace.rays=4096 --out " + at("o"));
   }
 }
 
@@ -217,16 +206,16 @@ TEST_F(OutputFolders, AreClearedOfFilesOfKilledRuns) {
   const std::string own = std::to_string(::getpid());
   name.replace(name.find(own), own.size(), std::to_string(child));
   fs::create_directories(fs::path(at("o")) / name);
-  ASSERT_EQ(run("trace " + lit_platform + quick + " --out " + at("o")).status, 0);
+  succeed("trace " + nominal_file + quick + " --out " + at("o"));
   EXPECT_THAT(hidden("o"), testing::IsEmpty());
 }
 
 // Latin-1, say. What is written names the file as far as UTF-8 can.
 TEST_F(OutputFolders, AndExperimentsMayHaveNamesThatAreNotUtf8) {
-  const fs::path scenes = fs::path(lit_platform).parent_path();
+  const fs::path scenes = fs::path(nominal_file).parent_path();
   fs::copy(scenes / "stasis.gltf", at("stasis.gltf"));
-  write("stand_g\xFC.toml", file_text(lit_platform));
-  ASSERT_EQ(run("trace " + at("stand_g\xFC.toml") + quick + " --out " + at("o\xFC")).status, 0);
+  write("stand_g\xFC.toml", file_text(nominal_file));
+  succeed("trace " + at("stand_g\xFC.toml") + quick + " --out " + at("o\xFC"));
   for (const std::string file : {"files.json", "summary.json"}) {
     EXPECT_THAT(file_text(at("o\xFC/" + file)), HasSubstr("stand_g\xEF\xBF\xBD.toml")) << file;
   }
@@ -234,10 +223,10 @@ TEST_F(OutputFolders, AndExperimentsMayHaveNamesThatAreNotUtf8) {
 
 TEST_F(OutputFolders, HoldFilesOfTheLastRunAlone) {
   const std::string rays = " --set trace.arriving_rays=4096";
-  ASSERT_EQ(run("trace " + lit_platform + quick + rays + " --out " + at("o")).status, 0);
+  succeed("trace " + nominal_file + quick + rays + " --out " + at("o"));
   write("o/mine.csv", "mine");
   ASSERT_TRUE(fs::exists(at("o/rays_solar_array.tm25ray")));
-  ASSERT_EQ(run("trace " + lit_platform + quick + " --out " + at("o")).status, 0);
+  succeed("trace " + nominal_file + quick + " --out " + at("o"));
   EXPECT_FALSE(fs::exists(at("o/rays_solar_array.tm25ray")));
   EXPECT_TRUE(fs::exists(at("o/mine.csv")));
 }

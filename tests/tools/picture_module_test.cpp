@@ -5,23 +5,16 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
 
 const fs::path built = PHOTORQUE_BINARY_DIR;
-const std::string experiment =
-    (fs::path(PHOTORQUE_SOURCE_DIR) / "scenes/stasis/nominal.toml").string();
 
 class PictureModule : public CommandTest {
  protected:
   // The program in a separate folder.
   Outcome run_copy(const std::string& arguments, const std::string& environment = "") const {
-    const std::string command = environment + at("bin/photorque") + " " + arguments + " >" +
-                                at("stdout") + " 2>" + at("stderr");
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_text(at("stdout")),
-            file_text(at("stderr"))};
+    return shell(environment + at("bin/photorque") + " " + arguments);
   }
   void copy_program() const {
     fs::create_directories(at("bin"));
@@ -41,20 +34,18 @@ TEST_F(PictureModule, IsNotLinkedByTheProgram) {
 
 TEST_F(PictureModule, IsMissedInOneLineBeforeTheWork) {
   copy_program();
-  const Outcome got = run_copy("trace " + experiment + " --set trace.rays=3e10 --out " + at("o"));
-  EXPECT_EQ(got.status, 2);
-  EXPECT_THAT(got.err, HasSubstr("found no photorque_pictures.so, expected"));
-  EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;
+  EXPECT_THAT(
+      refusal_in(run_copy("trace " + nominal_file + " --set trace.rays=3e10 --out " + at("o"))),
+      HasSubstr("found no photorque_pictures.so, expected"));
   EXPECT_FALSE(fs::exists(at("o")));
 }
 
 TEST_F(PictureModule, OfAnotherKindIsRefused) {
   copy_program();
   fs::copy_file(built / "photorque_fmu.so", at("bin/photorque_pictures.so"));
-  const Outcome got = run_copy("render " + experiment + " --set trace.rays=4096 --out " + at("o"));
-  EXPECT_EQ(got.status, 2);
-  EXPECT_THAT(got.err, HasSubstr("found another library"));
-  EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;
+  EXPECT_THAT(
+      refusal_in(run_copy("render " + nominal_file + " --set trace.rays=4096 --out " + at("o"))),
+      HasSubstr("found another library"));
 }
 
 }  // namespace

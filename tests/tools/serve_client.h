@@ -10,7 +10,6 @@
 
 #include <array>
 #include <chrono>
-#include <cstring>
 #include <functional>
 #include <thread>
 #include <vector>
@@ -102,6 +101,7 @@ class ServeCommand : public CommandTest {
       act(client);
     }
     server.join();
+    EXPECT_EQ(outcome_.status, 0) << outcome_.err;
   }
   // From the line "serving at 127.0.0.1:PORT, …".
   int port_when_known() const {

@@ -37,9 +37,8 @@ transmitter_efficiency = { value = 0.5, sigma = 0.05 }
 class SupplyCommand : public CommandTest {
  protected:
   json summary(const std::string& more = "") {
-    const Outcome got =
-        run("supply " + write("s.toml", fed_platform) + " " + more + " --json --out " + at("o"));
-    EXPECT_EQ(got.status, 0) << got.err;
+    const Outcome got = succeed("supply " + write("s.toml", fed_platform) + " " + more +
+                                " --json --out " + at("o"));
     return json::parse(got.out);
   }
 };
@@ -91,20 +90,17 @@ TEST_F(SupplyCommand, SuppliesDeliverTheLoadAtZeroTiltAndLessWhenTilted) {
 // The light of a way is that of `power`, whose figures pass through the converter and the lamps'
 // efficiency.
 TEST_F(SupplyCommand, LightIsThatOfPower) {
-  const std::string stasis = std::string(PHOTORQUE_SOURCE_DIR) + "/scenes/stasis/nominal.toml";
   const std::string beam = "[[supply_trade.beam]]\nname = \"LED beaming\"\nexperiment = \"" +
-                           stasis +
+                           nominal_file +
                            "\"\nrays = 65536\nlamp_efficiency = 0.5\nconverter_efficiency = 0.9\n";
-  const Outcome fed = run("supply " + write("s.toml", fed_platform + beam) +
-                          " --set supply_trade.tilts=2 --json --out " + at("o"));
-  ASSERT_EQ(fed.status, 0) << fed.err;
+  const Outcome fed = succeed("supply " + write("s.toml", fed_platform + beam) +
+                              " --set supply_trade.tilts=2 --json --out " + at("o"));
   const json all = json::parse(fed.out);
   for (const auto& [tilt, name] : std::vector<std::pair<std::string, std::string>>{
            {"0", "delivered_level_W"}, {"30", "delivered_tilted_W"}}) {
-    const Outcome lit =
-        run("power " + stasis + " --set trace.rays=65536 --set attitude.tilt_deg=" + tilt +
-            " --json --out " + at("p"));
-    ASSERT_EQ(lit.status, 0) << lit.err;
+    const Outcome lit = succeed("power " + nominal_file +
+                                " --set trace.rays=65536 --set attitude.tilt_deg=" + tilt +
+                                " --json --out " + at("p"));
     EXPECT_NEAR(of(all, "LED_beaming_" + name), 0.9 * of(json::parse(lit.out), "array_power_W"),
                 1e-9);
   }
@@ -113,8 +109,7 @@ TEST_F(SupplyCommand, LightIsThatOfPower) {
 
 TEST_F(SupplyCommand, WritesTablesAndPictures) {
   const Outcome got =
-      run("supply " + write("s.toml", fed_platform) + " --verbose --out " + at("o"));
-  ASSERT_EQ(got.status, 0) << got.err;
+      succeed("supply " + write("s.toml", fed_platform) + " --verbose --out " + at("o"));
   EXPECT_THAT(got.out, HasSubstr("25 W x 24 h is 600 Wh; 360 Wh is 15 W x 24 h"));
   const auto all = files("o");
   for (const char* name :
@@ -134,10 +129,9 @@ TEST_F(SupplyCommand, WrongInputIsOneLineAndExitTwo) {
            {"supply_trade.induction.receiver.outer_radius_m=0.01", "more than inner_radius_m"},
            {"supply_trade.induction.transmitter_height_m=-0.05", "room for the receiver to tilt"},
            {"supply_trade.battery.usable_fraction=1.5", "usable_fraction"}}) {
-    const Outcome got = run("supply " + experiment + " --set " + key + " --out " + at("o"));
-    EXPECT_EQ(got.status, 2) << key;
-    EXPECT_THAT(got.err, HasSubstr(message)) << key;
-    EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;
+    EXPECT_THAT(refused("supply " + experiment + " --set " + key + " --out " + at("o")),
+                HasSubstr(message))
+        << key;
   }
 }
 

@@ -7,7 +7,6 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 class Sweep : public CommandTest {

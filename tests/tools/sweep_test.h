@@ -6,39 +6,15 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
-#include <sstream>
-
 #include "tests/tools/command_test.h"
 
 extern char** environ;
 
 namespace photorque {
 
-// The rows of a CSV file without its comments; the first is the header.
-inline std::vector<std::vector<std::string>> csv_rows(const std::filesystem::path& path) {
-  std::istringstream in(file_text(path));
-  std::vector<std::vector<std::string>> all;
-  for (std::string line; std::getline(in, line);) {
-    if (line.empty() || line[0] == '#') continue;
-    std::istringstream cells(line);
-    all.emplace_back();
-    for (std::string cell; std::getline(cells, cell, ',');) all.back().push_back(cell);
-    if (line.back() == ',') all.back().emplace_back();
-  }
-  return all;
-}
-
 // The column of a CSV file by its name, as numbers.
 inline std::vector<double> csv_column(const std::filesystem::path& path, const std::string& name) {
-  const auto all = csv_rows(path);
-  std::vector<double> values;
-  for (size_t c = 0; !all.empty() && c < all[0].size(); ++c) {
-    if (all[0][c] != name) continue;
-    for (size_t r = 1; r < all.size(); ++r) {
-      values.push_back(all[r][c].empty() ? std::nan("") : std::stod(all[r][c]));
-    }
-  }
-  return values;
+  return csv_table(path).at(name);
 }
 
 // The result of a query of a database, a text for every cell; one row of the error where it fails.
@@ -63,29 +39,6 @@ class SweepTest : public CommandTest {
  protected:
   static constexpr double edge_m = 0.4, height_m = 0.1, sun_W_m2 = 1000.0;
 
-  // A level, black, square plate over the centre of rotation, its buffer in a file beside it.
-  void write_plate(double edge = edge_m) const {
-    std::string bytes;
-    const float h = static_cast<float>(edge / 2), y = static_cast<float>(height_m);
-    for (const auto& [x, z] : {std::pair{-h, h}, {h, h}, {h, -h}, {-h, -h}}) {
-      for (const float c : {x, y, z}) bytes.append(reinterpret_cast<const char*>(&c), 4);
-    }
-    for (const uint16_t i : {0, 1, 2, 0, 2, 3}) bytes.append(reinterpret_cast<const char*>(&i), 2);
-    write("plate geometry.bin", bytes);
-    std::ostringstream out;
-    out << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
-        << R"("nodes":[{"mesh":0,"name":"plate"}],)"
-        << R"("materials":[{"name":"black","extras":{"photorque":{"absorptance":1.0,"specular":0.0,"diffuse":0.0,"transmittance":0.0}}}],)"
-        << R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],)"
-        << R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3",)"
-        << "\"min\":[" << -h << "," << y << "," << -h << "],\"max\":[" << h << "," << y << "," << h
-        << "]},"
-        << R"({"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}],)"
-        << R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],)"
-        << R"("buffers":[{"byteLength":60,"uri":"plate%20geometry.bin"}]})";
-    write("plate.gltf", out.str());
-  }
-
   // The experiment with this table [sweep]; `rays` of the sun.
   std::string experiment(const std::string& table, int rays = 4096) const {
     return write("e.toml",
@@ -104,9 +57,8 @@ class SweepTest : public CommandTest {
   // `photorque sweep` on its own, as another process.
   pid_t start(const std::string& options, const std::string& out = "out",
               const std::string& output_file = "/dev/null") const {
-    const std::string command = "exec " + std::string(PHOTORQUE_BINARY_DIR) + "/photorque sweep " +
-                                at("e.toml") + " --out " + at(out) + " " + options + " >" +
-                                output_file + " 2>&1";
+    const std::string command = "exec " + program_file + " sweep " + at("e.toml") + " --out " +
+                                at(out) + " " + options + " >" + output_file + " 2>&1";
     const char* const words[] = {"sh", "-c", command.c_str(), nullptr};
     pid_t child = -1;
     ::posix_spawn(&child, "/bin/sh", nullptr, nullptr, const_cast<char* const*>(words), environ);

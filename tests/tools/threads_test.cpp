@@ -6,8 +6,6 @@
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct Command {
   std::string name, arguments;  // SCENES and CASE are folders of the sources, HERE the test's own
 };
@@ -82,14 +80,14 @@ class Threads : public CommandTest, public ::testing::WithParamInterface<Command
  protected:
   void SetUp() override {
     CommandTest::SetUp();
-    const fs::path scenes = fs::path(PHOTORQUE_SOURCE_DIR) / "scenes";
-    fs::copy(scenes / "hollow" / "hollow.gltf", at("hollow.gltf"));
+    fs::copy(shipped_scenes / "hollow" / "hollow.gltf", at("hollow.gltf"));
     write("sunlit.toml", sunlit);
     write("datasheet.toml", datasheet);
     if (GetParam().name != "balance") return;
-    const std::string flight = "propagate " + (scenes / "stasis" / "attitude.toml").string() +
+    const std::string flight = "propagate " +
+                               (shipped_scenes / "stasis" / "attitude.toml").string() +
                                " --set propagate.duration_s=60 --out " + at("flight");
-    ASSERT_EQ(run(flight).status, 0);
+    succeed(flight);
     fs::copy(at("flight/recording.csv"), at("recording.csv"));
   }
 
@@ -122,8 +120,7 @@ TEST_P(Threads, OfAnyNumberGiveTheSameFiles) {
   std::map<std::string, std::string> first;
   for (const std::string threads : {"1", "2", "7"}) {
     fs::remove_all(at("out"));
-    const Outcome got = run(arguments() + " --quiet --threads " + threads + " --out " + at("out"));
-    ASSERT_EQ(got.status, 0) << got.err;
+    succeed(arguments() + " --quiet --threads " + threads + " --out " + at("out"));
     const std::map<std::string, std::string> now = results();
     if (first.empty()) first = now;
     ASSERT_EQ(now.size(), first.size());

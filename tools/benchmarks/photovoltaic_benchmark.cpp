@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "core/numerics/random.h"
 #include "photovoltaics/array/design.h"
 #include "photovoltaics/cell/table.h"
 #include "photovoltaics/network/curve.h"

@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "core/constants.h"
 #include "receivers/gather/gather.h"
 #include "sources/lamps/kind.h"
 #include "tools/benchmarks/benchmark_scene.h"

@@ -365,19 +365,6 @@ void shadow_rays(benchmark::State& state, const Case& which, double disc_radius_
       100.0 * std::accumulate(lit.begin(), lit.end(), 0.0) / static_cast<double>(lit.size());
 }
 
-void case_a_shadow_rays(benchmark::State& state) {
-  shadow_rays(state, case_a(), 0.2);
-}
-void case_b_shadow_rays(benchmark::State& state) {
-  shadow_rays(state, case_b(), 0.0225);
-}
-
-void case_a_gather(benchmark::State& state) {
-  gather(state, case_a());
-}
-void case_b_gather(benchmark::State& state) {
-  gather(state, case_b());
-}
 void stasis_30_deg_gather(benchmark::State& state) {
   const Experiment stasis =
       read_experiment(std::string(PHOTORQUE_SOURCE_DIR) + "/scenes/stasis/nominal.toml");
@@ -389,65 +376,45 @@ void stasis_30_deg_gather(benchmark::State& state) {
   }
 }
 
-void case_a_forward(benchmark::State& state) {
-  forward(state, case_a());
-}
-void case_a_bare_embree(benchmark::State& state) {
-  bare_embree(state, case_a(), false);
-}
-void case_a_sorted_embree(benchmark::State& state) {
-  bare_embree(state, case_a(), true);
-}
-void case_b_forward(benchmark::State& state) {
-  forward(state, case_b());
-}
-void case_b_bare_embree(benchmark::State& state) {
-  bare_embree(state, case_b(), false);
-}
-void case_b_sorted_embree(benchmark::State& state) {
-  bare_embree(state, case_b(), true);
+template <class Run>
+benchmark::internal::Benchmark* add(const char* name, const Run& run) {
+  return benchmark::RegisterBenchmark(name, run)->UseRealTime()->Unit(benchmark::kMillisecond);
 }
 
-void one_mirror_sun(benchmark::State& state) {
-  sunlight(state, one_mirror(false));
+void add_all() {
+  using State = benchmark::State;
+  // Threads, binary logarithm of the rays.
+  add("one_mirror_sun", [](State& s) { sunlight(s, one_mirror(false)); })
+      ->Args({1, 18})
+      ->Args({1, 22});
+  add("one_mirror_whole_disc", [](State& s) { sunlight(s, one_mirror(true)); })
+      ->Args({1, 22})
+      ->Args({1, 26});
+  // Threads, points per replicate in bins that may be shaded.
+  add("case_a_gather", [](State& s) { gather(s, case_a()); })->Args({1, 16})->Args({2, 16});
+  add("case_b_gather", [](State& s) { gather(s, case_b()); })->Args({1, 1})->Args({2, 1});
+  add("stasis_30_deg_gather", stasis_30_deg_gather)->Args({1, 16})->Args({2, 16});
+  // Threads.
+  const auto add_by_threads = [](const char* name, const auto& run) {
+    add(name, run)->Arg(1)->Arg(2);
+  };
+  add_by_threads("case_a_shadow_rays", [](State& s) { shadow_rays(s, case_a(), 0.2); });
+  add_by_threads("case_b_shadow_rays", [](State& s) { shadow_rays(s, case_b(), 0.0225); });
+  add_by_threads("case_a_forward", [](State& s) { forward(s, case_a()); });
+  add_by_threads("case_a_bare_embree", [](State& s) { bare_embree(s, case_a(), false); });
+  add_by_threads("case_a_sorted_embree", [](State& s) { bare_embree(s, case_a(), true); });
+  add_by_threads("case_b_forward", [](State& s) { forward(s, case_b()); });
+  add_by_threads("case_b_bare_embree", [](State& s) { bare_embree(s, case_b(), false); });
+  add_by_threads("case_b_sorted_embree", [](State& s) { bare_embree(s, case_b(), true); });
 }
-void one_mirror_whole_disc(benchmark::State& state) {
-  sunlight(state, one_mirror(true));
-}
-
-// Threads, binary logarithm of the rays.
-BENCHMARK(one_mirror_sun)
-    ->Args({1, 18})
-    ->Args({1, 22})
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK(one_mirror_whole_disc)
-    ->Args({1, 22})
-    ->Args({1, 26})
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
-// Threads, points per replicate in bins that may be shaded.
-BENCHMARK(case_a_gather)
-    ->Args({1, 16})
-    ->Args({2, 16})
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK(case_b_gather)->Args({1, 1})->Args({2, 1})->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(stasis_30_deg_gather)
-    ->Args({1, 16})
-    ->Args({2, 16})
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK(case_a_shadow_rays)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(case_b_shadow_rays)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(case_a_forward)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(case_a_bare_embree)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(case_a_sorted_embree)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(case_b_forward)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(case_b_bare_embree)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(case_b_sorted_embree)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace photorque
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  photorque::add_all();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+}

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/constants.h"
 #include "core/parallel.h"
 #include "core/text/format.h"
 #include "tools/coupling/direction_map.h"

@@ -2,7 +2,6 @@
 // attitude.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>

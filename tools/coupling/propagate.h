@@ -9,7 +9,6 @@
 
 #include "attitude/model/disturbance.h"
 #include "tools/coupling/couple.h"
-#include "tools/runs/attitude_run.h"
 #include "tools/runs/result.h"
 
 namespace photorque {

@@ -4,9 +4,7 @@
 #include <array>
 #include <condition_variable>
 #include <cstdint>
-#include <filesystem>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <thread>
 #include <vector>

@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "core/text/format.h"
-#include "core/text/parse.h"
 #include "scenes/experiment/document.h"
 
 namespace photorque {

@@ -1,6 +1,5 @@
 #include "tools/keys/registry.h"
 
-#include <algorithm>
 #include <set>
 #include <string>
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/constants.h"
 #include "raytrace/tracing/view.h"
 #include "tools/pages/charts.h"
 #include "tools/pages/parts.h"

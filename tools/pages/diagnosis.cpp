@@ -3,9 +3,7 @@
 #include <filesystem>
 #include <set>
 
-#include "attitude/estimation/fit.h"
 #include "attitude/propagation/run.h"
-#include "core/text/format.h"
 #include "scenes/experiment/toml.h"
 #include "tools/pages/charts.h"
 #include "tools/pages/parts.h"

@@ -19,7 +19,6 @@
 #include "core/provenance.h"
 #include "core/settings/settings.h"
 #include "core/text/format.h"
-#include "core/text/parse.h"
 #include "images/writers/loading.h"
 #include "images/writers/staged_files.h"
 #include "tools/program/command_line.h"

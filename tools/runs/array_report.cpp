@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/constants.h"
-#include "core/errors.h"
 #include "raytrace/receiver.h"
 #include "tools/runs/array_power.h"
 

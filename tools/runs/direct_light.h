@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "core/wrench.h"
 #include "raytrace/tracing/tracer.h"
 #include "receivers/gather/gather.h"
 #include "scenes/experiment/experiment.h"

@@ -1,8 +1,6 @@
 // The ways themselves, each from its table of [supply_trade].
 #pragma once
 
-#include <functional>
-
 #include "tools/runs/console.h"
 #include "tools/runs/options.h"
 #include "tools/supply/trade.h"

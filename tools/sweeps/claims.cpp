@@ -5,7 +5,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
 #include "core/errors.h"
 #include "core/provenance.h"
@@ -34,20 +33,6 @@ bool lock_byte(int descriptor, int64_t byte, short how, bool wait) {
 
 }  // namespace
 
-Claims::Claim::Claim(Claim&& other) noexcept : descriptor_(other.descriptor_), byte_(other.byte_) {
-  other.descriptor_ = -1;
-}
-
-Claims::Claim& Claims::Claim::operator=(Claim&& other) noexcept {
-  std::swap(descriptor_, other.descriptor_);
-  std::swap(byte_, other.byte_);
-  return *this;
-}
-
-Claims::Claim::~Claim() {
-  if (descriptor_ >= 0) lock_byte(descriptor_, byte_, F_UNLCK, false);
-}
-
 Claims::Claims(const std::filesystem::path& path)
     : descriptor_(::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666)) {
   if (descriptor_ < 0) {
@@ -59,16 +44,20 @@ Claims::~Claims() {
   ::close(descriptor_);
 }
 
-std::optional<Claims::Claim> Claims::take(const std::string& name) const {
+Claims::Claim Claims::held(int64_t byte) const {
+  return {this,
+          [byte](const Claims* claims) { lock_byte(claims->descriptor_, byte, F_UNLCK, false); }};
+}
+
+Claims::Claim Claims::take(const std::string& name) const {
   const int64_t byte = byte_of(name);
-  if (!lock_byte(descriptor_, byte, F_WRLCK, false)) return std::nullopt;
-  return Claim(descriptor_, byte);
+  return lock_byte(descriptor_, byte, F_WRLCK, false) ? held(byte) : nullptr;
 }
 
 Claims::Claim Claims::wait_for(const std::string& name) const {
   const int64_t byte = byte_of(name);
   lock_byte(descriptor_, byte, F_WRLCK, true);
-  return {descriptor_, byte};
+  return held(byte);
 }
 
 }  // namespace photorque

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
+#include <memory>
 #include <string>
 
 namespace photorque {
@@ -12,21 +12,8 @@ namespace photorque {
 // without locks: everybody gets every claim.)
 class Claims {
  public:
-  // A claim on a run; it ends with the lifetime of the object.
-  class Claim {
-   public:
-    Claim(Claim&& other) noexcept;
-    ~Claim();
-    Claim(const Claim&) = delete;
-    Claim& operator=(const Claim&) = delete;
-    Claim& operator=(Claim&& other) noexcept;
-
-   private:
-    friend class Claims;
-    Claim(int descriptor, int64_t byte) : descriptor_(descriptor), byte_(byte) {}
-    int descriptor_;
-    int64_t byte_;
-  };
+  // A claim on a run; it ends with the last copy.
+  using Claim = std::shared_ptr<const void>;
 
   // The file is made if absent.
   explicit Claims(const std::filesystem::path& path);
@@ -34,12 +21,14 @@ class Claims {
   Claims(const Claims&) = delete;
   Claims& operator=(const Claims&) = delete;
 
-  // Claims a run; empty if another process has it.
-  std::optional<Claim> take(const std::string& name) const;
+  // Claims a run; null if another process has it.
+  Claim take(const std::string& name) const;
   // When the others are done with it.
   Claim wait_for(const std::string& name) const;
 
  private:
+  Claim held(int64_t byte) const;
+
   int descriptor_ = -1;
 };
 

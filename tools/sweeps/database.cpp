@@ -3,7 +3,6 @@
 #include <sqlite3.h>
 
 #include <chrono>
-#include <cmath>
 #include <limits>
 #include <thread>
 

@@ -121,7 +121,7 @@ bool RunEngine::settle(const Changes& changes, RunOutcome& outcome) {
     return true;
   }
   std::optional<RunOutcome> found = stored(hash);
-  std::optional<Claims::Claim> claim;
+  Claims::Claim claim;
   if (!found) {
     claim = claims_->take(hash);
     if (!claim) return false;

@@ -1,7 +1,6 @@
 #include "tools/sweeps/evaluator.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
 namespace photorque {

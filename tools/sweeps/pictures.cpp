@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
-#include "core/text/format.h"
 #include "core/text/parse.h"
 #include "tools/sweeps/labels.h"
 

@@ -1,7 +1,6 @@
 // Designs as they would be built: drawn within their tolerances, the same draws for every design.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "core/product.h"

@@ -13,7 +13,6 @@
 #include "attitude/propagation/run.h"
 #include "attitude/recordings/recording.h"
 #include "attitude/studies/budget.h"
-#include "core/constants.h"
 #include "core/errors.h"
 #include "core/text/format.h"
 #include "diagnosis/light/model/lab.h"

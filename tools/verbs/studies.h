@@ -1,8 +1,6 @@
 // Shared by `sweep` and `optimise`: the command of their runs, and their results.
 #pragma once
 
-#include <functional>
-#include <string>
 #include <vector>
 
 #include "core/product.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "attitude/environment/environment.h"
-#include "core/constants.h"
 
 namespace photorque {
 

@@ -13,7 +13,6 @@
 //
 // Per ray, the tracer counts momentum in minus momentum out; eq. 29's cosine is inside the
 // irradiance already (docs/physics.md).
-#include <array>
 
 #include "attitude/disturbances/fields/torque_surface.h"
 #include "attitude/disturbances/kind.h"

@@ -1,6 +1,5 @@
 // The keys of a torque without a law, which shape.cpp reads: those of every variable and function.
 #include "attitude/disturbances/unknown/shape.h"
-#include "core/constants.h"
 #include "core/settings/typed_keys.h"
 
 namespace photorque {

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 
-#include "attitude/propagation/run.h"
 #include "core/constants.h"
 #include "diagnosis/attitude/effects/trial.h"
 

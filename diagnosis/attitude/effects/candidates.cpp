@@ -5,7 +5,6 @@
 
 #include "attitude/estimation/swing.h"
 #include "attitude/propagation/run.h"
-#include "core/constants.h"
 #include "diagnosis/attitude/effects/trial.h"
 
 namespace photorque {

@@ -1,7 +1,5 @@
 #include "diagnosis/attitude/effects/empirical.h"
 
-#include <cmath>
-
 namespace photorque {
 namespace {
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "attitude/observation/prediction.h"
-#include "diagnosis/attitude/effects/scan.h"
 #include "diagnosis/attitude/effects/screen.h"
 
 namespace photorque {

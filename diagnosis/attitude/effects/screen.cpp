@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "attitude/estimation/fit.h"
-#include "attitude/propagation/run.h"
 
 namespace photorque {
 namespace {

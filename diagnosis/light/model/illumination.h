@@ -8,7 +8,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <vector>
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 
-#include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/quadrature.h"
 #include "core/settings/typed_keys.h"

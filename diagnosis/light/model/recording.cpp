@@ -9,7 +9,6 @@
 
 #include "attitude/recordings/named_columns.h"
 #include "attitude/recordings/text_lines.h"
-#include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/median.h"
 #include "core/numerics/random.h"

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <sstream>
-#include <string_view>
 
 #include "core/errors.h"
 

@@ -1,7 +1,6 @@
 // Fuzz target: any bytes, given to the gate of `serve` as they would come over the network: from
 // another sender and from the client, as they are and with a checksum that is right. Nothing but a
 // whole packet of the client's kinds, finite and within its bounds, may pass.
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

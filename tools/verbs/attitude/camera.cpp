@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "attitude/propagation/run.h"
-#include "core/constants.h"
 #include "core/errors.h"
 #include "tools/runs/attitude_run.h"
 #include "tools/verbs/verb.h"
