@@ -230,7 +230,6 @@ bool Sensitivity::settle(size_t first, double tolerance) {
   for (size_t k = 0; k < group_size; ++k) {
     variable[k] = moving_[std::min(first + k, moving_.size() - 1)];
   }
-  static_assert(std::is_trivially_copyable_v<Row>);
   std::vector<Row> rows(n);
   for (size_t c = 0; c < n; ++c) {
     for (size_t k = 0; k < group_size; ++k) {

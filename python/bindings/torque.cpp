@@ -110,7 +110,7 @@ class OwnTorque final : public TorqueLaw<OwnTorque> {
       DualLanes sum(at(0));
       for (size_t v = 0; v < variables; ++v) {
         const Lanes slope = (0.5 / step) * (at(1 + 2 * v) - at(2 + 2 * v));
-        for (size_t p = 0; p < DualLanes::block; ++p) sum.partial[p] += slope * x[v].partial[p];
+        sum += DualLanes::chain(x[v], 0.0, slope);
       }
       result[k] = sum;
     }
