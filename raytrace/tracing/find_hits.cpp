@@ -152,7 +152,7 @@ void locate_hits(const TraceableScene::Data& scene, int depth, HitBuffer& buffer
   Hits& hits = buffer.hits;
   const auto& ray = buffer.ray;
   std::fill_n(hits.depth.begin(), hits.count, static_cast<uint16_t>(depth));
-  const bool one_instance = on_one_instance(hits);
+  const bool one_instance = hits.count > 0 && on_one_instance(hits);
   if (one_instance && scene.flat[hits.instance[0]] != 0) {
     const TrianglePlane& plane = scene.plane(hits.instance[0], 0);
     const std::array<double, 4> same = {plane.normal[0], plane.normal[1], plane.normal[2],
