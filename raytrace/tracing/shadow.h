@@ -32,7 +32,7 @@ struct Occluder {
   std::vector<Face> faces;  // of a closed convex body, whose surface they are; else empty
 };
 
-// What can shade a plane: the triangles of a scene that reach above it.
+// The triangles of a scene that reach above a plane, and so can shade it.
 std::vector<Occluder> occluders_above(const Scene& scene, const Vec3& plane_point_m,
                                       const Vec3& plane_normal);
 

@@ -22,7 +22,7 @@ Vec2 cell_of(const SurfaceGrid& grid, const Vec3& position_m) {
       (grid.v_axis_body.dot(position_m) - grid.v_low) / (grid.v_high - grid.v_low) * grid.height};
 }
 
-// What instances are in each bin.
+// The instances in each bin.
 struct BinContent {
   static constexpr uint32_t none = ~0u, several = none - 1;
   std::vector<uint32_t> instance;  // by bin

@@ -223,15 +223,28 @@ size_t first_state(const AttitudeModel& model, size_t disturbance) {
   return first;
 }
 
+// For every candidate the index of the same one among `others`, each of which is used once; the
+// number of others if there is none.
+std::vector<size_t> counterparts(const std::vector<size_t>& candidates,
+                                 const std::vector<size_t>& others) {
+  std::vector<bool> is_taken(others.size(), false);
+  std::vector<size_t> result;
+  for (const size_t candidate : candidates) {
+    size_t j = 0;
+    while (j < others.size() && (is_taken[j] || others[j] != candidate)) ++j;
+    if (j < others.size()) is_taken[j] = true;
+    result.push_back(j);
+  }
+  return result;
+}
+
 // Lets candidates that `from` has too begin in each run as there: parts that hang deflected swing
 // without any push.
 void begin_as(const Trial& from, const Trial& trial, Hypothesis& h) {
-  std::vector<bool> is_taken(from.candidates.size(), false);
-  for (size_t i = 0; i < trial.candidates.size(); ++i) {
-    size_t j = 0;
-    while (j < is_taken.size() && (is_taken[j] || from.candidates[j] != trial.candidates[i])) ++j;
-    if (j == is_taken.size()) continue;
-    is_taken[j] = true;
+  const std::vector<size_t> same = counterparts(trial.candidates, from.candidates);
+  for (size_t i = 0; i < same.size(); ++i) {
+    const size_t j = same[i];
+    if (j == from.candidates.size()) continue;
     const size_t count = h.model.disturbances[trial.disturbances[i]].states.size();
     const size_t source = first_state(from.fit.best.model, from.disturbances[j]),
                  target = first_state(h.model, trial.disturbances[i]);
@@ -345,13 +358,10 @@ Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
   const std::vector<Disturbance>& source = other.fit.best.model.disturbances;
   const size_t nominal = to.size() - trial.candidates.size();
   for (size_t d = 0; d < nominal; ++d) to[d].parameters = source[d].parameters;
-  std::vector<bool> is_taken(other.candidates.size(), false);
-  for (size_t i = 0; i < trial.candidates.size(); ++i) {
-    size_t j = 0;
-    while (j < is_taken.size() && (is_taken[j] || other.candidates[j] != trial.candidates[i])) ++j;
-    if (j == is_taken.size()) continue;
-    is_taken[j] = true;
-    to[trial.disturbances[i]].parameters = source[other.disturbances[j]].parameters;
+  const std::vector<size_t> same = counterparts(trial.candidates, other.candidates);
+  for (size_t i = 0; i < same.size(); ++i) {
+    if (same[i] == other.candidates.size()) continue;
+    to[trial.disturbances[i]].parameters = source[other.disturbances[same[i]]].parameters;
   }
   std::vector<RunStart> starts = other.fit.best.runs;
   for (size_t run = 0; run < starts.size(); ++run) {
