@@ -44,8 +44,8 @@ TEST_F(WarmArrayCommand, PowerIsThatOfCellsInTheSteadyState) {
   EXPECT_THAT(out_, HasSubstr("as stated"));
   EXPECT_EQ(value(same, "cell_temperature_is_stated"), 1.0);
   EXPECT_NEAR(value(same, "array_power_W"), value(steady, "array_power_W"), 1e-6);
-  const double slope_W_K = 0.5 * (figure(stated(kelvin + 1.0), "array_power_W") -
-                                  figure(stated(kelvin - 1.0), "array_power_W"));
+  const double slope_W_K = 0.5 * (value(stated(kelvin + 1.0), "array_power_W") -
+                                  value(stated(kelvin - 1.0), "array_power_W"));
   EXPECT_LT(slope_W_K, -0.05);
   EXPECT_NEAR(value(steady, "array_power_slope_W_K"), slope_W_K, 1e-3 * -slope_W_K);
 }
