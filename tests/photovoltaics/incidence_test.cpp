@@ -11,6 +11,7 @@
 #include "raytrace/surfaces/glass.h"
 #include "tests/raytrace/test_scenes.h"
 #include "tests/receivers/receiver_scenes.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -155,7 +156,7 @@ TEST(IncidenceReceiver, GlassOfTheSurfaceItselfIsNotCountedTwice) {
   const LitPlate lit = lit_plate(behind_glass(black(), 1.5));
   ASSERT_TRUE(has_own_front(lit.scene, lit.grid));
   EXPECT_NEAR(traced_fraction(lit, std::nullopt, std::atan(1.5)), brewster_modifier(1.5), 1e-6);
-  EXPECT_THAT(fixtures::input_error_of([&] {
+  EXPECT_THAT(refusal_of([&] {
                 IncidenceReceiver(lit.scene, lit.grid, clear_glass(1.5), std::array{any_m},
                                   {"array.toml", 5});
               }),
@@ -225,7 +226,7 @@ Settings cover_settings(const std::vector<std::pair<std::string, SettingsNode>>&
 TEST(CellFront, WrongCoversNameTheirKey) {
   using fixtures::node_of;
   const auto message = [](const Settings& settings) {
-    return fixtures::input_error_of([&] { read_cell_front(settings); });
+    return refusal_of([&] { read_cell_front(settings); });
   };
   EXPECT_THAT(message(cover_settings({{"refractive_index", node_of(0.5)}})),
               testing::HasSubstr("refractive_index"));

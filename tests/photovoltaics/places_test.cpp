@@ -8,11 +8,11 @@
 
 #include "photovoltaics/array/array.h"
 #include "tests/receivers/receiver_scenes.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
 
-using fixtures::input_error_of;
 using fixtures::plate;
 
 // Appends a mesh with separate vertices.
@@ -173,7 +173,7 @@ TEST(CellPlaces, WrongPlacesNameTheirKey) {
   const Scene scene = fixtures::scene_of(plate(0, 0.29, 0, 0.19));
   const SurfaceGrid grid = grid_over(scene);
   const auto message = [&](const std::vector<std::pair<std::string, SettingsNode>>& keys) {
-    return input_error_of([&] { read_cell_places(fixtures::settings_of(keys), scene, grid); });
+    return refusal_of([&] { read_cell_places(fixtures::settings_of(keys), scene, grid); });
   };
   const auto rectangles = [](std::vector<SettingsNode> all) {
     SettingsNode node;

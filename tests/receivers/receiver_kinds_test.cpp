@@ -5,6 +5,7 @@
 
 #include "receiver_scenes.h"
 #include "receivers/kind.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -12,7 +13,6 @@ namespace {
 using fixtures::add_instance;
 using fixtures::HitMaker;
 using fixtures::hits_of;
-using fixtures::input_error_of;
 using fixtures::node_of;
 using fixtures::plate;
 using fixtures::settings_of;
@@ -125,7 +125,7 @@ TEST_P(EveryReceiver, IsDarkWithoutLight) {
 }
 
 TEST_P(EveryReceiver, NamesTheNearestNode) {
-  const std::string message = input_error_of([&] {
+  const std::string message = refusal_of([&] {
     GetParam().make(settings_of({{"node", node_of("solar_aray")}}), two_plates());
   });
   EXPECT_THAT(message, AllOf(HasSubstr("test.toml:7: receiver[0].node"), HasSubstr("solar_aray"),
@@ -138,7 +138,7 @@ TEST_P(EveryReceiver, ReadsEveryDeclaredKeyAndNoOther) {
                                          {"name", node_of("wing 1/left")},
                                          {"colour", node_of("red")}});
   const auto receiver = GetParam().make(settings, two_plates()).receiver;
-  EXPECT_THAT(input_error_of([&] { settings.finish(); }), HasSubstr("colour"));
+  EXPECT_THAT(refusal_of([&] { settings.finish(); }), HasSubstr("colour"));
   const Product product = receiver->product(sums_of(*receiver, {{}, {}}));
   EXPECT_THAT(product.quantities.front().name, HasSubstr("wing_1_left"));
 }
@@ -150,7 +150,7 @@ TEST(ReceiverSettings, GridKeysAreChecked) {
   const ReceiverKind kind = all_receiver_kinds().front();
   ASSERT_EQ(kind.name, "flux_map");
   const auto message = [&](const std::string& key, const SettingsNode& value) {
-    return input_error_of([&] {
+    return refusal_of([&] {
       kind.make(settings_of({{"node", node_of("bottom")}, {key, value}}), two_plates());
     });
   };

@@ -180,17 +180,6 @@ inline Settings settings_of(const std::vector<std::pair<std::string, SettingsNod
   return Settings(std::make_shared<const SettingsNode>(root), "receiver[0]");
 }
 
-// The message of the InputError that `action` throws; empty if it throws none.
-template <typename Action>
-std::string input_error_of(const Action& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
 inline const Map& map_named(const Product& product, const std::string& name) {
   for (const Map& map : product.maps) {
     if (map.name == name) return map;

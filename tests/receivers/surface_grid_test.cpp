@@ -5,12 +5,12 @@
 #include <random>
 
 #include "receiver_scenes.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
 
 using fixtures::box;
-using fixtures::input_error_of;
 using fixtures::plate;
 using fixtures::polygon;
 using fixtures::ring;
@@ -177,7 +177,7 @@ TEST(SurfaceGrid, CurvedSurfaceKeepsItsTrueArea) {
 
 TEST(SurfaceGrid, ClosedBodyNeedsADirection) {
   const Scene scene = scene_of(box(0.2, 0.1, 0.01));
-  EXPECT_THAT(input_error_of([&] { grid_over(scene, 10, 10); }), HasSubstr("closed surface"));
+  EXPECT_THAT(refusal_of([&] { grid_over(scene, 10, 10); }), HasSubstr("closed surface"));
   const SurfaceGrid top = grid_over(scene, 10, 10, facing(Vec3::UnitZ()));
   EXPECT_NEAR(top.total_area_m2(), 0.4 * 0.2, 1e-15);  // neither the bottom nor the sides
   const SurfaceGrid side = grid_over(scene, 10, 10, facing(-Vec3::UnitY()));
@@ -220,21 +220,21 @@ TEST(SurfaceGrid, TextureBinsHoldTheAreaThatMapsThere) {
 TEST(SurfaceGrid, TextureMustBeThereAndInRange) {
   Mesh bare = plate(0, 1, 0, 1);
   bare.uv.clear();
-  EXPECT_THAT(input_error_of([&] { grid_over(scene_of(bare), 2, 2, over_texture()); }),
+  EXPECT_THAT(refusal_of([&] { grid_over(scene_of(bare), 2, 2, over_texture()); }),
               HasSubstr("without texture coordinates"));
   Mesh repeated = plate(0, 1, 0, 1);
   repeated.uv[2] = {1, 3};
-  EXPECT_THAT(input_error_of([&] { grid_over(scene_of(repeated), 2, 2, over_texture()); }),
+  EXPECT_THAT(refusal_of([&] { grid_over(scene_of(repeated), 2, 2, over_texture()); }),
               HasSubstr("from 0 to 1"));
 }
 
 TEST(SurfaceGrid, RefusesBinsOutOfRangeAndNoArea) {
   const Scene scene = scene_of(plate(0, 1, 0, 1));
-  EXPECT_THAT(input_error_of([&] { grid_over(scene, 0, 5); }), HasSubstr("1 to 4096"));
-  EXPECT_THAT(input_error_of([&] { grid_over(scene, 5, 4097); }), HasSubstr("4097"));
-  EXPECT_THAT(input_error_of([&] { grid_over(scene_of(plate(0, 1, 2, 2)), 5, 5); }),
+  EXPECT_THAT(refusal_of([&] { grid_over(scene, 0, 5); }), HasSubstr("1 to 4096"));
+  EXPECT_THAT(refusal_of([&] { grid_over(scene, 5, 4097); }), HasSubstr("4097"));
+  EXPECT_THAT(refusal_of([&] { grid_over(scene_of(plate(0, 1, 2, 2)), 5, 5); }),
               HasSubstr("zero area"));
-  EXPECT_THAT(input_error_of([&] { grid_over(scene, 5, 5, facing(-Vec3::UnitZ())); }),
+  EXPECT_THAT(refusal_of([&] { grid_over(scene, 5, 5, facing(-Vec3::UnitZ())); }),
               HasSubstr("no surface that faces that way"));
 }
 
