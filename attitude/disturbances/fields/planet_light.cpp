@@ -92,7 +92,7 @@ class PlanetLight final : public TorqueLaw<PlanetLight> {
         const Mat3& of = axes[static_cast<size_t>(i)];
         const PlanetPart& part = parts[static_cast<size_t>(i)][k];
         const Vec3 way = of * part.towards;
-        for (int k = 0; k < 3; ++k) towards[k].set(i, way[k]);
+        for (int axis = 0; axis < 3; ++axis) towards[axis].set(i, way[axis]);
         const PlanetIrradiance light =
             planet_irradiance(part, options_.surface, of, options_.to_sun, options_.season,
                               options_.irradiance_W_m2 / options_.table_W_m2);
