@@ -254,9 +254,15 @@ class Weighing {
     const auto is_limit = [&](size_t c) { return all[c].is_limit_of_swinging; };
     const auto swings = [&](size_t c) { return all[c].swings; };
     if (std::ranges::none_of(from.joint.candidates, is_limit)) return;
+    const Effort effort = within_reach(until_convergence(limits_), from.joint, limits_);
+    const auto add_if_near = [&](Trial joint) {
+      if (joint.log_evidence < best().joint.log_evidence - limits_.held_out.within) return;
+      Trial train = assembled(joint, domain_.terms_of(joint), until_convergence(limits_));
+      add_leader(std::move(train), std::move(joint));
+    };
     std::vector<Trial> parents = {from.joint};
     if (std::ranges::any_of(from.joint.candidates, swings)) {
-      parents.push_back(together_without(from.joint, swings));
+      parents.push_back(together_without(from.joint, swings, until_convergence(limits_)));
     }
     for (const Trial& about : parents) {
       std::vector<size_t> swinging;
@@ -270,21 +276,20 @@ class Weighing {
         for (const auto& start : starts[i]) tasks.push_back({swinging[i], start});
       }
       for (const Trial& both : extend_by_tasks(domain_, about, tasks, all_runs_, threads_)) {
-        Trial joint = together_without(both, is_limit);
-        Trial train = assembled(joint, domain_.terms_of(joint), until_convergence(limits_));
-        add_leader(std::move(train), std::move(joint));
+        add_if_near(together_without(both, is_limit, effort));
       }
     }
   }
 
   // Fits the other candidates to all runs.
   template <class Condition>
-  Trial together_without(const Trial& joint, const Condition& is_left_out) const {
+  Trial together_without(const Trial& joint, const Condition& is_left_out,
+                         const Effort& effort) const {
     Members<typename D::Start> others;
     for (const auto& term : domain_.terms_of(joint)) {
       if (!is_left_out(term.candidate)) others.push_back({term});
     }
-    return domain_.assemble(joint, others, all_runs_, until_convergence(limits_));
+    return domain_.assemble(joint, others, all_runs_, effort);
   }
 
   // Refits the best explanation without each of its names, to measure the rise of χ² for each name.
