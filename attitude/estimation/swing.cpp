@@ -49,7 +49,7 @@ struct LocalMotion {
 constexpr int steps_per_period = 32;
 
 LocalMotion local_motion(const AxisReadings& read) {
-  constexpr size_t fewest = 8, fewest_periods = 3;
+  constexpr size_t fewest = 6, fewest_periods = 3;
   LocalMotion result;
   const double whole_s = period_s(read);
   if (!(whole_s > 0.0)) return result;
@@ -369,10 +369,10 @@ size_t released_at(const Observation& rows, const Vec3& axis, size_t first, size
 RestoringLaw restoring_law(const Observation& rows, const Vec3& axis) {
   constexpr double beyond_chance = 16.0, clearly = 0.1;
   const AxisReadings read = swing_of(rows, axis, 0, rows.blocks());
-  const LocalMotion local = motion_of(read);
-  if (local.row.empty()) return RestoringLaw::unclear;
+  if (read.row.empty()) return RestoringLaw::unclear;
   if (const RestoringLaw law = law_of_periods(read); law != RestoringLaw::unclear) return law;
-  if (!local.is_fine) return RestoringLaw::unclear;
+  const LocalMotion local = motion_of(read);
+  if (local.row.empty() || !local.is_fine) return RestoringLaw::unclear;
   const Eigen::MatrixXd& motion = local.motion;
   const auto angle = motion.col(0).array();
   const Eigen::VectorXd rate = without_slow_part(motion.col(1));
