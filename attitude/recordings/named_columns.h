@@ -11,8 +11,10 @@
 
 namespace photorque {
 
-// All lines of a file, which may be compressed, each with "\n". InputError as by TextLines.
-std::string whole_text(const std::filesystem::path& path);
+// All lines of a file, which may be compressed, each with "\n". `header` and InputError as for
+// TextLines.
+std::string whole_text(const std::filesystem::path& path,
+                       const std::vector<std::string>& header = {});
 
 // A cell of a header as UTF-8: bytes that are none are of Latin-1, as of "Winkel [\xb0]".
 std::string header_cell_text(std::string_view cell);

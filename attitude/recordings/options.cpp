@@ -14,6 +14,14 @@ constexpr OtherKey columns(
     "`{ gyro_x_rad_s = \"wx\", … }`: the file's name of a channel. A unit in the "
     "channel's key converts: `gyro_x_deg_s = \"wx\"`",
     {.usually = "names as they are"});
+constexpr TextsKey header("header",
+                          "the names of the columns of a file without a header: "
+                          "`[\"t_s\", \"angle_deg\"]`",
+                          {.optional = true});
+constexpr NumberKey rate("rate_Hz", Range{0.0, 1e9, true},
+                         "rows or video frames per second, of a file without a time. The time of a "
+                         "row is its number, or its value in the column `frame`, divided by this",
+                         {.optional = true});
 constexpr ChoiceKey angle_sequence(
     "angle_sequence",
     {{"found",
@@ -41,7 +49,7 @@ constexpr TableKey recording("recording", "how files of recordings are read");
 Key recording_table() {
   using namespace recording_key;
   return recording_key::recording.of(
-      {columns, angle_sequence, recording_key::remove_outliers, pivot});
+      {columns, header, rate, angle_sequence, recording_key::remove_outliers, pivot});
 }
 
 RecordingOptions read_recording_options(const Settings& settings) {
@@ -52,6 +60,8 @@ RecordingOptions read_recording_options(const Settings& settings) {
       options.columns[channel] = columns.text(channel);
     }
   }
+  if (settings.has(recording_key::header)) options.header = settings.get(recording_key::header);
+  if (settings.has(recording_key::rate)) options.rate_Hz = settings.get(recording_key::rate);
   options.remove_outliers = settings.get(recording_key::remove_outliers);
   if (settings.has(recording_key::pivot)) {
     const std::vector<double> pivot_m = settings.get(recording_key::pivot);

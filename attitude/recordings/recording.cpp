@@ -112,7 +112,7 @@ FileColumn column_named(const std::string& in_file, const RecordingOptions& opti
 class RecordingReader {
  public:
   RecordingReader(const std::filesystem::path& path, const RecordingOptions& options)
-      : path_(path), options_(options), lines_(path) {}
+      : path_(path), options_(options), lines_(path, options.header) {}
 
   Recording read() {
     if (is_message(path_, "AEM")) {
@@ -184,7 +184,8 @@ class RecordingReader {
     return true;
   }
 
-  // The header is the first line that names the time; the lines before it are preamble.
+  // The header is the first line that names the time (with a stated rate: the frame, or a channel).
+  // The lines before it are preamble.
   void read_header() {
     constexpr int max_preamble_lines = 10000;
     std::string_view line;
@@ -200,22 +201,32 @@ class RecordingReader {
       throw InputError({path_.string()}, "header", "an empty file",
                        "a header with t_s [s] and the channels, and rows of numbers");
     }
-    throw InputError({path_.string(), 1}, "header",
-                     "no line that names t_s (the first is " + in_quotes(first_line) + ")",
-                     "a header with t_s [s] and the channels, or a table [recording.columns] with "
-                     "the names of the columns; photorque diagnose --guess " +
-                         path_.filename().string() + " writes one");
+    const std::string named = options_.rate_Hz ? "frame or a channel" : "t_s";
+    throw InputError(
+        {path_.string(), 1}, "header",
+        "no line that names " + named + " (the first is " + in_quotes(first_line) + ")",
+        "a header with t_s [s] and the channels, or a table [recording.columns] with "
+        "the names of the columns; photorque diagnose --guess " +
+            path_.filename().string() + " writes one");
   }
 
   bool take_header(std::string_view line, char separator) {
     split_cells(line, separator, cells_);
     columns_.clear();
-    time_column_ = cells_.size();
+    time_column_.reset();
+    bool names_channel = false;
     for (size_t i = 0; i < cells_.size(); ++i) {
       columns_.push_back(column_named(header_cell_text(cells_[i]), options_));
-      if (columns_.back().name == "t_s") time_column_ = i;
+      const std::string& name = columns_.back().name;
+      names_channel = names_channel ||
+                      std::ranges::find(known_channels, name) != std::ranges::end(known_channels);
+      if (name == (options_.rate_Hz ? "frame" : "t_s")) time_column_ = i;
     }
-    if (time_column_ == cells_.size()) return false;
+    if (!time_column_ && !(options_.rate_Hz && names_channel)) return false;
+    if (options_.rate_Hz &&
+        std::ranges::find(columns_, "t_s", &FileColumn::name) != columns_.end()) {
+      throw error("rate_Hz", "a column with the time beside a stated rate", "only one of them");
+    }
     separator_ = separator;
     take_old_names();
     for (size_t i = 0; i < columns_.size(); ++i) {
@@ -262,11 +273,11 @@ class RecordingReader {
       }
       return;
     }
-    const std::optional<double> time = number_of(cells_[time_column_]);
-    const double time_s = time.value_or(empty_cell) * columns_[time_column_].to_SI;
+    const double time_s = time_of_row();
     if (!std::isfinite(time_s)) {  // of hours, say, as seconds
       if (++report.rows_without_time == 1) {
-        first_without_time_ = error("t_s", in_quotes(cells_[time_column_]), "a number");
+        first_without_time_ =
+            error(columns_[*time_column_].name, in_quotes(cells_[*time_column_]), "a number");
       }
       return;
     }
@@ -286,6 +297,14 @@ class RecordingReader {
       }
       recording_.channels[channel++].values.push_back(*value * columns_[i].to_SI);
     }
+  }
+
+  // NaN if the cell of the time is no number.
+  double time_of_row() {
+    if (!time_column_)
+      return static_cast<double>(recording_.report.rows_read - 1) / *options_.rate_Hz;
+    const double time = number_of(cells_[*time_column_]).value_or(empty_cell);
+    return options_.rate_Hz ? time / *options_.rate_Hz : time * columns_[*time_column_].to_SI;
   }
 
   // If commas do not separate cells, they may be decimal commas.
@@ -374,7 +393,7 @@ class RecordingReader {
   Recording recording_;
   std::vector<FileColumn> columns_;
   std::vector<std::string_view> cells_;
-  size_t time_column_ = 0;
+  std::optional<size_t> time_column_;  // none: rows are counted
   char separator_ = ',';
   int64_t kept_cells_ = 0;
   std::optional<InputError> first_malformed_, first_without_time_;
@@ -446,8 +465,8 @@ std::string header_cell_text(std::string_view cell) {
   return is_utf8 && following == 0 ? std::string(cell) : latin;
 }
 
-std::string whole_text(const std::filesystem::path& path) {
-  TextLines lines(path);
+std::string whole_text(const std::filesystem::path& path, const std::vector<std::string>& header) {
+  TextLines lines(path, header);
   std::string text;
   for (std::string_view line; lines.next(line);) {
     text += line;

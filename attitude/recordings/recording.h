@@ -80,6 +80,10 @@ struct RecordingOptions {
   // Names in the file by the channel they stand for: {"gyro_x_rad_s", "wx"}. A channel may be named
   // in another unit of its kind ("gyro_x_deg_s"); it is converted and renamed.
   std::map<std::string, std::string> columns = {};
+  std::vector<std::string> header = {};  // names of the columns of a file without a header
+  // Rows per second of a file without a time. A row's time is its number, or its value in the
+  // column `frame`, divided by this rate.
+  std::optional<double> rate_Hz = {};
   bool remove_outliers = true;
   std::string angle_sequence = {};  // of the recording
   // A point about which x_m, y_m turns: they are read as one angle from the vertical through it.
@@ -87,7 +91,7 @@ struct RecordingOptions {
   // Largest number of cells that are kept, times included (8 bytes each).
   int64_t max_cells = 150'000'000;
 };
-// Reads [recording] columns.
+// Reads [recording].
 RecordingOptions read_recording_options(const Settings& settings);
 
 // Throws InputError with file and line when the file cannot be read or decompressed, has no header

@@ -2,8 +2,11 @@
 
 #include <zlib.h>
 
+#include <algorithm>
+
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 
 namespace photorque {
@@ -20,12 +23,40 @@ struct TextLines::File {
   gzFile handle;
 };
 
-TextLines::TextLines(const std::filesystem::path& path) : path_(path) {
+TextLines::TextLines(const std::filesystem::path& path, const std::vector<std::string>& header)
+    : path_(path), header_(header) {
   require_plain_file(path);
   file_ = std::make_unique<File>(File{gzopen(path.c_str(), "rb")});
   if (file_->handle == nullptr) {
     throw InputError({path.string(), 0}, "", "no file that can be read", "a recording");
   }
+  if (!header_.empty()) skip_to_first_row();
+}
+
+void TextLines::skip_to_first_row() {
+  fill();
+  const auto is_number = [](std::string_view cell) {
+    std::string with_point(cell);
+    std::ranges::replace(with_point, ',', '.');
+    return cell.empty() || number_in(with_point).has_value();
+  };
+  std::vector<std::string_view> cells;
+  for (size_t end = 0; (end = buffer_.find('\n', begin_)) != std::string::npos;) {
+    const std::string_view line = trimmed(std::string_view(buffer_).substr(begin_, end - begin_));
+    for (const char separator : {';', '\t', ',', ' '}) {
+      split_cells(line, separator, cells);
+      if (line.empty() || cells.size() != header_.size() || !std::ranges::all_of(cells, is_number))
+        continue;
+      header_line_ = joined_text(header_, std::string(1, separator),
+                                 [](const std::string& name) { return "\"" + name + "\""; });
+      return;
+    }
+    begin_ = end + 1;
+    ++number_;
+  }
+  throw InputError({path_.string()}, "header",
+                   "no row of " + std::to_string(header_.size()) + " numbers at the beginning",
+                   "as many names as the file has columns");
 }
 
 TextLines::~TextLines() {
@@ -53,6 +84,11 @@ bool TextLines::fill() {
 }
 
 bool TextLines::next(std::string_view& line) {
+  if (!header_.empty()) {
+    line = header_line_;
+    header_.clear();
+    return true;
+  }
   size_t end = buffer_.find('\n', begin_);
   while (end == std::string::npos) {
     const size_t searched = buffer_.size() - begin_;

@@ -6,13 +6,18 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace photorque {
 
 class TextLines {
  public:
-  // InputError when the file cannot be opened. Files that are not compressed are read as they are.
-  explicit TextLines(const std::filesystem::path& path);
+  // Throws InputError if the file cannot be opened. Uncompressed files are read as they are. With
+  // `header`, the names of the columns of a file without a header: the first line is these names,
+  // separated as the first row of as many numbers, which follows; lines before that row are
+  // skipped.
+  explicit TextLines(const std::filesystem::path& path,
+                     const std::vector<std::string>& header = {});
   ~TextLines();
   TextLines(const TextLines&) = delete;
   TextLines& operator=(const TextLines&) = delete;
@@ -27,9 +32,12 @@ class TextLines {
  private:
   struct File;
   bool fill();
+  void skip_to_first_row();
 
   std::filesystem::path path_;
   std::unique_ptr<File> file_;
+  std::vector<std::string> header_;
+  std::string header_line_;  // until next() returns it
   std::string buffer_;
   size_t begin_ = 0;
   bool at_end_ = false;

@@ -96,7 +96,8 @@ void require_text(std::string_view begin, const InputLocation& where) {
   for (size_t i = 0; i < begin.size(); ++i) zeros[i % 2] += begin[i] == '\0' ? 1 : 0;
   const auto [few, many] = std::minmax(zeros[0], zeros[1]);
   if (marked || (begin.size() > 3 && 5 * many >= 2 * begin.size() && 10 * few <= many)) {
-    throw InputError(where, "", "UTF-16 text", "text in UTF-8 or ASCII");
+    throw InputError(where, "", "UTF-16 text",
+                     "text in UTF-8 or ASCII (iconv -f UTF-16 -t UTF-8 FILE > NEW_FILE converts)");
   }
   if (many > 0) throw InputError(where, "", "bytes that are no text", "a text file");
 }

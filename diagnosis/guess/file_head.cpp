@@ -41,7 +41,7 @@ std::optional<double> number_of_cell(std::string_view cell, char separator) {
 }
 
 std::optional<std::vector<double>> numbers_of(const std::vector<std::string_view>& cells,
-                                              char separator) {
+                                              char separator, size_t fewest_cells) {
   std::vector<double> numbers;
   bool any = false;
   for (const std::string_view cell : cells) {
@@ -52,7 +52,7 @@ std::optional<std::vector<double>> numbers_of(const std::vector<std::string_view
     any = any || number;
     numbers.push_back(number.value_or(NAN));
   }
-  if (!any || numbers.size() < 2) return std::nullopt;
+  if (!any || numbers.size() < fewest_cells) return std::nullopt;
   return numbers;
 }
 
@@ -62,9 +62,10 @@ struct NumberedLine {
 };
 
 // The first lines of a file without comments.
-std::vector<NumberedLine> first_lines(const std::filesystem::path& path) {
+std::vector<NumberedLine> first_lines(const std::filesystem::path& path,
+                                      const std::vector<std::string>& header) {
   constexpr size_t most = 400;
-  TextLines lines(path);
+  TextLines lines(path, header);
   std::vector<NumberedLine> first;
   std::string_view line;
   while (first.size() < most && lines.next(line)) {
@@ -77,11 +78,12 @@ std::vector<NumberedLine> first_lines(const std::filesystem::path& path) {
 
 // The first table between these separators; without names if the line above it has not as many
 // cells.
-std::optional<FileHead> table_in(const std::vector<NumberedLine>& lines, char separator) {
+std::optional<FileHead> table_in(const std::vector<NumberedLine>& lines, char separator,
+                                 size_t fewest_cells) {
   std::vector<std::string_view> cells, before;
   for (size_t i = 0; i < lines.size(); ++i) {
     split_cells(lines[i].text, separator, cells);
-    if (!numbers_of(cells, separator)) {
+    if (!numbers_of(cells, separator, fewest_cells)) {
       before = cells;
       continue;
     }
@@ -93,7 +95,7 @@ std::optional<FileHead> table_in(const std::vector<NumberedLine>& lines, char se
     if (i > 0 && before.size() == width) head.header.assign(before.begin(), before.end());
     for (; i < lines.size(); ++i) {
       split_cells(lines[i].text, separator, cells);
-      const auto row = numbers_of(cells, separator);
+      const auto row = numbers_of(cells, separator, fewest_cells);
       if (row && row->size() == width) head.rows.push_back(*row);
     }
     return head;
@@ -103,7 +105,7 @@ std::optional<FileHead> table_in(const std::vector<NumberedLine>& lines, char se
 
 // Names for a table without a header: the column that rises is the time, one beside it an angle,
 // two are coordinates; of more nothing is known.
-std::string proposed_names(const FileHead& table, char separator) {
+std::string proposed_names(const FileHead& table) {
   const size_t width = table.rows.front().size();
   size_t time = 0;
   for (size_t k = width; k-- > 0;) {
@@ -120,7 +122,7 @@ std::string proposed_names(const FileHead& table, char separator) {
   std::string names;
   size_t next = 0;
   for (size_t k = 0; k < width; ++k) {
-    if (k > 0) names += separator == '\t' ? "\\t" : std::string(1, separator);
+    if (k > 0) names += ',';
     if (k == time) {
       names += clock;
     } else {
@@ -130,56 +132,48 @@ std::string proposed_names(const FileHead& table, char separator) {
   return names;
 }
 
-InputError without_header(const std::filesystem::path& path, const FileHead& table,
-                          char separator) {
-  const std::string names = proposed_names(table, separator);
-  const int line = table.first_row_line;
-  const bool replaces = table.names_above > 1;
-  const std::string command = "sed -i '" + std::to_string(replaces ? table.line : line) +
-                              (replaces ? "c " : "i ") + names + "' " +
-                              shell_word(path.filename().string());
-  const size_t width = table.rows.front().size();
-  if (replaces) {
+// The command that names the columns of a file without a header.
+std::string command_with_names(const std::filesystem::path& path, const std::string& names) {
+  return "name the columns: photorque diagnose --guess " + shell_word(path.string()) +
+         " --columns " + names + " (write what they are)";
+}
+
+InputError without_header(const std::filesystem::path& path, const FileHead& table) {
+  const std::string width = std::to_string(table.rows.front().size()),
+                    names = proposed_names(table);
+  if (table.names_above > 1) {
     return {{path.string(), table.line},
             "header",
-            std::to_string(table.names_above) + " cells above rows of " + std::to_string(width) +
-                " numbers",
-            "a line above them that names the columns (" + command +
-                " replaces it; write what they are)"};
+            std::to_string(table.names_above) + " cells above rows of " + width + " numbers",
+            "a header with as many cells; " + command_with_names(path, names)};
   }
-  return {{path.string(), line},
+  return {{path.string(), table.first_row_line},
           "header",
-          line == 1 ? "numbers in the first line"
-                    : "rows of " + std::to_string(width) + " numbers without names",
-          "a line above them that names the columns (" + command +
-              " puts one there; write what they are)"};
+          table.first_row_line == 1 ? "numbers in the first line"
+                                    : "rows of " + width + " numbers without names",
+          "a header; " + command_with_names(path, names)};
 }
 
 }  // namespace
 
-FileHead head_of(const std::filesystem::path& path) {
-  const std::vector<NumberedLine> lines = first_lines(path);
+FileHead head_of(const std::filesystem::path& path, const std::vector<std::string>& header) {
+  const std::vector<NumberedLine> lines = first_lines(path, header);
+  const size_t fewest_cells = header.size() == 1 ? 1 : 2;
   std::optional<FileHead> unnamed;
-  char unnamed_separator = ',';
   for (const char separator : {',', ';', '\t', ' '}) {
-    auto table = table_in(lines, separator);
+    auto table = table_in(lines, separator, fewest_cells);
     if (!table) continue;
     if (!table->header.empty()) return *std::move(table);
-    if (!unnamed || table->rows.size() > unnamed->rows.size()) {
-      unnamed = std::move(table);
-      unnamed_separator = separator;
-    }
+    if (!unnamed || table->rows.size() > unnamed->rows.size()) unnamed = std::move(table);
   }
-  if (unnamed) throw without_header(path, *unnamed, unnamed_separator);
+  if (unnamed) throw without_header(path, *unnamed);
   const auto is_number = [](const NumberedLine& line) {
     return number_of_cell(trimmed(line.text), ';').has_value();
   };
   if (2 * std::ranges::count_if(lines, is_number) > static_cast<std::ptrdiff_t>(lines.size())) {
-    const std::string file = shell_word(path.filename().string());
     throw InputError({path.string()}, "header", "one column of numbers",
-                     "a time beside them: awk 'BEGIN {print \"t_s,rate_rad_s\"} {print (NR-1)/10 "
-                     "\",\" $1}' " +
-                         file + " > with_time.csv for ten a second (write what they are)");
+                     "a time beside them, or the readings per second; " +
+                         command_with_names(path, "rate_rad_s --rate-Hz 10"));
   }
   throw InputError({path.string()}, "header",
                    lines.empty() ? "an empty file"

@@ -15,10 +15,10 @@ struct FileHead {
   size_t names_above = 0;            // cells of the line above the first row
 };
 
-// The header and first rows of a CSV file, also with other separators. Throws InputError with the
-// remedy for a file without a header that has as many cells as the rows, with decimal commas, or in
-// UTF-16.
-FileHead head_of(const std::filesystem::path& path);
+// The header and first rows of a CSV file, also with other separators. `header` is for a file
+// without one (RecordingOptions::header). Throws InputError with the remedy for a file without a
+// header that has as many cells as the rows, with decimal commas, or in UTF-16.
+FileHead head_of(const std::filesystem::path& path, const std::vector<std::string>& header);
 
 // The unit of a clock by its steps: "s", "ms" or "us".
 std::string clock_unit(const FileHead& head, size_t column);

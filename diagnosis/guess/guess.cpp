@@ -20,8 +20,8 @@ struct MeasuredCurve {
   double misfit = INFINITY;  // rms relative to the short-circuit current
 };
 
-MeasuredCurve measured_curve(const fs::path& file, const LightColumns& columns) {
-  const LightRecording recording = read_light_recording(file, {}, columns);
+MeasuredCurve measured_curve(const fs::path& file, const RecordingOptions& reading) {
+  const LightRecording recording = read_light_recording(file, {}, reading);
   if (recording.kind != LightRecording::Kind::sweep) {
     throw InputError({file.string()}, "header", "another kind of recording than the first",
                      "curves of current over voltage alone");
@@ -62,10 +62,21 @@ int cells_in_series(double open_V) {
 
 }  // namespace
 
+void add_reading(TomlDocument& document, const RecordingOptions& reading) {
+  if (!reading.header.empty()) {
+    SettingsNode::Array names;
+    for (const std::string& name : reading.header) names.push_back({name});
+    document.set(document.table("recording"), "header", {names});
+  }
+  if (reading.rate_Hz) document.set(document.table("recording"), "rate_Hz", {*reading.rate_Hz});
+}
+
 void guess_module(TomlDocument& document, const std::vector<fs::path>& recordings,
-                  const fs::path& folder, const GuessedCurve& named) {
+                  const fs::path& folder, const GuessedCurve& named, RecordingOptions reading) {
+  reading.columns = named.columns;
   std::vector<MeasuredCurve> curves;
-  for (const fs::path& file : recordings) curves.push_back(measured_curve(file, named.columns));
+  for (const fs::path& file : recordings) curves.push_back(measured_curve(file, reading));
+  add_reading(document, reading);
   if (!named.because.empty()) document.comment("CONFIRM: " + named.because);
   for (const auto& [name, in_file] : named.columns) {
     document.set(document.table("recording"), "columns." + name, {in_file});
@@ -97,7 +108,7 @@ void guess_module(TomlDocument& document, const std::vector<fs::path>& recording
 }
 
 std::string guess_experiment(const std::vector<std::filesystem::path>& recordings,
-                             const std::filesystem::path& folder) {
+                             const std::filesystem::path& folder, const RecordingOptions& reading) {
   if (recordings.empty()) {
     throw InputError({}, "--guess", "nothing", "a recording (CSV), or several of one machine");
   }
@@ -107,26 +118,27 @@ std::string guess_experiment(const std::vector<std::filesystem::path>& recording
   TomlDocument document;
   document.add_to_head("Made by photorque diagnose --guess from " + names +
                        ". Values were read from there; assumptions are marked CONFIRM.");
-  if (!is_light_recording(recordings.front())) {
-    if (!has_motion(guess_columns(recordings.front()))) {
-      const GuessedCurve curve = guess_curve(recordings.front());
+  if (!is_light_recording(recordings.front(), reading)) {
+    if (!has_motion(guess_columns(recordings.front(), reading.header))) {
+      const GuessedCurve curve = guess_curve(recordings.front(), reading.header);
       if (!curve.columns.empty()) {
-        guess_module(document, recordings, folder, curve);
+        guess_module(document, recordings, folder, curve, reading);
         return document.text();
       }
     }
-    guess_motion(document, recordings);
+    guess_motion(document, recordings, reading);
     return document.text();
   }
-  const LightRecording first = read_light_recording(recordings.front(), {});
+  const LightRecording first = read_light_recording(recordings.front(), {}, reading);
   if (first.kind != LightRecording::Kind::sweep) {
     throw InputError({recordings.front().string()}, "header", "a recording of light on a scene",
                      "motion, or current over voltage: a scan or a run needs its scene, which "
                      "photorque new --scene MODEL begins");
   }
   // A current density requires an assumed area.
-  const GuessedCurve curve = guess_curve(recordings.front());
-  guess_module(document, recordings, folder, curve.because.empty() ? GuessedCurve{} : curve);
+  const GuessedCurve curve = guess_curve(recordings.front(), reading.header);
+  guess_module(document, recordings, folder, curve.because.empty() ? GuessedCurve{} : curve,
+               reading);
   return document.text();
 }
 

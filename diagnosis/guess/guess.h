@@ -7,19 +7,23 @@
 #include <string>
 #include <vector>
 
+#include "attitude/recordings/recording.h"
 #include "scenes/experiment/document.h"
 
 namespace photorque {
 
 // The text of an experiment file for `diagnose` in `folder`. Lines with an assumption contain
-// CONFIRM. All recordings must be of one machine and have the columns of the first. Throws
+// CONFIRM. All recordings must be of one machine and have the columns of the first. Of `reading`,
+// the header and the rate are used: they are those of files without a header or a time. Throws
 // InputError for files that are neither recordings of motion nor curves of current over voltage,
 // with the remedy if known.
 std::string guess_experiment(const std::vector<std::filesystem::path>& recordings,
-                             const std::filesystem::path& folder);
+                             const std::filesystem::path& folder,
+                             const RecordingOptions& reading = {});
 
 // Adds to the experiment the values that the recordings determine.
-void guess_motion(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings);
+void guess_motion(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings,
+                  const RecordingOptions& reading);
 
 // Columns of a curve by the names of a curve's columns ("voltage_V", "current_mA").
 struct GuessedCurve {
@@ -27,7 +31,11 @@ struct GuessedCurve {
   std::string because = {};                    // the assumption, if there is one
 };
 void guess_module(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings,
-                  const std::filesystem::path& folder, const GuessedCurve& named);
+                  const std::filesystem::path& folder, const GuessedCurve& named,
+                  RecordingOptions reading);
+
+// Writes header and rate into [recording] if they are stated.
+void add_reading(TomlDocument& experiment, const RecordingOptions& reading);
 
 struct GuessedColumn {
   std::string in_file;  // as in the header
@@ -37,19 +45,21 @@ struct GuessedColumn {
   std::string because = {};
 };
 
-// Columns of a CSV file. Its header is the last line before the first row of numbers that has as
-// many cells. A clock without a unit in its name is recognised by its steps. For a CCSDS AEM: its
-// quaternion. Throws InputError with the remedy for a file without such a header, with decimal
-// commas, in UTF-16, or with an angle, a rate, a coordinate or a time in an unknown unit.
-std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path);
+// Columns of a CSV file. Its header is `header` or the last line before the first row of numbers
+// that has as many cells. A clock without a unit in its name is recognised by its steps; without a
+// clock, a column that counts frames has the channel "frame". For a CCSDS AEM: its quaternion.
+// Throws InputError with the remedy for a file without such a header, with decimal commas, in
+// UTF-16, or with an angle, a rate, a coordinate or a time in an unknown unit.
+std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path,
+                                         const std::vector<std::string>& header = {});
 
 // Whether one of them is an angle, a rate, a quaternion or a coordinate.
 bool has_motion(const std::vector<GuessedColumn>& columns);
 
 // The voltage and the current of a file whose header names one of each.
-GuessedCurve guess_curve(const std::filesystem::path& path);
+GuessedCurve guess_curve(const std::filesystem::path& path, const std::vector<std::string>& header);
 
 // The names of the columns in quotes, for messages.
-std::string names_in(const std::filesystem::path& path);
+std::string names_in(const std::filesystem::path& path, const std::vector<std::string>& header);
 
 }  // namespace photorque

@@ -13,6 +13,7 @@
 #include "core/errors.h"
 #include "core/numerics/linear.h"
 #include "core/text/format.h"
+#include "diagnosis/guess/circle.h"
 #include "diagnosis/guess/guess.h"
 
 namespace photorque {
@@ -367,8 +368,9 @@ std::vector<GuessedColumn> without_computed_velocity(std::vector<GuessedColumn> 
   return columns;
 }
 
-RecordingOptions options_of(const std::vector<GuessedColumn>& columns) {
-  RecordingOptions options;
+RecordingOptions options_of(const std::vector<GuessedColumn>& columns,
+                            const RecordingOptions& reading) {
+  RecordingOptions options = reading;
   for (const GuessedColumn& c : columns) {
     if (c.channel.empty() || c.channel == c.in_file) continue;
     options.columns[c.channel] = header_cell_text(c.in_file);
@@ -395,15 +397,22 @@ std::vector<GuessedColumn> with_rate_from(std::vector<GuessedColumn> columns, in
 }
 
 // Throws InputError for a file without a time or without anything that moves.
-void require_motion(const fs::path& path, const std::vector<GuessedColumn>& columns) {
+void require_motion(const fs::path& path, const std::vector<GuessedColumn>& columns,
+                    const RecordingOptions& reading) {
   if (is_message(path, "AEM")) return;
-  const bool has_time = std::ranges::any_of(
-      columns, [](const GuessedColumn& c) { return c.channel.starts_with("t_"); });
+  const bool counts =
+      std::ranges::any_of(columns, [](const GuessedColumn& c) { return c.channel == "frame"; });
+  const bool has_time = reading.rate_Hz || std::ranges::any_of(columns, [](const GuessedColumn& c) {
+                          return c.channel.starts_with("t_");
+                        });
   if (has_time && has_motion(columns)) return;
   const bool are_several = std::ranges::any_of(
       columns, [](const GuessedColumn& c) { return c.channel.empty() && !c.because.empty(); });
   std::string found = "no time among ",
-              expected = "a time with its unit, such as t_s or \"Time (ms)\"";
+              expected =
+                  counts ? "frames per second beside the frames: --rate-Hz 30"
+                         : "a time with its unit, such as t_s or \"Time (ms)\", or the rows per "
+                           "second: --rate-Hz 100";
   if (has_time && are_several) {
     found = "several angles or rates among ";
     expected = "a name for the one that is meant, such as angle_deg or rate_rpm";
@@ -412,9 +421,11 @@ void require_motion(const fs::path& path, const std::vector<GuessedColumn>& colu
     expected =
         "a quantity with its unit, such as \"angle (deg)\", rate_rpm, gyro_x_rad_s, or x_m and y_m";
   }
-  throw InputError(
-      {path.string()}, "header", found + names_in(path),
-      expected + "; of a curve of a module one voltage and one current (voltage_V, current_A)");
+  throw InputError({path.string()}, "header", found + names_in(path, reading.header),
+                   counts ? expected
+                          : expected +
+                                "; of a curve of a module one voltage and one current (voltage_V, "
+                                "current_A)");
 }
 
 void require_rows(const fs::path& path, const std::vector<GuessedColumn>& columns,
@@ -425,74 +436,6 @@ void require_rows(const fs::path& path, const std::vector<GuessedColumn>& column
   throw InputError({path.string()}, header_cell_text(first->in_file),
                    std::to_string(recording.rows()) + " rows with a time",
                    "at least " + std::to_string(fewest_readings) + " readings");
-}
-
-// A circle on which coordinates stay, and to which part of its radius.
-struct Circle {
-  Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();
-  double radius_m = 0.0, off = 0.0;
-};
-
-// The circle of coordinates that turn back on it again and again, or go round it.
-std::optional<Circle> circle_of(const Recording& recording) {
-  if (recording.find("x_m") == nullptr || recording.find("y_m") == nullptr) return std::nullopt;
-  const Channel &x = *recording.find("x_m"), &y = *recording.find("y_m");
-  std::vector<Eigen::Vector2d> points;
-  for (size_t i = 0; i < recording.rows(); ++i) {
-    const Eigen::Vector2d point(x.values[i], y.values[i]);
-    if (point.allFinite()) points.push_back(point);
-  }
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const auto& p : points) mean += p / static_cast<double>(points.size());
-  // |p − c|² = R² is linear in c and R² − |c|² (I. Kåsa 1976).
-  Mat3 squares = Mat3::Zero();
-  Vec3 right = Vec3::Zero();
-  for (const auto& p : points) {
-    const Eigen::Vector2d d = p - mean;
-    const Vec3 row(2.0 * d.x(), 2.0 * d.y(), 1.0);
-    squares += row * row.transpose();
-    right += row * d.squaredNorm();
-  }
-  const Vec3 solution = squares.ldlt().solve(right);
-  if (!solution.allFinite()) return std::nullopt;
-  const Eigen::Vector2d offset = solution.head<2>();
-  const double radius_m = std::sqrt(std::max(0.0, solution[2] + offset.squaredNorm()));
-  const Eigen::Vector2d centre = mean + offset;
-  double square = 0.0, at = 0.0, low = 0.0, high = 0.0, before = NAN;
-  std::vector<double> angle_rad;
-  for (const auto& p : points) {
-    const Eigen::Vector2d d = p - centre;
-    square += std::pow(d.norm() - radius_m, 2.0) / static_cast<double>(points.size());
-    const double direction = std::atan2(d.y(), d.x());
-    if (std::isfinite(before)) at += std::remainder(direction - before, 2.0 * pi);
-    before = direction;
-    angle_rad.push_back(at);
-    low = std::min(low, at);
-    high = std::max(high, at);
-  }
-  // Turning points, beyond a fifth of the arc.
-  int turns = 0, sense = 0;
-  double extreme = 0.0;
-  for (const double a : angle_rad) {
-    if (sense * (a - extreme) > 0.0 || sense == 0) {
-      if (sense != 0) extreme = a;
-      if (sense == 0 && std::abs(a) > 0.2 * (high - low)) {
-        sense = a > 0.0 ? 1 : -1;
-        extreme = a;
-      }
-    } else if (std::abs(a - extreme) > 0.2 * (high - low)) {
-      sense = -sense;
-      extreme = a;
-      ++turns;
-    }
-  }
-  // The arc's height must show above the scatter: a straight line is part of any large circle.
-  constexpr double off = 0.02, round_rad = 2.0, scatters = 10.0;
-  const double relative = std::sqrt(square) / radius_m, range_rad = high - low,
-               height = 1.0 - std::cos(0.5 * std::min(range_rad, pi));
-  const bool is_arc = (turns >= 2 && height > scatters * relative) || range_rad > round_rad;
-  if (!(radius_m > 0.0) || !(relative < off) || !is_arc) return std::nullopt;
-  return Circle{centre, radius_m, relative};
 }
 
 // Adds a drag that slows the rate as recorded, as a start from which other torques are
@@ -540,14 +483,16 @@ void add_sequence(TomlDocument& document, const Machine& m) {
 
 }  // namespace
 
-void guess_motion(TomlDocument& document, const std::vector<fs::path>& recordings) {
-  std::vector<GuessedColumn> columns = without_computed_velocity(guess_columns(recordings.front()));
-  require_motion(recordings.front(), columns);
+void guess_motion(TomlDocument& document, const std::vector<fs::path>& recordings,
+                  const RecordingOptions& reading) {
+  std::vector<GuessedColumn> columns =
+      without_computed_velocity(guess_columns(recordings.front(), reading.header));
+  require_motion(recordings.front(), columns, reading);
   Machine m;
   std::optional<Circle> circle;
   const auto read_all = [&] {
     m.recordings.clear();
-    RecordingOptions options = options_of(columns);
+    RecordingOptions options = options_of(columns, reading);
     if (circle) options.pivot_m = {rounded(circle->centre_m.x()), rounded(circle->centre_m.y())};
     for (const fs::path& path : recordings) {
       m.recordings.push_back(read_recording(path, options));
@@ -564,10 +509,11 @@ void guess_motion(TomlDocument& document, const std::vector<fs::path>& recording
     read_all();
     m.observe_as(Topology::one_axis, m.platform.axis);
   }
+  add_reading(document, reading);
   add_columns(document, columns);
   if (circle) {
     document.comment("CONFIRM: the places are on a circle of radius " + digits(circle->radius_m) +
-                     " m, to " + digits(100.0 * circle->off, 2) +
+                     " m, to " + digits(100.0 * circle->scatter, 2) +
                      " %, as of a pendulum or a turntable and not of a sliding body: they are read "
                      "as the angle about its centre.");
     document.set(

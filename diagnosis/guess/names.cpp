@@ -398,7 +398,7 @@ void keep_first_of_each(std::vector<ReadColumn>& columns) {
 }
 
 bool is_motion(const std::string& channel) {
-  return !channel.empty() && !begins(channel, {"t_", "accel_", "mag_"});
+  return !channel.empty() && !begins(channel, {"t_", "frame", "accel_", "mag_"});
 }
 
 // The only speed of a wheel is the motion of a machine that turns about one axis.
@@ -432,6 +432,24 @@ std::vector<ReadColumn> read_columns(const FileHead& head) {
   return columns;
 }
 
+// The first column that counts frames or samples: its numbers are whole and rise.
+void read_counter(const FileHead& head, std::vector<ReadColumn>& columns) {
+  for (size_t k = 0; k < columns.size(); ++k) {
+    const Words words{words_of_header(head.header[k])};
+    const bool is_counter =
+        words.has_word_with_prefix({"frame", "sampl", "index", "bild", "fotogram", "trame"}) ||
+        words.any_is({"n", "nr", "no", "num", "image", "images"});
+    bool rises = true;
+    for (size_t i = 0; i < head.rows.size(); ++i) {
+      const double count = head.rows[i][k];
+      rises = rises && count == std::round(count) && (i == 0 || count > head.rows[i - 1][k]);
+    }
+    if (!is_counter || !rises || !columns[k].guess.channel.empty()) continue;
+    columns[k].guess.channel = "frame";
+    return;
+  }
+}
+
 // A reading in an unknown unit would be of a wrong size, and the motion without it another.
 void refuse_wrong_units(const std::vector<ReadColumn>& columns, const InputLocation& where) {
   const bool turns = std::ranges::any_of(columns, [](const ReadColumn& c) {
@@ -450,11 +468,13 @@ void refuse_wrong_units(const std::vector<ReadColumn>& columns, const InputLocat
 
 }  // namespace
 
-std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path) {
+std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path,
+                                         const std::vector<std::string>& header) {
   if (is_message(path, "AEM"))
     return {{"q_w", "q_w"}, {"q_x", "q_x"}, {"q_y", "q_y"}, {"q_z", "q_z"}};
-  const FileHead head = head_of(path);
-  const std::vector<ReadColumn> columns = read_columns(head);
+  const FileHead head = head_of(path, header);
+  std::vector<ReadColumn> columns = read_columns(head);
+  if (!is_taken(columns, "t")) read_counter(head, columns);
   refuse_wrong_units(columns, {path.string(), head.line});
   std::vector<GuessedColumn> all;
   for (const ReadColumn& column : columns) all.push_back(column.guess);
@@ -465,11 +485,12 @@ bool has_motion(const std::vector<GuessedColumn>& columns) {
   return std::ranges::any_of(columns, [](const GuessedColumn& c) { return is_motion(c.channel); });
 }
 
-GuessedCurve guess_curve(const std::filesystem::path& path) {
+GuessedCurve guess_curve(const std::filesystem::path& path,
+                         const std::vector<std::string>& header) {
   GuessedCurve curve;
   std::vector<size_t> voltages, currents;
   if (is_message(path, "AEM")) return curve;
-  const FileHead head = head_of(path);
+  const FileHead head = head_of(path, header);
   std::vector<HeaderCell> cells;
   for (size_t place = 0; place < head.header.size(); ++place) {
     cells.push_back(read_header_cell(head.header[place]));
@@ -520,8 +541,8 @@ GuessedCurve guess_curve(const std::filesystem::path& path) {
   return curve;
 }
 
-std::string names_in(const std::filesystem::path& path) {
-  return joined_text(head_of(path).header, ", ",
+std::string names_in(const std::filesystem::path& path, const std::vector<std::string>& header) {
+  return joined_text(head_of(path, header).header, ", ",
                      [&](const std::string& name) { return in_quotes(header_cell_text(name)); });
 }
 

@@ -256,12 +256,14 @@ TEST(Guess, FilesThatCannotBeReadNameTheCure) {
   const auto refusal = [&](const std::string& text) -> std::string {
     return refusal_of([&] { guess_columns(test_file("bad.csv", text)); });
   };
-  EXPECT_THAT(refusal("0,0;1,5;2\n0,1;1,6;3\n"), HasSubstr("sed -i '1i t_s;x_m;y_m' bad.csv"));
-  EXPECT_THAT(refusal("0,1\n0.1,2\n"), HasSubstr("a line above them that names the columns"));
-  EXPECT_THAT(refusal(std::string("\xff\xfet\0_\0s\0", 8)), HasSubstr("UTF-16"));
+  EXPECT_THAT(refusal("0,0;1,5;2\n0,1;1,6;3\n"), HasSubstr("bad.csv --columns t_s,x_m,y_m ("));
+  EXPECT_THAT(refusal("0,1\n0.1,2\n"), HasSubstr("--columns t_s,angle_rad ("));
+  EXPECT_THAT(refusal(std::string("\xff\xfet\0_\0s\0", 8)),
+              AllOf(HasSubstr("UTF-16"), HasSubstr("iconv -f UTF-16")));
   EXPECT_THAT(refusal("nothing here\n"), HasSubstr("no rows of numbers"));
-  EXPECT_THAT(refusal("speed\n29.1\n28.8\n28.6\n"),
-              AllOf(HasSubstr("one column of numbers"), HasSubstr("t_s,rate_rad_s")));
+  EXPECT_THAT(
+      refusal("speed\n29.1\n28.8\n28.6\n"),
+      AllOf(HasSubstr("one column of numbers"), HasSubstr("--columns rate_rad_s --rate-Hz 10")));
 }
 
 // Tables as programs of other countries and calculators write them.

@@ -1,8 +1,10 @@
 // `diagnose --guess`: an experiment for a recording of which nothing else is at hand.
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "attitude/recordings/text_lines.h"
+#include "core/constants.h"
 #include "tests/outside.h"
 #include "tests/tools/command_test.h"
 
@@ -37,6 +39,48 @@ class GuessCommand : public CommandTest {
     return write("thinned.csv", text);
   }
 };
+
+// A swing of 0.8 Hz with a decaying amplitude, as numbers alone: with a time, with frames that a
+// camera dropped, and one reading per line.
+TEST_F(GuessCommand, ReadsNumbersWithoutHeaderOrTime) {
+  std::string timed, frames = "frame;theta (degrees)\n", bare;
+  for (int i = 0; i < 1500; ++i) {
+    const double t_s = 0.02 * i,
+                 angle_deg = 30.0 * std::exp(-0.03 * t_s) * std::cos(2.0 * pi * 0.8 * t_s);
+    const std::string angle = std::to_string(angle_deg);
+    timed += std::to_string(t_s) + "\t" + angle + "\n";
+    if (i % 7 != 3) frames += std::to_string(i) + ";" + angle + "\n";
+    bare += angle + "\n";
+  }
+  // Stiffness over inertia and drag over inertia, by the diagnosis with the guess.
+  const auto found_in = [&](const std::string& file, const std::string& options) {
+    const std::string name = fs::path(file).stem().string(), folder = at("guess_" + name);
+    succeed("diagnose --guess " + file + " " + options + " --out " + folder);
+    const Outcome got = succeed("diagnose " + folder + "/" + name + ".toml --recording " + file +
+                                " --json --quiet --out " + folder + "/out");
+    std::map<std::string, double> found;
+    for (const auto& effect : nlohmann::json::parse(got.out)["effects"]) {
+      for (const auto& [key, parameter] : effect["parameters"].items()) {
+        found[key] = parameter["value"];
+      }
+    }
+    return found;
+  };
+  // θ = A exp(−δ t) cos ω t: stiffness ω² + δ², drag 2 δ.
+  constexpr double omega = 2.0 * pi * 0.8, delta = 0.03;
+  for (const auto& [file, options] : std::map<std::string, std::string>{
+           {write("timed.txt", timed), "--columns t_s,angle_deg"},
+           {write("frames.csv", frames), "--fps 50"},
+           {write("bare.txt", bare), "--columns angle_deg --rate-Hz 50"}}) {
+    const auto found = found_in(file, options);
+    ASSERT_THAT(found, testing::SizeIs(3)) << file;
+    EXPECT_NEAR(found.at("stiffness_N_m_per_rad"), omega * omega + delta * delta, 1e-3) << file;
+    EXPECT_NEAR(found.at("coefficient_N_m_s"), 2.0 * delta, 1e-4) << file;
+  }
+  refused("diagnose --guess " + at("frames.csv"), "--rate-Hz 30");
+  refused("diagnose --guess " + at("timed.txt") + " --columns t_s,angle_deg --rate-Hz 50",
+          "only one of them");
+}
 
 TEST_F(GuessCommand, PrintsItsFilesAndKeepsChangedOnes) {
   std::string rows = "t_s,angle_deg\n";

@@ -31,7 +31,7 @@ struct LightColumn {
 
 class LightHeader {
  public:
-  LightHeader(std::string_view line, const LightColumns& columns) {
+  LightHeader(std::string_view line, const std::map<std::string, std::string>& columns) {
     for (std::string_view cell : cells_of(line)) {
       if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') {
         cell = cell.substr(1, cell.size() - 2);
@@ -114,7 +114,7 @@ struct Beginning {
 
 // Preambles may lack comment marks: the header is the first line that identifies a kind of
 // recording.
-Beginning find_header(TextLines& lines, const LightColumns& columns) {
+Beginning find_header(TextLines& lines, const std::map<std::string, std::string>& columns) {
   constexpr int most = 200;
   std::string_view line;
   for (int i = 0; i < most && next_line(lines, line); ++i) {
@@ -280,7 +280,8 @@ void make_relative(std::vector<double>& lamps) {
 }
 
 // The named columns that a header lacks.
-std::set<std::string> absent_of(const LightColumns& named, const std::vector<std::string>& cells) {
+std::set<std::string> absent_of(const std::map<std::string, std::string>& named,
+                                const std::vector<std::string>& cells) {
   std::set<std::string> absent_columns;
   for (const auto& [name, written] : named) {
     if (std::ranges::find(cells, written) == cells.end()) absent_columns.insert(written);
@@ -290,9 +291,10 @@ std::set<std::string> absent_of(const LightColumns& named, const std::vector<std
 
 // Reads curves in instrument formats.
 LightRecording curves_of_instrument(const std::filesystem::path& path,
-                                    const DefaultConditions& usual, const LightColumns& named) {
-  const std::string text = whole_text(path);
-  const std::vector<MeasuredCurve> curves = curves_in(text, path.string(), named);
+                                    const DefaultConditions& usual,
+                                    const RecordingOptions& options) {
+  const std::string text = whole_text(path, options.header);
+  const std::vector<MeasuredCurve> curves = curves_in(text, path.string(), options.columns);
   LightRecording all;
   all.kind = LightRecording::Kind::sweep;
   all.name = path.string();
@@ -372,10 +374,10 @@ double median_of(std::vector<double> values) {
 }
 
 std::optional<LightRecording::Kind> light_kind_of(const std::filesystem::path& path,
-                                                  const LightColumns& columns) {
+                                                  const RecordingOptions& options) {
   try {
-    TextLines lines(path);
-    const Beginning beginning = find_header(lines, columns);
+    TextLines lines(path, options.header);
+    const Beginning beginning = find_header(lines, options.columns);
     if (beginning.is_curve) return LightRecording::Kind::sweep;
     return beginning.header ? beginning.header->kind() : std::nullopt;
   } catch (const InputError&) {
@@ -383,17 +385,18 @@ std::optional<LightRecording::Kind> light_kind_of(const std::filesystem::path& p
   }
 }
 
-bool is_light_recording(const std::filesystem::path& path, const LightColumns& columns) {
-  return light_kind_of(path, columns).has_value();
+bool is_light_recording(const std::filesystem::path& path, const RecordingOptions& options) {
+  return light_kind_of(path, options).has_value();
 }
 
 LightRecording read_light_recording(const std::filesystem::path& path,
-                                    const DefaultConditions& usual, const LightColumns& named) {
-  TextLines lines(path);
-  const Beginning beginning = find_header(lines, named);
+                                    const DefaultConditions& usual,
+                                    const RecordingOptions& options) {
+  TextLines lines(path, options.header);
+  const Beginning beginning = find_header(lines, options.columns);
   if (beginning.is_curve) {
-    LightRecording curves = curves_of_instrument(path, usual, named);
-    curves.absent_columns = absent_of(named, beginning.cells);
+    LightRecording curves = curves_of_instrument(path, usual, options);
+    curves.absent_columns = absent_of(options.columns, beginning.cells);
     return curves;
   }
   const std::optional<LightHeader>& header = beginning.header;
@@ -407,7 +410,7 @@ LightRecording read_light_recording(const std::filesystem::path& path,
   recording.kind = *header->kind();
   recording.name = path.string();
   const ColumnsOfLight columns = columns_of(*header, recording.kind);
-  recording.absent_columns = absent_of(named, beginning.cells);
+  recording.absent_columns = absent_of(options.columns, beginning.cells);
   require_whole_attitude(*header, columns, path);
   recording.has_temperatures = columns.temperature.has_value();
   recording.has_attitudes = columns.q[0].has_value() || (columns.tilt && columns.heading);

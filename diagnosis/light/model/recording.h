@@ -8,12 +8,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "attitude/recordings/recording.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -63,19 +63,16 @@ struct DefaultConditions {
   double temperature_K = 298.15;
 };
 
-// Names of columns in the file by those above, as [recording] columns states them.
-using LightColumns = std::map<std::string, std::string>;
-
 // Kind of a file by its header; nothing for unreadable files and other headers.
 std::optional<LightRecording::Kind> light_kind_of(const std::filesystem::path& path,
-                                                  const LightColumns& columns = {});
+                                                  const RecordingOptions& options = {});
 
 // Whether a file has such a header. False for unreadable files.
-bool is_light_recording(const std::filesystem::path& path, const LightColumns& columns = {});
+bool is_light_recording(const std::filesystem::path& path, const RecordingOptions& options = {});
 
 // Throws InputError with file and line without such a header or a usable row.
 LightRecording read_light_recording(const std::filesystem::path& path,
                                     const DefaultConditions& usual,
-                                    const LightColumns& columns = {});
+                                    const RecordingOptions& options = {});
 
 }  // namespace photorque

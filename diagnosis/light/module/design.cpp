@@ -216,7 +216,7 @@ ModuleDesign read_module(const Settings& root, const std::filesystem::path& fold
   ModuleDesign design;
   if (root.has("recording")) {
     const Settings recording = root.table("recording");
-    design.columns = read_recording_options(recording).columns;
+    design.reading = read_recording_options(recording);
     recording.finish();
   }
   design.cells = static_cast<int>(s.get(module_key::cells));
@@ -239,7 +239,7 @@ ModuleDesign read_module(const Settings& root, const std::filesystem::path& fold
     for (const std::string& name : names) {
       design.reference_files.push_back(folder / name);
       const LightRecording file =
-          read_light_recording(design.reference_files.back(), {}, design.columns);
+          read_light_recording(design.reference_files.back(), {}, design.reading);
       if (file.kind != LightRecording::Kind::sweep) {
         throw s.error(module_key::reference_curve, "\"" + name + "\"",
                       "a file of voltage_V,current_A");

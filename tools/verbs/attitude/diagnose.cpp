@@ -11,6 +11,7 @@
 #include "attitude/recordings/named_columns.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/parse.h"
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/guess/guess.h"
 #include "diagnosis/improved.h"
@@ -57,11 +58,11 @@ std::string with_overrides(const std::string& text, const std::vector<std::strin
 
 // Whether the recordings are of light. InputError naming the first that is of another kind.
 bool are_of_light(const std::vector<fs::path>& recordings, const std::vector<fs::path>& holdouts,
-                  const LightColumns& columns) {
-  const bool of_light = is_light_recording(recordings.front(), columns);
+                  const RecordingOptions& reading) {
+  const bool of_light = is_light_recording(recordings.front(), reading);
   for (const auto* all : {&recordings, &holdouts}) {
     for (const fs::path& path : *all) {
-      if (!fs::exists(path) || is_light_recording(path, columns) == of_light) continue;
+      if (!fs::exists(path) || is_light_recording(path, reading) == of_light) continue;
       throw InputError({path.string()}, "",
                        of_light ? "no recording of light" : "a recording of light",
                        std::string(of_light ? "one" : "one of motion") + " as " +
@@ -72,22 +73,22 @@ bool are_of_light(const std::vector<fs::path>& recordings, const std::vector<fs:
 }
 
 std::vector<LightRecording> read_light(const std::vector<fs::path>& paths,
-                                       const DefaultConditions& usual, const LightColumns& columns,
-                                       Provenance& provenance) {
+                                       const DefaultConditions& usual,
+                                       const RecordingOptions& reading, Provenance& provenance) {
   std::vector<LightRecording> all;
   for (const fs::path& path : paths) {
-    all.push_back(read_light_recording(path, usual, columns));
+    all.push_back(read_light_recording(path, usual, reading));
     provenance.inputs.emplace_back(path.filename().string(), content_hash(read_file(path)));
   }
   return all;
 }
 
-// [recording] columns, where recordings of light are read.
-LightColumns columns_in(const Settings& root) {
+// [recording], where recordings of light are read.
+RecordingOptions reading_in(const Settings& root) {
   const Settings recording = own_table(root, "recording", false);
-  LightColumns columns = read_recording_options(recording).columns;
+  RecordingOptions options = read_recording_options(recording);
   recording.finish();
-  return columns;
+  return options;
 }
 
 // The named columns that each recording lacks.
@@ -124,7 +125,7 @@ struct LightInput {
 std::unique_ptr<LightInput> read_light_input(const RunOptions& options,
                                              const std::vector<fs::path>& paths,
                                              const std::vector<fs::path>& holdout_paths,
-                                             const LightColumns& columns) {
+                                             const RecordingOptions& reading) {
   const std::string text = options.experiment_text();
   const auto reread = [&](const std::string& assignment) {
     std::vector<std::string> overrides = options.all_overrides();
@@ -139,8 +140,8 @@ std::unique_ptr<LightInput> read_light_input(const RunOptions& options,
   const DefaultConditions usual{
       input->experiment.lab_from_body.rotation,
       input->lab.has_array() ? input->lab.design().temperature_K : 298.15};
-  input->recordings = read_light(paths, usual, columns, input->provenance);
-  input->holdouts = read_light(holdout_paths, usual, columns, input->provenance);
+  input->recordings = read_light(paths, usual, reading, input->provenance);
+  input->holdouts = read_light(holdout_paths, usual, reading, input->provenance);
   return input;
 }
 
@@ -148,7 +149,7 @@ DiagnosisRun diagnose_light_recordings(const RunOptions& options, const Settings
                                        const std::vector<fs::path>& paths,
                                        const std::vector<fs::path>& holdout_paths,
                                        const Console& console) {
-  const auto input = read_light_input(options, paths, holdout_paths, columns_in(root));
+  const auto input = read_light_input(options, paths, holdout_paths, reading_in(root));
   refuse_absent_columns(own_table(root, "recording", false),
                         absent_columns(input->recordings, input->holdouts));
   LightDiagnoseOptions how;
@@ -172,9 +173,9 @@ DiagnosisRun diagnose_module_curves(const RunOptions& options, const Settings& r
   for (const fs::path& file : design.reference_files) {
     provenance.inputs.emplace_back(file.filename().string(), content_hash(read_file(file)));
   }
-  const std::vector<LightRecording> recordings = read_light(paths, {}, design.columns, provenance),
+  const std::vector<LightRecording> recordings = read_light(paths, {}, design.reading, provenance),
                                     holdouts =
-                                        read_light(holdout_paths, {}, design.columns, provenance);
+                                        read_light(holdout_paths, {}, design.reading, provenance);
   refuse_absent_columns(own_table(root, "recording", false),
                         absent_columns(design.references, recordings, holdouts));
   ModuleDiagnoseOptions how;
@@ -214,10 +215,10 @@ struct Sorted {
   std::vector<fs::path> motion, light;
 };
 
-Sorted sorted_by_content(const std::vector<fs::path>& paths, const LightColumns& columns) {
+Sorted sorted_by_content(const std::vector<fs::path>& paths, const RecordingOptions& reading) {
   Sorted sorted;
   for (const fs::path& path : paths) {
-    const std::optional<LightRecording::Kind> kind = light_kind_of(path, columns);
+    const std::optional<LightRecording::Kind> kind = light_kind_of(path, reading);
     if (kind) sorted.light.push_back(path);
     if (!kind || *kind == LightRecording::Kind::run) sorted.motion.push_back(path);
   }
@@ -231,7 +232,7 @@ DiagnosisRun diagnose_both(const RunOptions& options, const Settings& root,
   MotionRecorded motion = read_motion(options, experiment, recordings.motion, holdouts.motion);
   motion.how.progress = progress_on(console, "motion: ");
   motion.how.read_elsewhere = {"array_voltage_V", "array_current_A", "cell_temperature_K"};
-  const auto input = read_light_input(options, recordings.light, holdouts.light, columns_in(root));
+  const auto input = read_light_input(options, recordings.light, holdouts.light, reading_in(root));
   refuse_absent_columns(
       own_table(root, "recording", false),
       absent_columns(motion.recordings, motion.holdouts, input->recordings, input->holdouts));
@@ -294,20 +295,21 @@ DiagnosisRun run_diagnose(const RunOptions& options, const std::vector<fs::path>
   for (const std::string& assignment : options.all_overrides()) apply_override(node, assignment);
   const Settings root(std::move(node));
   if (root.has("module")) return diagnose_module_curves(options, root, recordings, holdouts);
-  const LightColumns columns = columns_in(root);
-  const Sorted sorted = sorted_by_content(recordings, columns);
+  const RecordingOptions reading = reading_in(root);
+  const Sorted sorted = sorted_by_content(recordings, reading);
   if (root.has("platform") && root.has("scene") && !sorted.light.empty() &&
       !sorted.motion.empty()) {
-    return diagnose_both(options, root, sorted, sorted_by_content(holdouts, columns), console);
+    return diagnose_both(options, root, sorted, sorted_by_content(holdouts, reading), console);
   }
   // Without a platform the files must be of light: their reader reports other files.
-  return are_of_light(recordings, holdouts, columns) || (root.has("scene") && !root.has("platform"))
+  return are_of_light(recordings, holdouts, reading) || (root.has("scene") && !root.has("platform"))
              ? diagnose_light_recordings(options, root, recordings, holdouts, console)
              : diagnose_motion(options, recordings, holdouts, console);
 }
 
-std::string first_experiment(const std::vector<fs::path>& recordings, const fs::path& file) {
-  const std::string text = guess_experiment(recordings, file.parent_path());
+std::string first_experiment(const std::vector<fs::path>& recordings, const fs::path& file,
+                             const RecordingOptions& reading) {
+  const std::string text = guess_experiment(recordings, file.parent_path(), reading);
   const Settings root(parse_toml(text, file.string()));
   if (root.has("module")) {
     read_module(root, file.parent_path());
@@ -343,6 +345,8 @@ namespace {
 struct Options : CommandOptions {
   std::vector<std::filesystem::path> recordings, holdouts;
   std::vector<std::filesystem::path> guess;  // recordings without an experiment
+  std::string columns;                       // of these: names separated by commas
+  std::optional<double> rate_Hz;             // of these: rows per second
 };
 
 // The name of the guessed experiment: "run1" for data/run1.csv.gz.
@@ -361,9 +365,19 @@ void add_options(Command& command, Options& options) {
       .is_one_each = true;
   command.add("--guess", options.guess,
               "Write a first experiment for these recordings (CSV), with its assumptions marked");
+  command.add("--columns", options.columns,
+              "With --guess: names of the columns of files without a header: t_s,angle_deg");
+  command
+      .add("--rate-Hz,--fps", options.rate_Hz,
+           "With --guess: rows or video frames per second of files without a time")
+      .range = Option::Between<double>{1e-9, 1e9};
   command.add("--page", options.page, "Make report.html interactive: scene, maps and curves");
   command.mistake = [&options]() -> std::string {
     if (!options.guess.empty()) options.name = name_of_guess(options.guess);
+    if (options.guess.empty() && (!options.columns.empty() || options.rate_Hz)) {
+      return "--columns and --rate-Hz are for --guess; an experiment states header and rate_Hz in "
+             "[recording]";
+    }
     if (options.experiment.empty() != options.guess.empty()) return "";
     return options.guess.empty() ? "experiment is required, or --guess RECORDING"
                                  : "both an experiment and --guess";
@@ -403,7 +417,12 @@ void print_diagnosis(const Console& console, const Diagnosis& d) {
 void write_guess(const Options& options) {
   const Console console = terminal(options);
   const std::filesystem::path file = options.out_folder() / (options.name + ".toml");
-  const std::string text = first_experiment(options.guess, file);
+  RecordingOptions reading;
+  for (const std::string_view name : cells_of(options.columns)) {
+    if (!options.columns.empty()) reading.header.emplace_back(name);
+  }
+  reading.rate_Hz = options.rate_Hz;
+  const std::string text = first_experiment(options.guess, file, reading);
   // The user may have edited the file.
   if (std::filesystem::exists(file) && read_file(file) != text) {
     throw InputError({file.string()}, "", "another file of this name",

@@ -33,10 +33,10 @@ DiagnosisRun run_diagnose(const RunOptions& options,
                           const std::vector<std::filesystem::path>& holdouts,
                           const Console& console);
 
-// A first experiment for recordings without one (diagnosis/guess/guess.h), as the text of `file`;
-// it has been read again as `diagnose` will.
+// The text of a first experiment for recordings without one (guess_experiment()), to be written to
+// `file`. Throws InputError if `diagnose` could not read it.
 std::string first_experiment(const std::vector<std::filesystem::path>& recordings,
-                             const std::filesystem::path& file);
+                             const std::filesystem::path& file, const RecordingOptions& reading);
 
 // improved.toml, report.html with the text of `report`, diagnosis.json and, in the further formats,
 // figures (diagnosis_figures()) into a folder.

@@ -1,0 +1,74 @@
+#include "diagnosis/guess/circle.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/constants.h"
+#include "core/transform.h"
+
+namespace photorque {
+
+std::optional<Circle> circle_of(const Recording& recording) {
+  if (recording.find("x_m") == nullptr || recording.find("y_m") == nullptr) return std::nullopt;
+  const Channel &x = *recording.find("x_m"), &y = *recording.find("y_m");
+  std::vector<Eigen::Vector2d> points;
+  for (size_t i = 0; i < recording.rows(); ++i) {
+    const Eigen::Vector2d point(x.values[i], y.values[i]);
+    if (point.allFinite()) points.push_back(point);
+  }
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const auto& p : points) mean += p / static_cast<double>(points.size());
+  // |p − c|² = R² is linear in c and R² − |c|² (I. Kåsa 1976).
+  Mat3 squares = Mat3::Zero();
+  Vec3 right = Vec3::Zero();
+  for (const auto& p : points) {
+    const Eigen::Vector2d d = p - mean;
+    const Vec3 row(2.0 * d.x(), 2.0 * d.y(), 1.0);
+    squares += row * row.transpose();
+    right += row * d.squaredNorm();
+  }
+  const Vec3 solution = squares.ldlt().solve(right);
+  if (!solution.allFinite()) return std::nullopt;
+  const Eigen::Vector2d offset = solution.head<2>();
+  const double radius_m = std::sqrt(std::max(0.0, solution[2] + offset.squaredNorm()));
+  const Eigen::Vector2d centre = mean + offset;
+  double square = 0.0, at = 0.0, low = 0.0, high = 0.0, before = NAN;
+  std::vector<double> angle_rad;
+  for (const auto& p : points) {
+    const Eigen::Vector2d d = p - centre;
+    square += std::pow(d.norm() - radius_m, 2.0) / static_cast<double>(points.size());
+    const double direction = std::atan2(d.y(), d.x());
+    if (std::isfinite(before)) at += std::remainder(direction - before, 2.0 * pi);
+    before = direction;
+    angle_rad.push_back(at);
+    low = std::min(low, at);
+    high = std::max(high, at);
+  }
+  // Counts turning points that are more than a fifth of the arc apart.
+  int turns = 0, sense = 0;
+  double extreme = 0.0;
+  for (const double a : angle_rad) {
+    if (sense * (a - extreme) > 0.0 || sense == 0) {
+      if (sense != 0) extreme = a;
+      if (sense == 0 && std::abs(a) > 0.2 * (high - low)) {
+        sense = a > 0.0 ? 1 : -1;
+        extreme = a;
+      }
+    } else if (std::abs(a - extreme) > 0.2 * (high - low)) {
+      sense = -sense;
+      extreme = a;
+      ++turns;
+    }
+  }
+  // The arc must be higher than the scatter: a straight line is part of any large circle.
+  constexpr double max_scatter = 0.02, round_rad = 2.0, scatters = 10.0;
+  const double relative = std::sqrt(square) / radius_m, range_rad = high - low,
+               height = 1.0 - std::cos(0.5 * std::min(range_rad, pi));
+  const bool is_arc = (turns >= 2 && height > scatters * relative) || range_rad > round_rad;
+  if (!(radius_m > 0.0) || !(relative < max_scatter) || !is_arc) return std::nullopt;
+  return Circle{centre, radius_m, relative};
+}
+
+}  // namespace photorque
