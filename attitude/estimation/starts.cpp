@@ -21,14 +21,15 @@ std::optional<double> first_of(const Observation& seen, Scalar scalar) {
   return std::nullopt;
 }
 
-// Attitudes of this tilt and yaw that lean in eight directions; one where it stands upright.
+// Attitudes with this tilt and yaw, in eight directions of the tilt; one attitude if the tilt is
+// zero.
 std::vector<Quat> leaning(double tilt_rad, double yaw_rad) {
   constexpr int directions = 8;
   std::vector<Quat> all;
   for (int d = 0; d < directions; ++d) {
     const double towards = 2.0 * pi * d / directions;
     const Quat lean(Eigen::AngleAxisd(tilt_rad, Vec3(-std::sin(towards), std::cos(towards), 0.0)));
-    // The lean turns body x a little, in the second order of the tilt.
+    // The tilt also rotates body x slightly, by a second-order effect.
     double about_z = yaw_rad;
     Quat q;
     for (int i = 0; i < 8; ++i) {
@@ -52,8 +53,9 @@ std::optional<Vec3> first_of_three(const Observation& seen, Scalar first) {
   return all;
 }
 
-// The attitude in which two directions of the lab lie as they are felt in the body (H. D. Black,
-// AIAA Journal 2 (1964) 1350): the first exactly, the second as far as it can.
+// The attitude from two directions that are known in the lab and measured in the body (H. D. Black,
+// AIAA Journal 2 (1964) 1350). The first direction is matched exactly, the second as well as
+// possible.
 Quat attitude_from_two(const Vec3& first_lab, const Vec3& second_lab, const Vec3& first_body,
                        const Vec3& second_body) {
   const auto frame = [](const Vec3& a, const Vec3& b) {
