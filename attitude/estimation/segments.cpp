@@ -42,8 +42,8 @@ double long_gap_s(const Recording& recording) {
   return longest_s;
 }
 
-// The size of most of these. Between the steps of an encoder nothing changes but by rounding: of
-// such readings, of those that do change.
+// Typical size of the changes: the median. Between the steps of an encoder, readings change only by
+// rounding. If most changes are so small, it is the median of the others.
 double typical_size(const std::vector<double>& sizes) {
   constexpr double rounding = 1e-6, fewest_steps = 0.005;
   const double usual = upper_median(sizes), least = rounding * std::ranges::max(sizes);

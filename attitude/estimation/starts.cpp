@@ -105,14 +105,14 @@ std::vector<Quat> attitudes_of(const AttitudeModel& model, const Observation& se
   return leaning(tilt.value_or(0.0), about_z);
 }
 
-// The rate of an angle at the beginning.
+// Rate of an angle at the start of the run.
 double first_slope(const Observation& seen, Scalar scalar) {
   constexpr int most = 10;
   return first_line(seen, scalar, most).slope_1_s;
 }
 
-// Rates of this magnitude along the axes that no gyro reads, in all directions; those that one
-// reads stay.
+// Initial rates to try. Measured axes keep the rates of `base`. The rest of the measured magnitude
+// is along all directions of the unmeasured axes.
 std::vector<Vec3> rates_of(const Observation& seen, const Vec3& base, const Quat& attitude) {
   std::array<bool, 3> is_read{};
   for (int k = 0; k < 3; ++k) {
@@ -155,7 +155,7 @@ struct FittedStart {
   double chi2;
 };
 
-// Fits only the first blocks of one run.
+// Fits the first blocks of one run.
 FittedStart begun_from(const Hypothesis& h, const RunStart& start, const Observation& seen) {
   constexpr int iterations = 20;
   Hypothesis one = h;
@@ -167,7 +167,7 @@ FittedStart begun_from(const Hypothesis& h, const RunStart& start, const Observa
   return {fitted.best.runs.empty() ? start : fitted.best.runs.front(), fitted.chi2};
 }
 
-// The start rotated by half a turn about the vertical. If gravity is the only direction, the
+// The start rotated by half a turn about the vertical. If gravity is the only known direction,
 // readings of a tilt do not distinguish it from the original; only priors do.
 RunStart mirrored(RunStart start) {
   const Quat half(Eigen::AngleAxisd(pi, Vec3::UnitZ()));
