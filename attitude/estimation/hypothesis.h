@@ -60,8 +60,7 @@ std::vector<RunStart> starts_from_data(const Hypothesis& h, const std::vector<Ob
 
 // A straight line through the first readings of one coordinate.
 struct FirstLine {
-  double value = 0.0,
-         slope_1_s = 0.0;  // at the run's first block; slope in units of the value per s
+  double value = 0.0, slope_1_s = 0.0;  // at the run's first block; slope: value's unit per s
 };
 
 // Least-squares line through the first `most` blocks that have a reading. With a single reading,

@@ -45,10 +45,9 @@ struct ZeroOrderHold {
   // Forces on a platform that slides; their sum acts.
   Vec3 force_lab_N = Vec3::Zero();
   Vec3 force_body_N = Vec3::Zero();
-  double battery_current_A = 0.0;  // positive discharges
-  double led_current_A = 0.0;      // current of lamps in the laboratory, if it is known
-  double lamps_as_stated =
-      1.0;  // 1: led_current_A is unknown and the lamps shine as stated; else 0
+  double battery_current_A = 0.0;   // positive discharges
+  double led_current_A = 0.0;       // current of lamps in the laboratory, if it is known
+  double lamps_as_stated = 1.0;     // 1: current unknown, lamps as the model states; else 0
   ContinuedTorque light_body = {};  // torque of light that is traced during the run
   WheelSpeeds wheel = {};
   Slip slip = Slip::by_rate;

@@ -61,8 +61,7 @@ struct ScalarReadings {
 
 // Settings of accelerometer and magnetometer.
 struct FieldInstruments {
-  Vec3 accelerometer_place_m =
-      Vec3::Zero();  // from the centre of rotation; of a free body, of mass
+  Vec3 accelerometer_place_m = Vec3::Zero();  // from the centre of rotation; if free, of mass
   Vec3 accelerometer_bias_m_s2 = Vec3::Zero();
   Vec3 magnetometer_bias_T = Vec3::Zero();
 };

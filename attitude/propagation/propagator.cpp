@@ -260,8 +260,7 @@ void Propagator::take_step() {
 // until the fixed-point iteration would contract again (stiffness() at most `contracts`).
 void Propagator::choose_method(const CollocationStep::Outcome& outcome, bool was_at_ceiling) {
   constexpr int steps_before_switch = 8, slow_iterations = 20;
-  constexpr double far_below =
-      1e-5;  // relative to the tolerance: steps four times as long would do
+  constexpr double far_below = 1e-5;  // of the tolerance: a step four times as long would do
   constexpr double contracts = 3.0;
   if (is_stiff_) {
     if (step_.stiffness() > contracts) return;

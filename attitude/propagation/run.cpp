@@ -211,8 +211,7 @@ Schedule read_schedule(const Settings& settings) {
 Quat with_initial_yaw(const Settings& settings, const Quat& lean) {
   const double yaw_rad = settings.get(propagate_key::initial_yaw);
   const Vec3 up = lean * Vec3::UnitZ(), level(std::cos(yaw_rad), std::sin(yaw_rad), 0.0);
-  constexpr double least =
-      1e-6;  // cosine of the tilt, below which the azimuth of body x is undefined
+  constexpr double least = 1e-6;  // cosine of the tilt: below, body x has no azimuth
   if (std::abs(up.z()) < least) {
     throw settings.error(propagate_key::initial_yaw, "a platform that leans by 90 deg",
                          "initial_attitude instead: body x has no azimuth of choice there");
