@@ -16,7 +16,8 @@ struct CameraStudy {
   double max_tilt_rad = 0.5235987756;
   Vec3 rate_body_rad_s = Vec3::Zero();  // of the platform during the exposures
   double calibration_px = 0.1;
-  // Uncalibrated part of the distortion. Its radial and tangential parts are studied separately.
+  // The part of the distortion that is not calibrated. Its radial and tangential parts are studied
+  // separately.
   Distortion distortion_error = {-0.1, 0.0, 1e-3, 1e-3};
   int images = 1000;  // number simulated at each attitude
   uint64_t seed = 1;

@@ -55,7 +55,7 @@ struct Platform {
 Platform read_platform(const Settings& settings);
 Key platform_table();
 
-// Sigmas of the entries of [platform] inertia_kg_m2 = { value, sigma }; zero if none is given.
+// The sigmas of the entries of [platform] inertia_kg_m2 = { value, sigma }; zero if none is given.
 Mat3 inertia_sigma_kg_m2(const Settings& platform);
 
 // Sigma of [platform] mass_kg = { value, sigma }; zero if none is given.

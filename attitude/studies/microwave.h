@@ -28,8 +28,8 @@ double dipole_pattern_e(double tilt_rad);
 // divided by the cosine of the projection, at most 1.
 double element_capture(double pattern, double tilt_rad);
 
-// Radiation pressure on a plane that absorbs `taken_W` of a beam and reflects `mirrored_W`
-// specularly: the force along the beam, and the torque about a centre that is `height_m` below the
+// Radiation pressure on a plane that absorbs `taken_W` of a beam and reflects `mirrored_W` like a
+// mirror: the force along the beam, and the torque about a centre that is `height_m` below the
 // plane along its normal.
 struct BeamPressure {
   double force_N = 0.0;     // along the beam
