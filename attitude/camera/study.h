@@ -24,7 +24,7 @@ struct CameraStudy {
   int threads = 0;                     // for the maps; 0: all
   int grid = 61;                       // bins of the maps along a side
   std::vector<double> focal_length_m;  // of the design map, increasing, at least two
-  std::vector<double> board_scale;     // likewise; factors of the marker positions
+  std::vector<double> board_scale;     // factors of the marker positions, like the focal lengths
 };
 
 // Reads [camera_study], which may be absent; its keys are those of camera_study_table().

@@ -25,7 +25,7 @@ class TimeSeries {
 
   double first_s() const { return times_s_.front(); }
   double last_s() const { return times_s_.back(); }
-  // Those of first and last time that are in (from_s, to_s): there the series is not smooth.
+  // The first and the last time, if they are in (from_s, to_s). The series is not smooth there.
   std::vector<double> ends_within(double from_s, double to_s) const;
 
   // Value and time derivative of one component.

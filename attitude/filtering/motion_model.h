@@ -21,8 +21,8 @@ using VecX = Eigen::VectorXd;
 enum class Motion {
   gyro_drives,   // gyro readings give the rate; in their gaps, a random walk
   rate_walks,    // random walk of the rate
-  disturbances,  // by Euler's equations under the modelled torques, beside which an unknown torque
-                 // lets the rate walk
+  disturbances,  // Euler's equations with the modelled torques and an unknown torque, which causes
+                 // a random walk of the rate
 };
 
 struct FilterSettings {

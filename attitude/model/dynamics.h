@@ -24,8 +24,8 @@ struct AttitudeModel {
   Environment environment;
   std::vector<Disturbance> disturbances;
   Schedule schedule;
-  // The attitude stays constant. For models in which the attitude is not observed and affects
-  // nothing: a run of thousands of turns then needs only the steps that its rate requires.
+  // The attitude stays constant. For models in which the attitude is not observed and has no
+  // effect: a run of thousands of turns then needs only the steps that its rate requires.
   bool holds_attitude = false;
 };
 

@@ -64,7 +64,7 @@ bool is_body_frame(const std::string& frame);
 // The attitude of the body of a message as a function of the time since its first row.
 struct AemAttitude {
   double time_s;
-  Quat lab_from_body;  // lab: the frame that is no body's; A if both are alike
+  Quat lab_from_body;  // lab: the frame that is not a body frame; A if both or none are
   std::optional<Vec3> rate_body_rad_s;
   int line;  // in the file
 };
