@@ -11,8 +11,8 @@ namespace photorque {
 
 namespace {
 
-// The readings against a pose that differs from the first by a rotation vector (lab axes) and, with
-// six unknowns, by a shift in the lab. Residuals are divided by their standard deviations.
+// Residuals of the readings for a pose that differs from `first` by a rotation vector (lab axes)
+// and, with six unknowns, by a shift in the lab. They are divided by their standard deviations.
 struct PoseResiduals {
   const TrackingCamera& camera;
   const std::vector<MarkerReading>& readings;
@@ -32,7 +32,7 @@ struct PoseResiduals {
     Eigen::Matrix<double, 6, 6> by_unknowns = Eigen::Matrix<double, 6, 6>::Identity();
     by_unknowns.topLeftCorner<3, 3>() = turn_jacobian({x[0], x[1], x[2]});
     const auto rows = static_cast<Eigen::Index>(2 * readings.size());
-    // A marker that the pose takes to be out of sight pulls nowhere.
+    // A marker that is not visible in the pose has a constant large residual and no derivative.
     residuals.setConstant(rows, 1e3);
     if (slopes != nullptr) slopes->setZero(rows, x.size());
     for (size_t i = 0; i < readings.size(); ++i) {
@@ -90,7 +90,8 @@ namespace {
 
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-// Derivatives of the estimated pose with respect to the image of each marker, in radians per pixel.
+// Derivatives of the attitude with respect to the image of each marker [rad/pixel], and its
+// covariance.
 struct Answer {
   std::vector<Eigen::Matrix<double, 3, 2>> by_reading;
   Mat3 covariance_rad2;
@@ -110,7 +111,7 @@ std::optional<Answer> answer_of(const TrackingCamera& camera, const Pose& pose) 
   }
   const int unknowns = camera.knows_centre ? 3 : 6;
   // In units in which rotations and shifts have equal weight, so that unobserved directions are
-  // found.
+  // detected.
   const Eigen::MatrixXd own = information.topLeftCorner(unknowns, unknowns);
   const Eigen::VectorXd scale = own.diagonal().cwiseSqrt();
   if (!(scale.minCoeff() > 0.0)) return {};

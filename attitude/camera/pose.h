@@ -1,4 +1,4 @@
-// The pose of the platform from where its markers are in an image.
+// The pose of the platform from the image positions of its markers.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace photorque {
 
-// Where a marker was read, from the middle of the image, and how well.
+// The measured image position of a marker, from the centre of the image, and its covariance.
 struct MarkerReading {
   size_t marker = 0;
   Vec2 pixel = Vec2::Zero();
@@ -18,33 +18,31 @@ struct MarkerReading {
 
 struct FoundPose {
   Pose pose;
-  double chi2 = 0.0;  // of the readings about it
-  int readings = 0;   // numbers read: two per marker
-  int unknowns = 0;   // 3 about the centre, 6 free
+  double chi2 = 0.0;  // of the readings relative to it
+  int readings = 0;   // number of coordinates read: two per marker
+  int unknowns = 0;   // 3 with known centre, 6 for a free pose
 };
 
-// The pose with the least chi², by Levenberg and Marquardt's method from a
-// first pose, that of the image before. The first pose's rate says how rows of a rolling shutter
-// differ. Nothing where the markers are too few or it does not settle.
+// The pose with the least χ², by the Levenberg–Marquardt method from `first`, the pose of the
+// previous image. The rate of `first` determines the differences of rows with a rolling shutter.
+// nullopt if there are too few markers or the fit does not converge.
 std::optional<FoundPose> find_pose(const TrackingCamera& camera,
                                    const std::vector<MarkerReading>& readings, const Pose& first);
 
-// The error of a tracking camera's attitude, predicted from its geometry and from images.
-
-// Covariance of the attitude read from one image, of its error as a rotation vector about lab axes
-// [rad²]: the inverse of the information of all markers in sight. Nothing where they do not fix it.
+// Covariance of the attitude error from one image [rad²], as a rotation vector about lab axes: the
+// inverse of the information of all visible markers. nullopt if they do not determine the attitude.
 std::optional<Mat3> attitude_covariance_lab_rad2(const TrackingCamera& camera, const Pose& pose);
 
-// Covariance from errors of calibration that stay: every marker's image is displaced by `error_px`
-// (one standard deviation per axis, independent of the others) and the pose does not know.
+// Covariance from a constant calibration error that is unknown to the pose: the image of every
+// marker is displaced by `error_px` (one standard deviation per axis, independent of the others).
 std::optional<Mat3> calibration_error_lab_rad2(const TrackingCamera& camera, const Pose& pose,
                                                double error_px);
-// And of a principal point that is wrong by `error_px` per axis, for all markers alike.
+// Covariance from an error of the principal point of `error_px` per axis, common to all markers.
 std::optional<Mat3> principal_point_error_lab_rad2(const TrackingCamera& camera, const Pose& pose,
                                                    double error_px);
 
-// Errors [rad] about the optical axis (in the image plane) and about the two axes across it: one
-// each, and the root of their mean square.
+// Errors [rad] about the optical axis (in plane) and about the two axes perpendicular to it: for
+// each of them, and their root mean square (out of plane).
 struct PlaneErrors {
   double in_plane_rad = 0.0;
   double out_of_plane_rad = 0.0;
@@ -52,25 +50,26 @@ struct PlaneErrors {
 };
 PlaneErrors plane_errors(const TrackingCamera& camera, const Mat3& covariance_lab_rad2);
 
-// The attitude error of wrong marker positions: where the least chi² lies when the readings are
-// those of the true markers without noise. Rotation vector about lab axes [rad].
+// The attitude error due to wrong marker positions: that of the least-χ² pose for noiseless images
+// of the true markers. Rotation vector about lab axes [rad].
 std::optional<Vec3> marker_bias_lab_rad(const TrackingCamera& camera, const Pose& pose);
 
-// One image: every marker in sight exposed and read, and the pose found from `first`, which is also
-// what the spots' motion is taken from.
+// Simulates one image: every visible marker is exposed and read, and the pose is found from
+// `first`. The motion of the spots is that of `first`.
 struct ImageResult {
   FoundPose found;
-  Vec3 error_lab_rad = Vec3::Zero();  // of the attitude found
+  Vec3 error_lab_rad = Vec3::Zero();  // of the attitude
 };
 std::optional<ImageResult> take_image(const TrackingCamera& camera, const Pose& truth,
                                       const Pose& first, uint64_t seed, uint64_t image);
 
-// Many images of one pose.
+// Statistics of many images of one pose.
 struct ImageStatistics {
   int images = 0;
-  int failed = 0;         // without a pose
-  double chi2 = 0.0;      // mean of error² against `predicted`, per degree of freedom: expected 1
-  double chi2_fit = 0.0;  // of the readings about the pose found, per degree of freedom
+  int failed = 0;  // number of images without a pose
+  // Mean of error² relative to the prediction, per degree of freedom: expected 1.
+  double chi2 = 0.0;
+  double chi2_fit = 0.0;           // of the readings about the pose found, per degree of freedom
   Mat3 covariance = Mat3::Zero();  // of the errors about lab axes [rad²]
   Vec3 mean_rad = Vec3::Zero();
 };

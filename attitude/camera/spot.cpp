@@ -23,7 +23,8 @@ Slice slice_of(double from_centre, double sigma) {
   return {part, (density_low - density_high) / (sigma * std::sqrt(2.0 * pi))};
 }
 
-// Expected electrons per pixel of a spot of one electron, with derivatives by its centre.
+// Expected electrons per pixel of a spot of one electron, with derivatives with respect to its
+// centre.
 struct UnitSpot {
   std::vector<double> part, by_column, by_row;
 };
@@ -33,7 +34,7 @@ UnitSpot unit_spot(const Spot& spot, const PixelWindow& window) {
   UnitSpot unit;
   unit.part.assign(columns * rows, 0.0);
   unit.by_column = unit.by_row = unit.part;
-  // Gaussians half a width apart make an even line to 1e-8.
+  // Gaussians at intervals of half their sigma give a uniform line to 1e-8.
   const int steps = 1 + static_cast<int>(std::ceil(2.0 * spot.smear_px.norm() / spot.sigma_px));
   std::vector<Slice> across(columns), down(rows);
   for (int step = 0; step < steps; ++step) {
@@ -56,7 +57,7 @@ UnitSpot unit_spot(const Spot& spot, const PixelWindow& window) {
   return unit;
 }
 
-// Pixels that hold all but a hundred-thousandth of the spot.
+// Pixels that contain all but 1e-5 of the spot.
 PixelWindow window_around(const Spot& spot) {
   const double half_x = 4.5 * spot.sigma_px + 0.5 * std::abs(spot.smear_px.x());
   const double half_y = 4.5 * spot.sigma_px + 0.5 * std::abs(spot.smear_px.y());
@@ -73,7 +74,7 @@ double variance_of(double signal, const PixelNoise& noise) {
          noise.read_noise_electrons * noise.read_noise_electrons;
 }
 
-// Fisher's information on column, row and brightness of the spot, and the score of the reading.
+// Fisher's information on column, row and brightness of the spot, and the score of the readings.
 struct Score {
   Mat3 information = Mat3::Zero();
   Vec3 score = Vec3::Zero();
@@ -94,7 +95,7 @@ Score score_of(const Spot& spot, const PixelNoise& noise, const PixelWindow& win
   return sum;
 }
 
-// Words of randomness for the standard library's distributions.
+// Random words for the distributions of the standard library.
 class HashedBits {
  public:
   using result_type = uint64_t;
@@ -110,7 +111,7 @@ class HashedBits {
 }  // namespace
 
 Spot spot_of(const TrackingCamera& camera, const MarkerView& view) {
-  // Column 0 has its left edge at minus half the width.
+  // The left edge of column 0 is at minus half the width.
   const Vec2 centre_px = view.pixel + 0.5 * Vec2(camera.width - 1.0, camera.height - 1.0);
   return {centre_px, view.electrons, spot_sigma_px(camera), view.smear_px};
 }
@@ -151,7 +152,7 @@ PixelWindow expose(const Spot& spot, const PixelNoise& noise, uint64_t seed, uin
 
 std::optional<Spot> read_spot(const PixelWindow& window, const Spot& shape,
                               const PixelNoise& noise) {
-  // Pixels above the noise give the start.
+  // The start follows from pixels above the noise.
   const double threshold = 2.0 * std::sqrt(variance_of(0.0, noise));
   Spot spot = shape;
   double sum = 0.0;
@@ -170,7 +171,7 @@ std::optional<Spot> read_spot(const PixelWindow& window, const Spot& shape,
   for (int round = 0; round < rounds; ++round) {
     const Score now = score_of(spot, noise, window);
     Vec3 step = now.information.ldlt().solve(now.score);
-    // A poor start must not throw the spot out of its window.
+    // Limits the step, so that the spot stays in its window after a poor start.
     const double longest = std::max(std::abs(step.x()), std::abs(step.y()));
     if (longest > 1.0) step.head<2>() /= longest;
     spot.centre_px += step.head<2>();

@@ -1,7 +1,8 @@
-// The image of one marker: electrons in pixels, their information on its place, and its readout.
+// The image of one marker: electrons in pixels, their information on its position, and the readout.
 //
-// A spot is a Gaussian, smeared evenly along its motion during the exposure and integrated over
-// each pixel. Pixels hold Poisson numbers of electrons with Gaussian read noise.
+// A spot is a Gaussian that is smeared uniformly along its motion during the exposure and
+// integrated over each pixel. Pixels contain Poisson-distributed electrons with Gaussian read
+// noise.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +16,14 @@ namespace photorque {
 using Mat2 = Eigen::Matrix2d;
 
 struct Spot {
-  Vec2 centre_px = Vec2::Zero();  // middle of the pixel at column 0, row 0 is (0, 0)
+  Vec2 centre_px = Vec2::Zero();  // (0, 0) is the centre of the pixel in column 0, row 0
   double electrons = 0.0;
   double sigma_px = 1.0;
   Vec2 smear_px = Vec2::Zero();
 };
 Spot spot_of(const TrackingCamera& camera, const MarkerView& view);
 
-// Expected electrons in the brightest pixel, of a spot in the middle of that pixel.
+// Expected electrons in the brightest pixel if the spot is at its centre.
 double brightest_pixel(const Spot& spot);
 
 // The noise of a pixel.
@@ -33,25 +34,25 @@ struct PixelNoise {
 };
 PixelNoise pixel_noise(const TrackingCamera& camera);
 
-// Covariance of the centre [pixel²] that no unbiased reading of the spot can undercut, brightness
-// unknown: the inverse of Fisher's information with variance signal + background + read noise²
-// (H. Van Trees, Detection, Estimation, and Modulation Theory I, sec. 2.4).
+// Covariance of the centre [pixel²]: the Cramér–Rao bound for an unknown brightness. It is the
+// inverse of Fisher's information with the variance signal + background + read noise² (H. Van
+// Trees, Detection, Estimation, and Modulation Theory I, sec. 2.4).
 Mat2 centre_covariance_px2(const Spot& spot, const PixelNoise& noise);
 
 // Pixels around a spot.
 struct PixelWindow {
   int column = 0, row = 0;  // of its first pixel
   int columns = 0, rows = 0;
-  std::vector<double> electrons;  // row by row, the mean background taken off
+  std::vector<double> electrons;  // row by row, minus the mean background
 };
 
-// An exposure. Every number is a hash of the seed and these counters.
+// Simulates an exposure. Every random number is a hash of seed, image and marker.
 PixelWindow expose(const Spot& spot, const PixelNoise& noise, uint64_t seed, uint64_t image,
                    uint64_t marker);
 
-// The centre of the spot in a window, by Fisher scoring of place and brightness from a first centre
-// of gravity; nothing where it does not settle inside the window. `shape` says how wide the spot is
-// and how it is smeared.
+// The centre of the spot in a window, by Fisher scoring of position and brightness that starts at
+// the centre of gravity. `shape` has the width and smear of the spot. nullopt if it does not
+// converge inside the window.
 std::optional<Spot> read_spot(const PixelWindow& window, const Spot& shape,
                               const PixelNoise& noise);
 

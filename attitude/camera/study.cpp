@@ -56,7 +56,7 @@ Pose leaning(const CameraStudy& study, double tilt_rad, double heading_rad) {
   return {attitude, attitude * study.rate_body_rad_s, Vec3::Zero()};
 }
 
-// In plane and out of plane [arcsec].
+// Errors in plane and out of plane [arcsec].
 using Pair = std::array<double, 2>;
 Pair arcseconds(const TrackingCamera& camera, const std::optional<Mat3>& covariance_rad2) {
   if (!covariance_rad2) return {unseen, unseen};
@@ -64,7 +64,7 @@ Pair arcseconds(const TrackingCamera& camera, const std::optional<Mat3>& covaria
   return {errors.in_plane_rad / arcsecond_rad, errors.out_of_plane_rad / arcsecond_rad};
 }
 
-// The larger of each; an unobserved direction is the worst.
+// The larger of each; an unobserved direction (NaN) is the worst.
 Pair worse(const Pair& a, const Pair& b) {
   const auto worst = [](double x, double y) {
     return std::isnan(x) || std::isnan(y) ? unseen : std::max(x, y);
@@ -74,7 +74,7 @@ Pair worse(const Pair& a, const Pair& b) {
 
 constexpr int headings = 24;
 
-// The worst over all headings of a tilt.
+// The largest errors over all headings of a tilt.
 template <class Covariance>
 Pair worst_at(const CameraStudy& study, const TrackingCamera& camera, double tilt_rad,
               const Covariance& covariance) {
@@ -151,7 +151,7 @@ Table degradation_table(const CameraStudy& study) {
   radial.marker_error_body_m = tangential.marker_error_body_m = {};
   radial.distortion_error = {d.k1, d.k2, 0.0, 0.0};
   tangential.distortion_error = {0.0, 0.0, d.p1, d.p2};
-  // For one attitude, the bias is one rotation, not a scatter.
+  // For one attitude the bias is a rotation, not a scatter.
   const auto square_of_bias = [](const TrackingCamera& camera,
                                  const Pose& pose) -> std::optional<Mat3> {
     const auto turn_rad = marker_bias_lab_rad(camera, pose);
@@ -208,7 +208,7 @@ Plot tilt_plot(const CameraStudy& study, const Table& degradation) {
   return plot;
 }
 
-// Two maps of `errors` at column and row, in plane and out of plane.
+// Two maps of `errors` at column and row: in plane and out of plane.
 std::vector<Map> two_maps(Map frame, int threads, const std::string& name, const std::string& title,
                           const std::function<Pair(int, int)>& errors) {
   const auto size = static_cast<size_t>(frame.width) * static_cast<size_t>(frame.height);
@@ -244,7 +244,7 @@ std::vector<Map> lean_maps(const CameraStudy& study) {
     const Pair one = arcseconds(study.camera, attitude_covariance_lab_rad2(study.camera, pose));
     return {one[0] * one[0], one[1] * one[1]};
   };
-  // A bin is the mean over places within it, where spots fall otherwise onto their pixels.
+  // A bin is the mean over positions within it, which place the spots differently on the pixels.
   constexpr int places = 4;
   const auto errors = [&](int column, int row) -> Pair {
     const double x_deg = -edge_deg + column * step_deg, y_deg = -edge_deg + row * step_deg;
@@ -263,7 +263,7 @@ std::vector<Map> lean_maps(const CameraStudy& study) {
   return two_maps(frame, study.threads, "", " of one image", errors);
 }
 
-// The markers' distances times a factor, and another lens of the same f-number.
+// Maps over the focal length, at constant f-number, and the scale of the marker distances.
 std::vector<Map> design_maps(const CameraStudy& study) {
   Map frame;
   frame.width = frame.height = study.grid;
@@ -286,7 +286,7 @@ std::vector<Map> design_maps(const CameraStudy& study) {
     const double scale =
         1e-3 * (frame.y_low + y * (frame.y_high - frame.y_low)) / std::max(largest_m, 1e-9);
     for (Marker& marker : camera.markers) marker.position_body_m.head<2>() *= scale;
-    // A design is one that keeps all its markers in the image.
+    // A valid design has all markers in the image.
     for (size_t i = 0; i < camera.markers.size(); ++i) {
       if (!view_of(camera, i, {})) return {unseen, unseen};
     }
@@ -295,7 +295,7 @@ std::vector<Map> design_maps(const CameraStudy& study) {
   return two_maps(frame, study.threads, "design_", " at zero tilt", errors);
 }
 
-// The paper's errors: in the image plane, out of it, each with its tolerance.
+// The errors in the paper, in and out of the image plane, with tolerances.
 struct Wanted {
   const char* label;
   double error_arcsec, tolerance_arcsec;
@@ -345,7 +345,7 @@ Plot design_plot(const std::vector<Map>& maps) {
   return plot;
 }
 
-// Predicted errors against those of simulated images.
+// Predicted errors compared with those of simulated images.
 Table image_table(const CameraStudy& study, const std::function<void(double)>& progress) {
   Table table = Table::of(
       "images", "Simulated images against the predicted covariance",

@@ -1,5 +1,5 @@
-// Design study of a tracking camera: attitude error over tilt, board and lens, with one marker
-// dark, and with calibration errors. Simulated images test the predicted errors.
+// Design study of a tracking camera: attitude error as a function of tilt, board and lens, with one
+// dark marker, and with calibration errors. Simulated images test the predicted errors.
 #pragma once
 
 #include <cstdint>
@@ -14,29 +14,30 @@ namespace photorque {
 struct CameraStudy {
   TrackingCamera camera;
   double max_tilt_rad = 0.5235987756;
-  Vec3 rate_body_rad_s = Vec3::Zero();  // of the platform while images are taken
+  Vec3 rate_body_rad_s = Vec3::Zero();  // of the platform during the exposures
   double calibration_px = 0.1;
-  // Error of the distortion in addition to that of the camera; its radial and tangential parts are
-  // studied separately.
+  // The part of the distortion that is not calibrated. Its radial and tangential parts are studied
+  // separately.
   Distortion distortion_error = {-0.1, 0.0, 1e-3, 1e-3};
-  int images = 1000;  // simulated at each attitude of take_images()
+  int images = 1000;  // number simulated at each attitude
   uint64_t seed = 1;
-  int threads = 0;                     // of the maps; 0: all
-  int grid = 61;                       // pixels of the maps along a side
-  std::vector<double> focal_length_m;  // of the design map, rising, at least two
-  std::vector<double> board_scale;     // likewise: factors on the markers' places
+  int threads = 0;                     // for the maps; 0: all
+  int grid = 61;                       // bins of the maps along a side
+  std::vector<double> focal_length_m;  // of the design map, increasing, at least two
+  std::vector<double> board_scale;     // factors of the marker positions, like the focal lengths
 };
 
-// Reads [camera_study], which may be absent; its keys are camera_study_table().
+// Reads [camera_study], which may be absent; its keys are those of camera_study_table().
 CameraStudy read_camera_study(const Settings& root, const TrackingCamera& camera,
                               std::optional<double> tilt_limit_rad);
 Key camera_study_table();
 
-// Tables "markers" and "degradation" (by tilt: all markers, the worst one dark, error of
-// calibration, of distortion, both about the centre and free), "images" (predicted against
-// simulated images); maps "in_plane_error", "out_of_plane_error" over the lean, "design_in_plane",
-// "design_out_of_plane" over focal length and board; plots "error_over_tilt" and "design" (which
-// board and lens give the paper's errors); headline figures.
+// The results of the study. Table "markers". Table "degradation" by tilt: all markers, the worst
+// marker dark, errors of calibration and distortion, and a free pose. Table "images": predicted and
+// simulated errors. Maps "in_plane_error" and "out_of_plane_error" over the tilt direction; maps
+// "design_in_plane_error" and "design_out_of_plane_error" over focal length and board. Plots
+// "error_over_tilt" and "design" (boards and lenses with the errors of the paper). Headline
+// figures.
 Product camera_product(const CameraStudy& study, const std::function<void(double)>& progress = {});
 
 }  // namespace photorque

@@ -78,8 +78,8 @@ constexpr ChoiceKey pose_weights("pose_weights",
                                  0, "weights of the markers in the pose");
 }  // namespace tracking_key
 
-// A spot is measured if it has this many electrons, and if the motion during the exposure draws it
-// out by no more than this.
+// A spot is measured if it has at least this many electrons, and if the motion during the exposure
+// smears it by at most this length.
 constexpr double least_electrons = 1.0, longest_smear_px = 128.0;
 
 // Cosine-power law with the given half angle: cosᵐ ε.
@@ -136,7 +136,8 @@ void read_place(const Settings& s, TrackingCamera& camera) {
   camera.weighs_alike = s.get(tracking_key::pose_weights) == 1;
 }
 
-// Requires a signal and a number of markers that suffice for a pose at zero tilt.
+// InputError if a pixel exceeds the full well at zero tilt, or if too few markers are visible
+// there.
 void check_view(const Settings& s, const TrackingCamera& camera) {
   const size_t least = camera.knows_centre ? 2 : 4;
   size_t seen = 0;
@@ -169,8 +170,8 @@ Distortion read_distortion(const Settings& s, const NumbersKey& key) {
   return {numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 
-// The image must grow with the angle as far as the sensor's corners: beyond, places would be seen
-// twice.
+// InputError unless the image position increases with the angle up to the corners of the sensor.
+// Otherwise some positions would appear twice.
 void check_distortion(const Settings& s, const NumbersKey& key, const TrackingCamera& camera,
                       const Distortion& distortion) {
   const Vec2 corner =
@@ -271,8 +272,9 @@ std::optional<MarkerView> view_of(const TrackingCamera& camera, size_t index, co
   MarkerView view;
   view.marker = index;
   Vec3 arm_m = arm_lab_m, seen_m;
-  // The row of the marker's image determines the time of its exposure, and this time the image. Two
-  // rounds suffice: the second changes the time by less than the rate times the line time squared.
+  // The row of the marker's image determines the time of its exposure, and this time determines the
+  // image. Two iterations suffice: the second changes the time by less than the rate times the line
+  // time squared.
   for (int round = 0; round < (camera.line_time_s > 0.0 ? 3 : 1); ++round) {
     const double late_s = camera.line_time_s * view.pixel.y();
     arm_m = turn_by(late_s * pose.rate_lab_rad_s) * arm_lab_m;

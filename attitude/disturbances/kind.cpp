@@ -12,7 +12,7 @@ namespace photorque {
 
 namespace {
 
-// Whether a key names the same quantity, perhaps in another unit than the one that its law names.
+// Whether a written key is the quantity of `key`, possibly in another unit.
 bool is_same_quantity(const std::string& written, std::string_view key) {
   const KeyUnit a = unit_of_key(written), b = unit_of_key(key);
   return a.stem == b.stem && (a.dimension == b.dimension || a.unit.empty() || b.unit.empty());

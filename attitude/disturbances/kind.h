@@ -13,39 +13,39 @@ namespace photorque {
 
 struct TrackingCamera;  // attitude/camera/tracking_camera.h
 
-// The parts of an experiment that a reader may use besides its own settings.
+// The parts of an experiment that a reader may use in addition to its table.
 struct DisturbanceContext {
   const Platform& platform;
   const Environment& environment;
-  const TrackingCamera* camera = nullptr;  // that sees markers; null: there is none
+  const TrackingCamera* camera = nullptr;  // camera with markers; null: none
 };
 
 // Properties of a kind for `budget`.
 struct BudgetTraits {
-  std::string paper_figure = {};    // its published figure, by name (paper_figures.h); empty: none
-  std::string reason_against = {};  // why it is not ranked; empty: it is
+  std::string paper_figure = {};    // name of its figure in paper_figures.h; empty: none
+  std::string reason_against = {};  // the reason for no ranking; empty: it is ranked
 };
 
 // All properties of a kind of disturbance are in its file; no other file uses its name.
 struct DisturbanceKind {
   std::string name;     // "bearing_drag"
   std::string summary;  // one sentence of physics
-  // Builds the disturbance from its table. InputError for a missing key or a value out of range;
-  // the caller has read `kind`, and reports keys that were not read.
+  // Builds the disturbance from its table. InputError for a missing key or a value out of range.
+  // The caller reads `kind` and reports keys that were not read.
   Disturbance (*read)(const Settings& settings, const DisturbanceContext& context) = nullptr;
   Screening screening = {};
   BudgetTraits budget = {};
-  // The table of [sensors] that may hold the kind's key as well; empty: no error of an instrument.
+  // The table of [sensors] that may contain the keys too; empty: not an error of an instrument.
   std::string instrument = {};
-  bool has_eclipses = false;  // the light may fail, which a run reports
-  // The quantity that it sets for all others, in words: of the kinds that set the same only one
-  // acts, and once.
+  bool has_eclipses = false;  // the light may fail; a run reports such events
+  // The quantity that it sets for all others, as text. A model may have only one disturbance that
+  // sets a quantity.
   std::string sets = {};
-  // The keys that `read` reads, for documents, editors and `check`; beside `kind`.
+  // The keys that `read` reads in addition to `kind`, for documents, editors and `check`.
   std::vector<Key> keys = {};
 };
 
-// DisturbanceKind::read of a law that needs its keys alone.
+// DisturbanceKind::read for a law that needs only its keys.
 template <class LawType, Stage stage, const auto&... keys>
 Disturbance read_law([[maybe_unused]] const Settings& settings, const DisturbanceContext&) {
   return make_disturbance<LawType>({parameters_of(settings, keys)...}, stage);
@@ -53,35 +53,36 @@ Disturbance read_law([[maybe_unused]] const Settings& settings, const Disturbanc
 
 // All kinds, generated from CMakeLists.txt.
 std::vector<DisturbanceKind> all_disturbance_kinds();
-// All kinds, made once.
+// All kinds, created once.
 const std::vector<DisturbanceKind>& disturbance_kinds();
 // The kind of that name; null if there is none (an empirical law has no kind).
 const DisturbanceKind* find_kind(const std::string& name);
 
-// One [[disturbance]]: the kind that `kind` names. InputError for an unknown kind.
+// Reads one [[disturbance]]. InputError for an unknown kind.
 Disturbance read_disturbance(const Settings& settings, const DisturbanceContext& context);
-// All of `root`'s [[disturbance]], in their order.
+// Reads all [[disturbance]] tables of `root` in their order. InputError if two of them set one
+// quantity.
 std::vector<Disturbance> read_disturbances(const Settings& root, const DisturbanceContext& context);
 
-// A disturbance from values in the units of their keys, as if an experiment file had held them:
+// A disturbance from values in the units of their keys, as from an experiment file:
 //   make_disturbance_of("static_unbalance", {{"offset_m", {0, 0, -3e-5}}}, context)
-// A single value makes a number, more make an array.
+// A single value is a number, several are an array.
 Disturbance make_disturbance_of(
     const std::string& kind, const std::vector<std::pair<std::string, std::vector<double>>>& values,
     const DisturbanceContext& context);
 
-// [[disturbance]] as it is declared: `kind` with the keys of every kind.
+// The table [[disturbance]]: `kind` with the keys of every kind.
 Key disturbance_table();
 
-// The first number of `key`, which may be written in another unit than the parameter's own; for
-// copies that are edited. NumericalError if the disturbance has no such parameter.
+// Index of the first number of `key`, which may be in another unit than the parameter. Needed for
+// editing copies. NumericalError if the disturbance has no such parameter.
 size_t index_of(const Disturbance& disturbance, std::string_view key);
 Parameter& parameter_of(Disturbance& disturbance, std::string_view key);
 const Parameter& parameter_of(const Disturbance& disturbance, std::string_view key);
-// Three numbers of one key.
+// The three numbers of one key, SI.
 Vec3 vector_of(const Disturbance& disturbance, std::string_view key);
 void set_vector(Disturbance& disturbance, std::string_view key, const Vec3& value_SI);
-// The state of that name.
+// The state of that name; NumericalError if there is none.
 ExtraState& state_of(Disturbance& disturbance, std::string_view name);
 const ExtraState& state_of(const Disturbance& disturbance, std::string_view name);
 

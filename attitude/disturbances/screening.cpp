@@ -5,7 +5,7 @@
 namespace photorque {
 namespace {
 
-// "`offset_m` 5e-06 each; …": the prior widths, SI.
+// The prior widths as text, "`offset_m` 5e-06 each; …", SI.
 std::string widths_text(const Parametrisation& p) {
   std::string text;
   for (const EffectKey& key : p.keys) {

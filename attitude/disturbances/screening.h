@@ -17,9 +17,9 @@ struct EffectKey {
   std::string key;             // as in an experiment file
   std::vector<double> start;   // initial values of a fit, one per component
   double scale = 1.0;          // expected size: the standard deviation of the prior
-  double lowest = -unbounded;  // bounds of physics
+  double lowest = -unbounded;  // physical bounds
   double highest = unbounded;
-  bool searched = false;  // enters nonlinearly: several starts are tried
+  bool searched = false;  // nonlinear: a fit tries several initial values
   // Start and scale are multiples of the platform's mean moment of inertia.
   bool times_inertia = false;
   bool is_fixed = false;  // selects the law; not fitted
@@ -118,8 +118,8 @@ struct Screening {
   std::string widths = {};
   Requirement needs = Requirement::none;
   Scan scan = Scan::nothing;
-  bool fast = false;           // acts within averages of the readings: fitted to all of them
-  bool per_recording = false;  // has another value in each recording
+  bool fast = false;           // changes within averaged blocks: fitted to all readings
+  bool per_recording = false;  // has a separate value in each recording
   bool steady = false;         // a constant torque in the lab frame
   // Change of the platform's inertia by a fitted disturbance, for the limit of plausible changes;
   // null: none.

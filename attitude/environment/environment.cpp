@@ -45,7 +45,7 @@ constexpr NumberKey air_viscosity(
 constexpr TableKey environment("environment", "fields, air and light around the platform");
 }  // namespace environment_key
 
-// date = 2025-06-30, or a decimal year.
+// Decimal year of `date_year`, or of `date` = 2025-06-30 or a decimal year.
 double read_year(const Settings& igrf) {
   if (igrf.has(environment_key::date_year)) return igrf.get(environment_key::date_year);
   if (!igrf.has(environment_key::date))

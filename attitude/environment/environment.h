@@ -1,5 +1,5 @@
-// The surroundings of the platform, constant in time; disturbances may change it (see
-// EvaluationContext).
+// The surroundings of the platform, constant in time. Disturbances may change them in
+// EvaluationContext.
 #pragma once
 
 #include <optional>
@@ -25,16 +25,16 @@ struct Environment {
   // Unit vector away from the Earth's centre, and g/R (μ/r³ in orbit): see gravity_gradient.
   Vec3 up_lab = Vec3::UnitZ();
   double gravity_gradient_1_s2 = standard_gravity_m_s2 / earth_radius_m;
-  // The Earth's rotation in lab axes: the lab turns, unless it is the inertial frame.
+  // Rate of the Earth's rotation in lab axes; zero if the lab is the inertial frame.
   Vec3 earth_rate_lab_rad_s = Vec3::Zero();
-  // Direction of the Sun; none: not stated.
+  // Direction and distance of the Sun; empty: not stated.
   std::optional<SunPath> sun = {};
 
   double air_temperature_K = room_temperature_K;
   double air_pressure_Pa = room_pressure_Pa;
-  // Dry air at that temperature and pressure unless given: ideal gas with R = 287.05 J/(kg K), and
-  // Sutherland's law with 1.716e-5 Pa s at 273.15 K and S = 110.4 K (White, Viscous Fluid Flow,
-  // 3rd ed., table 1-2).
+  // Default: dry air at this temperature and pressure, from the ideal gas law with R = 287.05 J/(kg
+  // K) and Sutherland's law with 1.716e-5 Pa s at 273.15 K and S = 110.4 K (White, Viscous Fluid
+  // Flow, 3rd ed., table 1-2).
   double air_density_kg_m3 = 1.2041;
   double air_viscosity_Pa_s = 1.813e-5;
 };

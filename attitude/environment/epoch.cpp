@@ -28,7 +28,7 @@ bool take(std::string_view& text, char c) {
   return true;
 }
 
-// "01-01" or "001" of a year, as a day.
+// Parses "01-01" or "001" of a year. Returns the day since 1970-01-01.
 std::optional<long> take_day(std::string_view& text, int year) {
   using namespace std::chrono;
   const std::chrono::year y{year};
@@ -69,7 +69,7 @@ std::optional<Epoch> parse_epoch(std::string_view text) {
   }
   double second = 0.0;
   if (text.size() < 2 || !take_number(text, text.size(), second)) return std::nullopt;
-  // 60 s and more: a leap second.
+  // Seconds from 60 on are a leap second.
   if (hour < 0 || hour > 23 || minute < 0 || minute > 59 || !(second >= 0.0 && second < 61.0)) {
     return std::nullopt;
   }

@@ -48,9 +48,9 @@ GeomagneticModel::GeomagneticModel(double decimal_year) {
     (row.is_h ? h_nT_ : g_nT_)[index(row.n, row.m)] = at_year(row, decimal_year);
 }
 
-// Sums eq. 23's gradient by degree and order. P is the Schmidt semi-normalised associated Legendre
-// function, D its derivative in θ, and Q = P / sin θ for m ≥ 1, whose own recursion starts at 1: no
-// division by sin θ anywhere, so the poles need no special case.
+// Sums the gradient of eq. 23 by degree and order. P is the Schmidt semi-normalised associated
+// Legendre function and D its derivative in θ. Q = P / sin θ for m ≥ 1 has a separate recursion
+// that starts at 1. There is no division by sin θ, so the poles need no special case.
 Vec3 GeomagneticModel::north_east_down_T(const GeocentricPosition& position) const {
   const double c = std::cos(position.colatitude_rad);
   const double s = std::sin(position.colatitude_rad);
@@ -102,7 +102,7 @@ Vec3 GeomagneticModel::north_east_down_T(const GeodeticPosition& position) const
   const double colatitude_rad = std::atan2(axis_distance_m, plane_distance_m);
   const Vec3 geocentric = north_east_down_T(GeocentricPosition{
       std::hypot(axis_distance_m, plane_distance_m), colatitude_rad, position.longitude_rad});
-  // The geodetic vertical leans from the geocentric by ψ about the common east axis.
+  // The geodetic vertical is tilted from the geocentric one by ψ about the common east axis.
   const double psi = position.latitude_rad - (std::numbers::pi / 2.0 - colatitude_rad);
   return {geocentric.x() * std::cos(psi) + geocentric.z() * std::sin(psi), geocentric.y(),
           geocentric.z() * std::cos(psi) - geocentric.x() * std::sin(psi)};

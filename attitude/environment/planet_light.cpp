@@ -18,9 +18,9 @@ double season_cosine(double decimal_year) {
   return std::cos(2.0 * pi * (decimal_year - december_22));
 }
 
-// θ is the angle from the nadir, ρ that of the limb. The variable of integration is
-// w = √(1 − sin²θ/sin²ρ), in which the integrand is smooth up to the limb. Then
-// cos θ dΩ = sin²ρ w dw dφ, and the distance is d = r cos θ − R w.
+// θ is the angle from the nadir, ρ that of the limb. The integration variable is w = √(1 −
+// sin²θ/sin²ρ), in which the integrand is smooth up to the limb. Then cos θ dΩ = sin²ρ w dw dφ, and
+// the distance is d = r cos θ − R w.
 std::vector<PlanetPart> planet_parts(double radius_m, double distance_m, size_t rings,
                                      size_t sectors) {
   const double sine = radius_m / distance_m;  // of ρ

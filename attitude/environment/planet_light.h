@@ -1,5 +1,4 @@
-// The light that a planet sends to a satellite: sunlight that its surface reflects and its own
-// infrared.
+// The light from a planet to a satellite: reflected sunlight and thermal infrared.
 //
 // Every element dA of the sphere emits by Lambert's law with the exitance
 //   M = a E max(0, cos(zenith angle of the Sun)) + e E/4,
@@ -18,10 +17,11 @@
 
 namespace photorque {
 
-// Albedo and emissivity of the surface, by latitude and season:
+// Albedo and emissivity of the surface by latitude and season:
 //   a = mean + season c P₁(sin latitude) + second P₂(sin latitude),
-// with the cosine c of the phase of the year since 22 December; e likewise. The numbers are those
-// of the Earth (Knocke, Ries, Tapley). For a uniform planet, `season` and `second` are 0.
+// with the cosine c of the phase of the year since 22 December; the emissivity has the same form.
+// The defaults are those of the Earth (Knocke, Ries, Tapley). A uniform planet has `season` and
+// `second` 0.
 struct PlanetSurface {
   struct Zones {
     double mean = 0.0, season = 0.0, second = 0.0;
@@ -34,7 +34,7 @@ struct PlanetSurface {
 // The cosine of the phase of the year since 22 December.
 double season_cosine(double decimal_year);
 
-// An element of the visible surface, in axes whose z points away from the planet: its zenith, its
+// An element of the visible surface, in axes with z away from the planet: its zenith and its
 // direction from the satellite (unit vectors), and cos α dA/(π d²).
 struct PlanetPart {
   Vec3 zenith, towards;
@@ -42,16 +42,18 @@ struct PlanetPart {
 };
 
 // The elements of the visible part of a sphere: `rings` with `sectors` each. The distance from the
-// centre must exceed the radius. The weights along z sum to (radius/distance)² to rounding errors,
-// the irradiance of a uniform planet on a surface that faces down.
+// centre must exceed the radius. The weights along z sum to (radius/distance)² within rounding
+// errors. This is the relative irradiance of a uniform planet on a surface that faces down.
 std::vector<PlanetPart> planet_parts(double radius_m, double distance_m, size_t rings = 4,
                                      size_t sectors = 12);
 
-// Axes of planet_parts() in inertial axes: z along `up`, x as close to the Sun as possible.
+// Axes of planet_parts() in inertial axes: z along `up`, x as close to the direction of the Sun as
+// possible. Unit vectors.
 Mat3 planet_axes(const Vec3& up, const Vec3& to_sun);
 
-// Irradiance from one element on a surface that faces it, in sunlight of `irradiance_W_m2`. `axes`
-// are those of planet_axes(); the planet rotates about the inertial z axis.
+// Irradiance from one element on a surface that faces it, with a solar irradiance of
+// `irradiance_W_m2`. `axes` are those of planet_axes(). The inertial z axis is the planet's axis of
+// rotation.
 struct PlanetIrradiance {
   double reflected_W_m2 = 0.0, infrared_W_m2 = 0.0;
   double sum_W_m2() const { return reflected_W_m2 + infrared_W_m2; }

@@ -25,7 +25,7 @@ constexpr NumberKey distance("distance_au", astronomical_unit_m, Range::positive
 constexpr TextKey date("date",
                        "calendar time of t = 0, \"2015-04-27T03:00\": the Sun follows the orbit",
                        {.optional = true});
-// Not within the Sun.
+// Larger than the radius of the Sun.
 constexpr NumberKey semi_major_axis("semi_major_axis_au", {0.005 * astronomical_unit_m, 1e308},
                                     "semi-major axis of the orbit");
 constexpr NumberKey eccentricity("eccentricity", 0.0, {0.0, 1.0, false, true},
@@ -50,9 +50,9 @@ constexpr TableKey pointing("pointing", "direction of a lab axis in the sky, wit
 constexpr TableKey sun("sun", "direction of the Sun, for `radiation_pressure`");
 }  // namespace sun_key
 
-// IAU 1976, at J2000.
+// Obliquity of the ecliptic at J2000, IAU 1976.
 constexpr double obliquity_rad = 23.4392911 * degree_rad;
-// Gauss's year: of a body without mass at 1 au.
+// Gaussian mean motion: of a massless body at 1 au.
 constexpr double gaussian_motion_rad_s = 0.01720209895 / 86400.0;
 
 Mat3 equatorial_from_ecliptic() {
@@ -63,17 +63,17 @@ struct Direction {
   Lanes cosine, sine;
 };
 
-// The direction after a small further rotation, to the fourth power of the step.
+// The direction after a further small rotation, with an error of fourth order in the step.
 Direction turned(const Direction& from, const Lanes& step_rad) {
   const Lanes square = step_rad * step_rad, c = 1.0 - 0.5 * square,
               s = step_rad * (1.0 - square / 6.0);
   return {c * from.cosine - s * from.sine, c * from.sine + s * from.cosine};
 }
 
-// Solves Kepler's equation for the eccentric anomaly with Newton's method, and Halley's near the
-// end. The start is the series to third order in the eccentricity. If this is inaccurate, it is the
-// aphelion: between it and the root, Kepler's equation is convex, and Newton steps do not pass the
-// root.
+// Solves Kepler's equation for the eccentric anomaly with Newton's method, and Halley's method near
+// the end. The start is the series to third order in the eccentricity. For large eccentricities,
+// for which the series is inaccurate, it is the aphelion. Between aphelion and root, Kepler's
+// equation is convex, so Newton steps do not pass the root.
 Direction eccentric_anomaly(const Lanes& any_mean_rad, double eccentricity) {
   const auto to_nearest_turn = [](double x) {
     return x - 2.0 * pi * std::nearbyint(x / (2.0 * pi));
@@ -154,8 +154,8 @@ Mat3 HeliocentricOrbit::ecliptic_from_plane() const {
 }
 
 HeliocentricOrbit orbit_of_earth(double since_J2000_s) {
-  // Mean longitude and anomaly of the Sun; the longitude counts from the equinox of date, which
-  // moves by 1.397 degrees a century against that of J2000.
+  // Mean longitude and anomaly of the Sun. The longitude is relative to the equinox of date, which
+  // moves by 1.397 degrees per century relative to that of J2000.
   const double days = since_J2000_s / 86400.0, centuries = days / 36525.0;
   const double longitude_deg = 280.460 + 0.9856474 * days - 1.397 * centuries,
                anomaly_deg = 357.528 + 0.9856003 * days;
@@ -279,7 +279,7 @@ SunPath read_sun(const Settings& settings) {
 
 namespace {
 
-// Area of the segment that a chord at `distance` from the centre cuts from a circle.
+// Area of the segment that a chord at `distance` from the centre separates from a circle.
 double segment_area(double radius, double distance) {
   const double cosine = std::clamp(distance / radius, -1.0, 1.0);
   return radius * radius * (std::acos(cosine) - cosine * std::sqrt(1.0 - cosine * cosine));
@@ -293,7 +293,7 @@ double uncovered_fraction(double source_radius_rad, double cover_radius_rad,
   if (c >= a + b) return 1.0;
   if (c <= b - a) return 0.0;
   if (c <= a - b) return 1.0 - (b / a) * (b / a);
-  // The lens between the circles, cut along their common chord.
+  // The lens between the circles, divided along the common chord.
   const double to_chord = (c * c + a * a - b * b) / (2.0 * c);
   const double covered = segment_area(a, to_chord) + segment_area(b, c - to_chord);
   return 1.0 - covered / (pi * a * a);

@@ -1,4 +1,4 @@
-// Where the Sun is, seen from a spacecraft, over the time of a recording.
+// Direction of the Sun from a spacecraft during a recording.
 #pragma once
 
 #include <array>
@@ -12,17 +12,17 @@
 
 namespace photorque {
 
-// An ellipse about the Sun, ecliptic and equinox of J2000.
+// An elliptic orbit about the Sun, in the ecliptic and equinox of J2000.
 struct HeliocentricOrbit {
   double semi_major_axis_au = 1.0;  // > 0
   double eccentricity = 0.0;        // in [0, 1)
   double inclination_rad = 0.0;
   double ascending_node_rad = 0.0;
-  double perihelion_rad = 0.0;    // its argument, from the node
+  double perihelion_rad = 0.0;    // argument of perihelion, from the node
   double mean_anomaly_rad = 0.0;  // at time 0
 
-  // Positions at eight instants, in axes of the orbit's plane: x to the perihelion, y along the
-  // motion there.
+  // Positions and velocities at eight instants, in axes of the orbital plane: x to the perihelion,
+  // y along the motion there.
   struct InPlane {
     std::array<Lanes, 2> position_au, velocity_au_s;
   };
@@ -30,12 +30,12 @@ struct HeliocentricOrbit {
   Mat3 ecliptic_from_plane() const;
 };
 
-// The orbit of the Earth, as good as its mean elements: the Sun's direction to 0.02 deg from 1950
-// to 2050 (The Astronomical Almanac, low-precision formulas for the Sun's coordinates). Seconds
-// since 2000-01-01T12:00.
+// The orbit of the Earth from its mean elements. The direction of the Sun is accurate to 0.02 deg
+// from 1950 to 2050 (The Astronomical Almanac, low-precision formulas for the Sun's coordinates).
+// `since_J2000_s`: time since 2000-01-01T12:00.
 HeliocentricOrbit orbit_of_earth(double since_J2000_s);
 
-// From the spacecraft to the Sun in lab axes [au], smooth in time.
+// Vector from the spacecraft to the Sun in lab axes [au], a smooth function of time.
 class SunPath {
  public:
   static SunPath fixed(const Vec3& towards_lab_au);
@@ -48,7 +48,7 @@ class SunPath {
   std::array<Vec3Of<Lanes>, 2> at(const Lanes& time_s) const;
 
  private:
-  // Direction from a table or a fixed one.
+  // The value from the table, or the fixed one.
   std::array<Vec3, 2> of_table(double time_s) const;
 
   Vec3 fixed_au_ = Vec3::UnitX();
@@ -57,9 +57,9 @@ class SunPath {
   Eigen::Matrix<double, 3, 2> lab_from_plane_ = {};
 };
 
-// The axes of a lab whose `axis` (0, 1, 2) points to right ascension and declination (equator and
-// equinox of J2000) while the next one, at a roll of zero, leans as far as it can towards the
-// celestial north pole; a roll turns that about the first.
+// Orientation of a lab from one axis and a roll angle. `axis` (0, 1, 2) points to right ascension
+// and declination (equator and equinox of J2000). At a roll of zero, the next axis is as close to
+// the celestial north pole as possible. The roll rotates it about the first.
 struct Pointing {
   int axis = 2;
   double right_ascension_rad = 0.0, declination_rad = 0.5 * pi;
@@ -68,27 +68,26 @@ struct Pointing {
   Mat3 lab_from_equatorial() const;
 };
 
-// Reads [environment.sun]:
-//   direction[3]: fixed, lab axes, any length; or
-//   table: CSV with t_s, sun_x, sun_y, sun_z, lab axes, any length, its path relative to the
-//     experiment's; both at 1 au unless distance_au says otherwise; or
-//   date: calendar time of t = 0; orbit = { semi_major_axis_au, eccentricity, inclination_deg,
-//     ascending_node_deg, perihelion_deg, mean_anomaly_deg, epoch (date) }, by default that of the
-//     Earth; pointing = { axis ("z"), right_ascension_deg, declination_deg, roll_deg (0) }, by
-//     default lab axes are equatorial.
+// Reads [environment.sun], one of three forms:
+//   direction[3]: fixed, lab axes, any length.
+//   table: CSV with t_s, sun_x, sun_y, sun_z, lab axes, any length; its path is relative to the
+//     experiment. For both, the distance is distance_au (default 1).
+//   date: calendar time of t = 0. orbit = { semi_major_axis_au, eccentricity, inclination_deg,
+//     ascending_node_deg, perihelion_deg, mean_anomaly_deg, epoch (date) }; default: the Earth's.
+//     pointing = { axis ("z"), right_ascension_deg, declination_deg, roll_deg (0) }; default: lab
+//     axes are equatorial.
+// InputError unless exactly one form is given.
 SunPath read_sun(const Settings& settings);
 Key sun_table();
 
-// Visible fraction of the Sun behind a sphere.
-
-// Fraction of a luminous disc that is not covered by an opaque one, in [0, 1]: angular radii of
-// both and the angle between their centres [rad]. The discs are flat: for sources of a few degrees
-// and more the true solid angles differ by per cents.
+// Fraction of a luminous disc that an opaque disc leaves uncovered, in [0, 1], from the angular
+// radii of both and the angle between their centres [rad]. The discs are treated as flat: for
+// sources of some degrees the error is of the order of per cents.
 double uncovered_fraction(double source_radius_rad, double cover_radius_rad, double separation_rad);
 
-// Fraction of the Sun that a satellite sees past a planet of radius `planet_radius_m` at the
-// origin: 1 in full light, 0 in the umbra. Positions in one frame, from the planet's centre [m];
-// the satellite outside the planet.
+// Fraction of the Sun's disc that a planet of radius `planet_radius_m` at the origin leaves visible
+// from a satellite: 1 in full light, 0 in the umbra. Positions in one frame from the planet's
+// centre [m]. The satellite must be outside the planet.
 double sunlit_fraction(const Vec3& satellite_m, const Vec3& sun_m, double planet_radius_m,
                        double sun_radius_m = 6.957e8);
 

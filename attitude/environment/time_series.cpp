@@ -8,7 +8,8 @@
 namespace photorque {
 namespace {
 
-// Second derivatives of the natural spline: a tridiagonal system, solved forwards and backwards.
+// Second derivatives of the natural spline: a tridiagonal system, solved by elimination and back
+// substitution.
 std::vector<double> spline_curvatures(const std::vector<double>& x, const std::vector<double>& y) {
   const size_t n = x.size();
   std::vector<double> curvature(n, 0.0), upper(n, 0.0);

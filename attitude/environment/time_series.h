@@ -1,4 +1,4 @@
-// A vector that is known at some times, made smooth in between.
+// A vector that is known at some times and interpolated smoothly between them.
 #pragma once
 
 #include <array>
@@ -11,20 +11,21 @@
 
 namespace photorque {
 
-// A natural cubic spline through samples: twice continuously differentiable, so that an integrator
-// can take steps longer than the sampling. Before the first and after the last sample the value is
-// that of the end ("hold") or zero.
+// A natural cubic spline through samples. It is twice continuously differentiable, so that an
+// integrator can take steps longer than the sampling interval. Before the first and after the last
+// sample the value is that of the end ("hold") or zero.
 class TimeSeries {
  public:
   enum class Outside { hold, zero };
 
-  // At least two samples, times rising strictly, all finite; NumericalError otherwise.
+  // NumericalError unless there are at least two samples, all finite, with strictly increasing
+  // times.
   TimeSeries(std::vector<double> times_s, const std::vector<Vec3>& values,
              Outside outside = Outside::hold);
 
   double first_s() const { return times_s_.front(); }
   double last_s() const { return times_s_.back(); }
-  // First and last time, as far as they lie in (from_s, to_s): where the series is not smooth.
+  // The first and the last time, if they are in (from_s, to_s). The series is not smooth there.
   std::vector<double> ends_within(double from_s, double to_s) const;
 
   // Value and time derivative of one component.
@@ -47,7 +48,7 @@ class TimeSeries {
   Outside outside_;
 };
 
-// Reads a CSV whose header names a time column `t_s` and the three columns given, in any order
+// Reads a CSV whose header contains a time column `t_s` and the three `columns`, in any order and
 // among others. InputError with the line of a cell that is missing, not a number or not in order of
 // time.
 TimeSeries read_time_series(const std::filesystem::path& path,

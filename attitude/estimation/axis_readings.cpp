@@ -62,8 +62,8 @@ class RegressionLine {
     return std::sqrt(std::max(0.0, left) / (std::max(1.0, count_ - 2.0) * spread()));
   }
   double scatter() const { return std::sqrt(square() / std::max(1.0, count_ - 1.0)); }
-  // Mean square of the steps over that of independent readings of this scatter (J. von Neumann
-  // 1941): near 1 for noise, near 0 for a slow motion.
+  // Mean square of the differences of successive readings, relative to that of independent readings
+  // with this scatter (J. von Neumann 1941): near 1 for noise, near 0 for a slow motion.
   double roughness() const { return 0.5 * steps_ / std::max(1e-300, square()); }
 
  private:
@@ -74,8 +74,8 @@ class RegressionLine {
   double before_x_ = 0.0, steps_ = 0.0, t_ = 0.0, x_ = 0.0, tt_ = 0.0, tx_ = 0.0, xx_ = 0.0;
 };
 
-// The first reading of the motion after a rest of `rest` readings, a few later at most; 0: the
-// readings do not leave the rest at once.
+// Index of the first reading of a motion that starts at most 12 readings after a rest of `rest`
+// readings; 0 if there is no sudden motion.
 size_t motion_start(const AxisReadings& read, size_t rest, double mean, double scatter) {
   constexpr size_t most_between = 12, least_after = 5;
   constexpr double away = 5.0, sudden = 10.0;
@@ -96,7 +96,7 @@ size_t motion_start(const AxisReadings& read, size_t rest, double mean, double s
   return 0;
 }
 
-// The first reading of the motion after a rest; 0 without one.
+// Index of the first reading of the motion after a rest; 0 without one.
 size_t first_after_rest(const AxisReadings& read, bool is_rate) {
   constexpr size_t fewest = 5, many = 24;
   constexpr double no_slope = 3.0, clear_slope = 8.0, near_zero = 0.02, least_rough = 0.4,

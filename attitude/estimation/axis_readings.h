@@ -1,4 +1,4 @@
-// The readings of one angle or one rate about the axis of a body that turns about it alone.
+// Readings of the angle or rate of a body about its only axis of rotation.
 #pragma once
 
 #include <vector>
@@ -7,23 +7,24 @@
 
 namespace photorque {
 
-// Only rows with a reading.
+// Readings about the axis; rows without a reading are left out.
 struct AxisReadings {
   std::vector<size_t> row;
   std::vector<double> time_s, value;  // rad or rad/s
 };
 
-// Angles in the rows [first, last), whole turns counted.
+// Angles in the rows [first, last), with whole turns counted.
 AxisReadings angles_about(const Observation& rows, const Vec3& axis, size_t first, size_t last);
 // Rates in the rows [first, last).
 AxisReadings rates_about(const Observation& rows, const Vec3& axis, size_t first, size_t last);
 
-// The first of the rows [first, last) after a rest from which the body sets off at once, as where a
-// motor is switched on or a hand lets go. While it rests, at least five readings scatter about one
-// value as noise does, for a rate about zero, without a slope. At most twelve readings later all of
-// the next are further away than five times that scatter, on one side, and with their slope the
-// body would have moved by ten times the scatter within the rest. `first` where there is no such
-// rest.
+// Row in [first, last) at which the body starts to move suddenly after a rest, for example when a
+// motor is switched on or the body is released; `first` if there is no such rest.
+//
+// During the rest, at least five readings scatter about one value (zero for a rate) like noise,
+// without a slope. The motion starts at most twelve readings later. From its start on, all readings
+// are more than five times the scatter away, on one side. Their slope would move the body by more
+// than ten times the scatter during the time of the rest.
 size_t start_of_motion(const Observation& rows, const Vec3& axis, size_t first, size_t last);
 
 }  // namespace photorque

@@ -14,9 +14,9 @@
 namespace photorque {
 namespace {
 
-// Largest disagreement of the right convention; scale errors, misalignments and biases cause less.
+// Largest disagreement of the right convention. Scale errors, misalignments and biases cause less.
 constexpr double agrees = 0.2;
-// A gyro bias that is not evidence of a wrong convention.
+// A gyro bias of this size is not evidence of a wrong convention.
 constexpr double usual_bias_rad_s = 0.01;
 
 enum class QuaternionReading { as_is, conjugated, scalar_last, scalar_last_conjugated };
@@ -37,7 +37,7 @@ struct Pair {
   Vec3 gyro_rad_s;  // mean
 };
 
-// The median rate from one attitude to the next.
+// Median rate between successive attitudes.
 double usual_rate_rad_s(const Observation& seen) {
   std::vector<double> rates;
   for (size_t i = 1; i < seen.blocks(); ++i) {
@@ -73,7 +73,8 @@ std::vector<Pair> pairs_of(const Observation& seen) {
   return all;
 }
 
-// Mean over the axes of: mean square difference of the rates divided by their mean square.
+// Disagreement of gyro and attitude: the mean square difference of the rates relative to their mean
+// square, averaged over the axes. Biases up to usual_bias_rad_s do not count.
 double disagreement(const std::vector<Pair>& pairs, QuaternionReading reading,
                     const Mat3& gyro_matrix) {
   Vec3 mean = Vec3::Zero(), square = Vec3::Zero(), energy = Vec3::Zero();
@@ -160,7 +161,7 @@ void read_gyro_as(const Mat3& matrix, Observation& seen) {
   }
 }
 
-// The rates of all three axes and their derivatives, from straight lines through seven readings.
+// Rates of all three axes and their derivatives, from straight lines through seven readings.
 struct Change {
   Vec3 rate_rad_s, slope_rad_s2;
 };
@@ -187,7 +188,7 @@ std::vector<Change> changes_of(const Observation& seen) {
   return all;
 }
 
-// Mean square of I ω' + ω × I ω divided by that of I ω', with the rates converted by `gyro`.
+// Mean square of I ω' + ω × I ω relative to that of I ω', with the rates converted by `gyro`.
 double disagreement(const std::vector<Change>& changes, const Mat3& inertia_kg_m2,
                     const Mat3& gyro) {
   double off = 0.0, all = 0.0;
@@ -229,7 +230,7 @@ std::string turn_wheels(const std::array<bool, 3>& reversed, std::span<Observati
   return names;
 }
 
-// An interpretation of the gyro, and the inertia that follows from the rates under it.
+// An interpretation of the gyro, and the inertia estimated from the rates with it.
 struct FreeReading {
   GyroReading gyro;
   FreeInertia inertia;
@@ -259,7 +260,7 @@ std::vector<FreeReading> free_readings(std::span<const Observation> segments) {
   return all;
 }
 
-// The best interpretation: that of the header, unless another has a far smaller residual.
+// The best interpretation: that of the header, unless another has a much smaller residual.
 const FreeReading* best_reading(const std::vector<FreeReading>& all, const Mat3& inertia_kg_m2) {
   // `good`: residual below which the header is accepted. `better`: ratio by which another must be
   // smaller. `alike`: ratio within which interpretations are equivalent, so that the cost decides.
@@ -314,7 +315,8 @@ std::string repair_free_rates(std::span<Observation> segments, const Mat3& inert
   }
   if (changes.size() < fewest) return "";
   const double as_is = disagreement(changes, inertia_kg_m2, Mat3::Identity());
-  // The stated inertia explains half of the change of the rates; torques may explain the rest.
+  // The stated inertia explains at least half of the change of the rates; torques may explain the
+  // rest.
   if (as_is < 0.5) {
     const auto found = free_inertia({segments.begin(), segments.end()}, FreeDrag::none);
     if (!found || found->left > agrees) return "";
@@ -379,7 +381,7 @@ std::optional<AngleConvention> convention_of_angles(const Recording& recording,
       found = {std::string(sequence), factor};
     }
   }
-  constexpr double better = 0.5;  // than other axes of the gyro
+  constexpr double better = 0.5;  // relative to other axes of the gyro
   if (best > agrees || best > 0.2 * as_is || best > better * by_axes) return usual;
   const std::string unit = found.factor == 1.0  ? ""
                            : found.factor < 1.0 ? " and are in degrees under a header of radians"

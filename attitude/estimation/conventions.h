@@ -1,4 +1,4 @@
-// Frame and convention checks before any physics: the rates must integrate to the attitude.
+// Checks of frames and conventions before any fit: the rates must integrate to the attitude.
 #pragma once
 
 #include <optional>
@@ -9,38 +9,38 @@
 
 namespace photorque {
 
-// When gyro and attitude contradict each other as read, and one other reading of the same numbers
-// (quaternion conjugated, scalar last, axes permuted or reversed, degrees per second under a header
-// that says radians or the reverse) makes them agree, the observations are changed to that reading.
-// Returns a sentence about it; empty: nothing was changed. Without a gyro nothing can be checked.
-// The segments of one recording are read in one way: long ones decide for short ones.
+// Repairs the convention of gyro and attitude if they contradict each other. The observations are
+// changed if one other interpretation of the numbers makes them agree: conjugated quaternion,
+// scalar last, axes permuted or reversed, degrees per second under a header in radians, or the
+// reverse. Returns a sentence about the change; empty: none. Nothing is checked without a gyro. All
+// segments of a recording get the same interpretation, and long segments have more weight.
 std::string repair_conventions(std::span<Observation> segments);
 
 // Convention of roll, pitch and yaw in a recording.
 struct AngleConvention {
   std::string sequence;   // of angle_sequences
-  double factor = 1.0;    // to radians, of the header's radians
-  std::string text = {};  // a sentence; empty where they are as usual
+  double factor = 1.0;    // from the radians of the header to true radians
+  std::string text = {};  // a sentence; empty for the usual convention
 };
 
-// The sequence, and the unit, with which the rates integrate to the angles, where the recording
-// states no sequence. Nothing where there are no such angles or no rates; the usual one where it
-// agrees, where none does, or where gyro axes that are permuted or reversed explain it better.
+// The sequence and unit of roll, pitch and yaw with which the rates integrate to the angles, if the
+// recording states no sequence. nullopt if there are no such angles or no rates. The usual sequence
+// if it agrees, if none agrees, or if permuted or reversed gyro axes agree better.
 std::optional<AngleConvention> convention_of_angles(const Recording& recording,
                                                     const Platform& platform,
                                                     const std::string& name);
 
-// Repairs the rates of a body on which little more than its own inertia acts: they must change as
-// Euler's equations say, which an odd number of reversed axes, two axes exchanged or another unit
-// spoil. Such a body does not show which axes are reversed: the one with the fewest changes is
-// taken. Nothing is done where an attitude is read, or where the moments are so alike that nothing
-// follows from them.
+// Repairs the rates of a body on which little more than its inertia acts. Its rates must change
+// according to Euler's equations. An odd number of reversed axes, two exchanged axes or another
+// unit violate them. The data do not show which axes are reversed, so the interpretation with the
+// fewest changes is used. Nothing is changed if attitudes were read, or if the moments are too
+// similar.
 //
-// Where the stated inertia explains little, as it does when it is only a guess, the rates have to
-// change as some inertia says, measured wheels included (free_inertia.h): a reading of the axes and
-// units that leaves a third of what the header's reading leaves is taken, the one nearest to the
-// stated moments. A wheel whose own moment of inertia comes out negative by five standard errors
-// was read with the wrong sign; its speed is turned.
+// If the stated inertia explains little, for example because it is a guess, the rates must be
+// consistent with some inertia, with measured wheels included (free_inertia.h). An interpretation
+// of axes and units is used if its residual is below a third of that of the header. Among
+// equivalent ones the nearest to the stated moments is used. A wheel whose moment of inertia is
+// negative by five standard errors has the wrong sign; its speed is reversed.
 std::string repair_free_rates(std::span<Observation> segments, const Mat3& inertia_kg_m2);
 
 }  // namespace photorque

@@ -66,8 +66,8 @@ std::vector<inference::ChannelResiduals> channels_of(const std::vector<Predictio
 
 double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
                     const Thresholds::Noise& limits) {
-  // Where runs are short, a start that is fitted leaves no mean of many neighbours: their channels
-  // have as many means as show the remainder beside it.
+  // In short runs, fitting the initial state removes the means over many neighbours. Their channels
+  // are also tested with shorter means, so that each has at least this number.
   constexpr size_t fewest_means = 6;
   try {
     const std::vector<inference::ChannelResiduals> channels = channels_of(residuals_of(fit, runs));
@@ -90,13 +90,13 @@ int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds
   const std::vector<inference::ChannelResiduals> all = channels_of(residuals);
   for (size_t run = 0; run < runs.size(); ++run) {
     for (Eigen::Index k = 0; k < channel_count; ++k) {
-      // Neighbours are the next that were read: gaps and empty cells lie in between.
+      // Neighbours are the next readings, across gaps and empty cells.
       std::vector<size_t> rows;
       for (size_t i = 0; i < residuals[run].residual.size(); ++i) {
         if (std::isfinite(residuals[run].residual[i][k])) rows.push_back(i);
       }
       for (const size_t n : inference::outliers(all[run][static_cast<size_t>(k)], limits)) {
-        // An attitude is right or wrong as a whole.
+        // The components of an attitude are dropped together.
         if (k >= 3 || runs[run].attitude_rows[rows[n]] > 0.0) ++dropped;
         if (k < 3) runs[run].attitude_rows[rows[n]] = 0.0;
         if (k >= 3 && k < vector_channels) runs[run].gyro_rows[rows[n]][k - 3] = 0.0;
@@ -110,7 +110,7 @@ int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds
 
 namespace {
 
-// Residuals of neighbours on their way to one.
+// Sums of the residuals of neighbouring rows, which are replaced by their mean.
 struct Neighbours {
   size_t first = 0, last = 0;
   double time_sum_s = 0.0;
@@ -155,7 +155,7 @@ struct Neighbours {
   void append_to(Observation& to, const Observation& from, const Prediction& propagated) const {
     const size_t m = middle(from);
     to.time_s.push_back(from.time_s[m]);
-    // Residuals hold no curvature: what there is, is that of the middle one.
+    // Residuals have no curvature, so the spread is that of the middle row.
     if (!from.spread.empty()) {
       to.spread.push_back(from.spread[m]);
       to.spread.back().gyro_moved_rad_s.setZero();
@@ -185,7 +185,7 @@ struct Neighbours {
 Observation averaged_run(const Prediction& propagated, const Observation& seen, size_t blocks) {
   Observation result = without_blocks(seen);
   const double block_s = seen.duration_s() / static_cast<double>(blocks);
-  // Half a reading of slack, so that rounding of the times does not make uneven blocks.
+  // Half a row of tolerance, so that rounding of the times does not make uneven blocks.
   const double slack_s = 0.5 * seen.duration_s() / static_cast<double>(seen.blocks());
   Neighbours block;
   for (size_t i = 0; i < seen.blocks(); ++i) {
@@ -215,7 +215,7 @@ std::vector<Observation> averaged_about(const Fit& fit, const std::vector<Observ
 
 namespace {
 
-// The least physical value of a key, from the kind's own file.
+// Smallest physical value of a key, from the file of its kind.
 double lowest_of(const DisturbanceKind* kind, const std::string& key) {
   if (kind == nullptr) return -inference::infinity;
   if (kind->screening.minimum_sum) return kind->screening.minimum_sum->lowest;
@@ -242,7 +242,7 @@ Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Obs
       if (!(parameter.sigma > 0.0)) continue;
       Free f{d, static_cast<int>(p), parameter.value, parameter.sigma, per_run};
       f.per_recording = per_run;
-      // Physical bounds of an effect hold for nominal values too, wherever they start.
+      // Physical bounds apply to nominal parameters too, unless the nominal value violates them.
       if (parameter.value >= lowest_of(kind, parameter.key)) {
         f.lowest = lowest_of(kind, parameter.key);
       }

@@ -11,11 +11,12 @@
 namespace photorque {
 namespace {
 
-// An appendage begins near rest against the body, to within these.
+// Prior sigma of the initial extra states: appendages start nearly at rest relative to the body.
 constexpr double extra_state_sigma = Thresholds::Evidence{}.own_state_sigma;
 
-// A sinusoid of no amplitude yet does not show in the error by which the propagator chooses its
-// steps, but its slopes have to be resolved: a step is no longer than its period, to 3e-4 of them.
+// A sinusoid whose amplitude is still zero does not affect the error by which the propagator
+// chooses its steps, but its derivatives must be resolved. A step is therefore not longer than its
+// period, which gives a relative error of 3e-4.
 double max_step_s(const AttitudeModel& model) {
   double shortest_period_s = inference::infinity;
   for (const Disturbance& d : model.disturbances) {
@@ -43,7 +44,7 @@ std::vector<Variable> variables_of(const Hypothesis& h, const std::vector<Free>&
   return variables;
 }
 
-// The step of an initial state along its tangent.
+// Moves an initial state by a step in its tangent space.
 void step_initial(const Eigen::VectorXd& step, PlatformState& initial) {
   initial.lab_from_body = (initial.lab_from_body * turn_by(step.head<3>())).normalized();
   initial.rate_body_rad_s += step.segment<3>(3);
@@ -52,8 +53,9 @@ void step_initial(const Eigen::VectorXd& step, PlatformState& initial) {
   }
 }
 
-// Adds the part of the body's rate that the extra states of each run have at rest, times `sign`:
-// they keep what they have beside it where rates and axes are stepped in between.
+// Adds `sign` times the part of the body's rate that the extra states of each run have at rest
+// relative to the body. With −1 before and +1 after a step, the states keep their values relative
+// to the body when rates and axes change.
 void add_bound_rates(Hypothesis& h, double sign) {
   for (RunStart& run : h.runs) {
     size_t e = 0;
@@ -65,7 +67,8 @@ void add_bound_rates(Hypothesis& h, double sign) {
   }
 }
 
-// "static_unbalance.offset_m[2]": the key names the unit.
+// Name with key and component, for example "static_unbalance.offset_m[2]". The key contains the
+// unit.
 std::string name_of(const Hypothesis& h, const Free& f) {
   const Parameter& p = h.parameter(f);
   const std::string component = p.component < 0 ? "" : "[" + std::to_string(p.component) + "]";
@@ -76,7 +79,8 @@ inference::Parameter parameter_of(const Hypothesis& h, const Free& f, double val
   return {name_of(h, f), "", value, f.mean, f.sigma, f.lowest, f.highest};
 }
 
-// For each extra state, its number among position (x, y) and velocity; −1: neither.
+// For each extra state, its index in (x, y, velocity x, velocity y) of the translation; −1: it is
+// another state.
 std::vector<int> places_among_extra(const AttitudeModel& model) {
   std::vector<int> places;
   for (const Disturbance& d : model.disturbances) {
@@ -94,8 +98,8 @@ bool determines_translation(const Observation& seen, int which) {
          (which >= 2 && seen.has(along_x ? Scalar::velocity_x : Scalar::velocity_y));
 }
 
-// Initial conditions of a run. Quantities that no reading determines keep their value, by priors:
-// 1 rad for rotations without attitude readings, nearly zero for motion that a bearing prevents.
+// Initial conditions of a run. Quantities that no reading determines stay near their value by a
+// prior: 1 rad for rotations without attitude readings, 1e-9 for motion that a bearing prevents.
 std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
                                                      const PlatformState& initial,
                                                      const Observation& seen) {
@@ -103,7 +107,7 @@ std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
   const char* axes[] = {"x", "y", "z"};
   const Platform& platform = model.platform;
   std::vector<inference::Parameter> result;
-  // A part of a recording with attitudes may have none.
+  // A segment of a recording with attitudes may have none.
   const bool has_attitudes =
       std::ranges::any_of(seen.attitude_rows, [](double rows) { return rows > 0.0; });
   // The rotation of a sliding body may not be observed.
@@ -136,7 +140,7 @@ std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
   for (size_t k = 0; k < rest.extra.size(); ++k) {
     if (places[k] >= 0) {
       result.push_back({"initial state " + std::to_string(k + 1), "", initial.extra[k]});
-      // A place that no reading determines stays.
+      // A position that no reading determines keeps its value.
       if (!determines_translation(seen, places[k])) {
         result.back().mean = initial.extra[k];
         result.back().sigma = extra_state_sigma;
@@ -218,7 +222,7 @@ inference::NormalSums AttitudeForwardModel::sums(const Eigen::VectorXd& at, Eige
   const Observation& seen = runs_[which];
   PredictionOptions options;
   options.propagation.tolerance = tolerance_;
-  // A step's direction and a covariance need no more digits than this of the slopes.
+  // Relative accuracy of the derivatives that a step's direction and a covariance need.
   constexpr double derivative_tolerance = 1e-7;
   options.propagation.derivative_tolerance = derivative_tolerance;
   options.propagation.max_step_s = max_step_s(h.model);
@@ -230,7 +234,7 @@ inference::NormalSums AttitudeForwardModel::sums(const Eigen::VectorXd& at, Eige
     return predict(dynamics, h.runs[which].initial, seen,
                    request.derivatives ? variables_ : std::vector<Variable>(), options)
         .sums;
-  } catch (const InputError& error) {  // an inertia that no body has
+  } catch (const InputError& error) {  // an inertia that is impossible for a body
     throw NumericalError(error.what());
   }
 }

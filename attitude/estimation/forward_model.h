@@ -20,8 +20,8 @@ class AttitudeForwardModel final : public inference::ForwardModel {
  public:
   // `nominal` supplies everything that a point does not contain. `runs` are the recordings of
   // nominal.runs, in the same order, and must outlive this object. `extra`: parameters that the
-  // hypothesis does not vary. Derivatives by them follow those by the shared parameters; they have
-  // no prior.
+  // hypothesis does not vary. Derivatives with respect to them follow those with respect to the
+  // shared parameters; they have no prior.
   AttitudeForwardModel(Hypothesis nominal, const std::vector<Observation>& runs,
                        std::vector<Free> extra, double tolerance);
 
@@ -30,7 +30,7 @@ class AttitudeForwardModel final : public inference::ForwardModel {
   Hypothesis hypothesis_at(const Eigen::VectorXd& at) const;
 
   inference::Parameters parameters(const Eigen::VectorXd& at) const override;
-  // request.window selects the first blocks of a run, at least 20.
+  // request.window selects the fraction of a run's blocks from its start, at least 20 blocks.
   inference::NormalSums sums(const Eigen::VectorXd& at, Eigen::Index run,
                              const inference::Request& request) const override;
   Eigen::VectorXd stepped(const Eigen::VectorXd& at, const Eigen::VectorXd& step) const override;

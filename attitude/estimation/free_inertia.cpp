@@ -13,7 +13,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr size_t fewest_rows = 20;
 
-// The complete rates of one piece and the wheels' speeds beside them.
+// The complete rates of one segment, and the speeds of the wheels at these times.
 struct RatesOfPiece {
   std::vector<double> time_s;
   std::vector<Vec3> rate_rad_s, wheel_rad_s;
@@ -35,8 +35,8 @@ bool is_commanded_torque(const Schedule& schedule) {
   return std::ranges::any_of(schedule.held, &ZeroOrderHold::commands_torque);
 }
 
-// The integral from the first time to each, by the trapezoidal rule with the slopes' correction
-// (Euler and Maclaurin): the error is of fourth order in the interval.
+// Integral from the first time to each time, by the trapezoidal rule with the Euler–Maclaurin
+// correction by the slopes. The error is of fourth order in the interval.
 std::vector<Vec3> integral(const std::vector<double>& time_s, const std::vector<Vec3>& of) {
   const size_t n = of.size();
   const auto slope = [&](size_t i) -> Vec3 {
@@ -52,8 +52,7 @@ std::vector<Vec3> integral(const std::vector<double>& time_s, const std::vector<
   return sum;
 }
 
-// The part of the conserved momentum per unit of one unknown, less its mean because the constant is
-// free.
+// The conserved momentum per unit of one unknown, minus its mean, because the constant is free.
 VectorXd column_of(const std::vector<double>& time_s, const std::vector<Vec3>& momentum,
                    const std::vector<Vec3>& torque) {
   const std::vector<Vec3> turned = integral(time_s, torque);
@@ -81,7 +80,7 @@ Mat3 unit_inertia(Index k) {
 
 constexpr Index wheel = 6, drag = 9, unknowns = 12;
 
-// All columns of a piece; those of an unmeasured wheel are zero.
+// All columns of a segment; those of an unmeasured wheel are zero.
 MatrixXd columns_of(const RatesOfPiece& rates) {
   const size_t n = rates.time_s.size();
   MatrixXd columns(3 * static_cast<Index>(n), unknowns);
@@ -122,8 +121,8 @@ std::vector<Vec3> about_mean(std::vector<Vec3> rates) {
   return rates;
 }
 
-// Over how many rows residuals about one axis are alike, at least one; the pieces follow each
-// other.
+// Correlation length of the residuals in rows, at least one: the largest of the three axes. The
+// segments follow one another.
 double alike_rows(const VectorXd& residual) {
   double longest = 1.0;
   const Index n = residual.size() / 3;
@@ -165,7 +164,7 @@ std::optional<FreeInertia> free_inertia(const std::vector<Observation>& pieces, 
     all.middleRows(next, part.rows()) = part;
     next += part.rows();
   }
-  // The moment whose column is largest is known best: it is the unit of all others.
+  // The moment with the largest column is known best, so it is the unit of all others.
   Index unit = 0;
   all.leftCols<3>().colwise().norm().maxCoeff(&unit);
   std::vector<Index> free;
@@ -185,7 +184,7 @@ std::optional<FreeInertia> free_inertia(const std::vector<Observation>& pieces, 
   const auto freedom = static_cast<double>(std::max<Index>(1, X.rows() - X.cols()));
   const MatrixXd covariance =
       (X.transpose() * X).inverse() * (residual.squaredNorm() / freedom * alike_rows(residual));
-  // All six numbers in units of the one that was given, then in units of their mean moment.
+  // All six numbers in units of that moment, then in units of their mean moment.
   InertiaNumbers in_units = InertiaNumbers::Zero();
   Eigen::Matrix<double, 6, 6> spread = Eigen::Matrix<double, 6, 6>::Zero();
   FreeInertia result;

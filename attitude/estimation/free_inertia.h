@@ -31,15 +31,16 @@ struct FreeInertia {
 // Whether a drag proportional to the square of the rate is fitted too, one coefficient per axis.
 enum class FreeDrag { fitted, none };
 
-// Fits the tensor to the segments of one recording, each with its own angular momentum. The law is
+// Fits the tensor to the segments of one recording, each with a separate angular momentum. The law
+// is
 //
 //   I ω(t) + h(t) + ∫ ω × (I ω + h) dt + Σ_k d_k ∫ |ω| ω_k e_k dt = constant,
 //
 // with h = Σ_k J_k Ω_k(t) e_k, the momentum of the wheels whose speed was measured, and a quadratic
-// drag d_k about each axis. It contains no derivatives, and all unknowns are linear (the largest
-// column of the body has the coefficient one). Standard errors follow from the residuals, of which
-// one per correlation time is independent. Empty if a command acted, if an axis has fewer than 20
-// readings, or if a moment is negative, which indicates an external torque.
+// drag d_k about each axis. It contains no derivatives, and all unknowns are linear (the moment
+// with the largest column has the coefficient one). Standard errors follow from the residuals, of
+// which one per correlation time is independent. Empty if a command acted, if no segment has 20
+// complete readings, or if a moment is negative, which indicates an external torque.
 std::optional<FreeInertia> free_inertia(const std::vector<Observation>& pieces,
                                         FreeDrag drag = FreeDrag::fitted);
 

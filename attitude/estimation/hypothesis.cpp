@@ -31,7 +31,7 @@ void adapt_to_runs(Hypothesis& h, const std::vector<Observation>& runs) {
   }
   if (!changed) return;
   std::vector<std::vector<double>> own(h.runs.size());
-  size_t next = 0;  // among those that were per run
+  size_t next = 0;  // index among the former per-run parameters
   for (size_t i = 0; i < before.size(); ++i) {
     const Free& f = h.free[i];
     if (f.per_run) {
@@ -50,7 +50,7 @@ void adapt_to_runs(Hypothesis& h, const std::vector<Observation>& runs) {
 
 namespace {
 
-// The first block from `from` on in which `is_read`; the number of blocks where there is none.
+// The first block from `from` on with is_read(block); the number of blocks if there is none.
 template <typename Read>
 size_t first_block(const Observation& seen, size_t from, const Read& is_read) {
   size_t i = from;
@@ -58,7 +58,7 @@ size_t first_block(const Observation& seen, size_t from, const Read& is_read) {
   return i;
 }
 
-// The mean rate between the first attitude and the next.
+// Mean body rate between the first attitude and the next.
 Vec3 rate_between_attitudes_rad_s(const Observation& seen, size_t first, size_t next) {
   if (next >= seen.blocks()) return Vec3::Zero();
   const Vec3 rate_lab = turn_vector(seen.attitude[next] * seen.attitude[first].conjugate()) /
@@ -66,7 +66,7 @@ Vec3 rate_between_attitudes_rad_s(const Observation& seen, size_t first, size_t 
   return seen.attitude[first].conjugate() * rate_lab;
 }
 
-// Place and velocity at the first reading.
+// Position and velocity at the first reading.
 void put_place(const Observation& seen, double* place) {
   constexpr int most = 8;
   constexpr std::array positions = {Scalar::position_x, Scalar::position_y},
@@ -105,7 +105,7 @@ PlatformState first_state(const AttitudeModel& model, const Observation& seen) {
   state.time_s = seen.time_s.front();
   state.charge_drawn_C = seen.initial_charge_C;
   if (first == seen.blocks()) {
-    // Angle zero is the middle of a swing that rates alone show.
+    // Without attitudes, angle zero is the centre of the swing, which the rates alone determine.
     if (!platform.turns_about_one_axis() || platform.slides()) return state;
     const AxisReadings swing = angles_of_swing(seen, platform.axis);
     if (!swing.value.empty()) {

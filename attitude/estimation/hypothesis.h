@@ -1,4 +1,4 @@
-// An attitude model with its free parameters, which a fit moves.
+// An attitude model with free parameters, which a fit changes.
 #pragma once
 
 #include <vector>
@@ -9,29 +9,29 @@
 
 namespace photorque {
 
-// A parameter of a disturbance to be fitted, with its Gaussian prior.
+// A free parameter of a disturbance, with its Gaussian prior.
 struct Free {
   size_t disturbance = 0;
   int parameter = 0;
   double mean = 0.0;
   double sigma = inference::infinity;  // > 0
-  bool per_run = false;                // every run has its own value
-  // The fit does not leave these.
+  bool per_run = false;                // every run has a separate value
+  // Bounds of the fit.
   double lowest = -inference::infinity;
   double highest = inference::infinity;
-  // Every recording has its own value: every run does, but where runs are pieces that one recording
-  // was cut into for the search, which share it.
+  // Every recording has a separate value. This means every run, unless the runs are segments into
+  // which one recording was cut for the search: these share the value.
   bool per_recording = false;
 };
 
 struct RunStart {
   PlatformState initial;
-  std::vector<double> own;  // values of the per-run parameters, in their order in Hypothesis::free
+  std::vector<double> own;  // values of the per-run parameters, in the order of Hypothesis::free
 };
 
 // A model with its free parameters at their present values.
 struct Hypothesis {
-  AttitudeModel model;  // shared parameters live in it; its schedule is replaced by each run's
+  AttitudeModel model;  // contains the shared parameters; model_of() replaces its schedule
   std::vector<Free> free;
   std::vector<RunStart> runs;
 
@@ -42,28 +42,29 @@ struct Hypothesis {
   const Parameter& parameter(const Free& f) const {
     return model.disturbances[f.disturbance].parameters[static_cast<size_t>(f.parameter)];
   }
-  // The model of one run: its schedule and its own parameters.
+  // The model of one run, with the run's schedule and per-run parameters.
   AttitudeModel model_of(size_t run, const Observation& seen) const;
 };
 
-// Makes what is per recording of `h` per run, or shared by all where the runs are pieces; the
-// values go along. `h.runs` are the starts for `runs`, with what was per run until now.
+// Makes the per-recording parameters of `h` per run, or shared if the runs are segments of one
+// recording, and converts the values. `h.runs` are the starts of `runs` with the former per-run
+// values.
 void adapt_to_runs(Hypothesis& h, const std::vector<Observation>& runs);
 
-// The initial conditions of every run from its first readings.
+// Initial conditions of a run from its first readings.
 PlatformState first_state(const AttitudeModel& model, const Observation& seen);
 
-// Such starts of all runs, their own parameters at the nominal model.
+// Initial conditions of all runs from their first readings, with the per-run parameters at their
+// prior means.
 std::vector<RunStart> starts_from_data(const Hypothesis& h, const std::vector<Observation>& runs);
 
-// Initial condition of one coordinate of a recording.
-
+// A straight line through the first readings of one coordinate.
 struct FirstLine {
-  double value = 0.0, slope_1_s = 0.0;  // at the time of the run's first block; of the unit per s
+  double value = 0.0, slope_1_s = 0.0;  // at the run's first block; slope: value's unit per s
 };
 
-// The line of least squares through the first `most` blocks that have a reading; of one alone its
-// value; zero where the run has none.
+// Least-squares line through the first `most` blocks that have a reading. With a single reading,
+// its value with slope zero; without readings, zero.
 inline FirstLine first_line(const Observation& seen, Scalar scalar, int most) {
   if (!seen.has(scalar)) return {};
   const ScalarReadings& read = seen.scalar[static_cast<size_t>(scalar)];

@@ -16,7 +16,7 @@ bool is_rate_of_angle(const Observation& rows, const Vec3& axis) {
   if (!rows.has_some_attitude() || !rows.has_gyro) return false;
   const AxisReadings angle = angles_about(rows, axis, 0, rows.blocks()),
                      read = rates_about(rows, axis, 0, rows.blocks());
-  // The first or the last row often lacks its quotient.
+  // The first or the last row often has no quotient.
   if (read.row.size() < fewest || read.row.size() + 4 < angle.row.size()) return false;
   std::vector<double> rate(rows.blocks(), NAN);
   for (size_t i = 0; i < read.row.size(); ++i) rate[read.row[i]] = read.value[i];
@@ -25,7 +25,8 @@ bool is_rate_of_angle(const Observation& rows, const Vec3& axis) {
     quotient.push_back((angle.value[i + 1] - angle.value[i]) /
                        (angle.time_s[i + 1] - angle.time_s[i]));
   }
-  // Mean sizes of what neighbouring quotients scatter, and by which the rates are off.
+  // Sums of the scatter of neighbouring quotients and of the differences of the rates from the
+  // quotients.
   double scatter = 0.0;
   std::array<double, 3> off = {};
   for (size_t i = 1; i + 1 < quotient.size(); ++i) {

@@ -17,18 +17,20 @@ namespace photorque {
 
 namespace {
 
-// Start, rate and torque of an axis are three numbers: fewer readings do not determine them.
+// Initial angle, rate and torque of an axis are three numbers; fewer readings do not determine
+// them.
 constexpr size_t min_readings = 6;
 
-// Gaps over which nothing can be propagated with profit: longer than a quarter of all the time that
-// was read, and than a hundred intervals. A clock that jumps makes such a gap.
+// Shortest gap [s] at which the recording is cut. Such gaps are longer than a quarter of all
+// recorded time and longer than a hundred intervals, so that a propagation over them is useless. A
+// clock that jumps makes such a gap. Infinity if there is none.
 double long_gap_s(const Recording& recording) {
   const RecordingReport& report = recording.report;
   double read_s = recording.time_s.back() - recording.time_s.front();
   std::vector<double> gaps_s;
   for (const RecordingReport::Gap& gap : report.gaps) gaps_s.push_back(gap.to_s - gap.from_s);
   std::sort(gaps_s.begin(), gaps_s.end());
-  // The longest first: its length is compared with the readings without it.
+  // Starts with the longest gap, whose length is compared with the recorded time without it.
   double longest_s = std::numeric_limits<double>::infinity();
   while (!gaps_s.empty()) {
     const double gap_s = gaps_s.back();
@@ -40,8 +42,8 @@ double long_gap_s(const Recording& recording) {
   return longest_s;
 }
 
-// The size of most of these. Between the steps of an encoder nothing changes but by rounding: of
-// such readings, of those that do change.
+// Typical size of the changes: the median. Between the steps of an encoder, readings change only by
+// rounding. If most changes are so small, it is the median of the others.
 double typical_size(const std::vector<double>& sizes) {
   constexpr double rounding = 1e-6, fewest_steps = 0.005;
   const double usual = upper_median(sizes), least = rounding * std::ranges::max(sizes);
@@ -54,9 +56,10 @@ double typical_size(const std::vector<double>& sizes) {
   return static_cast<double>(steps.size()) < fewest ? usual : upper_median(steps);
 }
 
-// Change of the rate above which a reading is a kink, near each reading. 12 medians are 8 standard
-// deviations of Gaussian readings. Most readings of an encoder change by less than its step, some
-// by one step or two: 2.5 times the change that nine of ten readings do not exceed.
+// Threshold for each reading: a larger change of the rate is a kink. It is at least 12 medians of
+// the sizes nearby, which are 8 standard deviations of Gaussian readings. Most readings of an
+// encoder change by less than its step, some by one or two steps. Therefore it is also at least 2.5
+// times the 90th percentile of the sizes nearby.
 std::vector<double> kink_threshold(const std::vector<double>& sizes) {
   constexpr size_t group = 32;
   constexpr double medians = 12.0, most = 0.9, steps = 2.5;
@@ -79,9 +82,9 @@ std::vector<double> kink_threshold(const std::vector<double>& sizes) {
   return threshold;
 }
 
-// Rows at which the angle about the one axis, or the path of a sliding body, has a kink without a
-// recorded event: an unrecorded firing, a wall. The threshold follows from the readings nearby,
-// because a motion that has decayed later is not representative of the beginning.
+// Marks rows at which the angle about the only axis, or the path of a sliding body, has a kink
+// without a recorded event, for example by an unrecorded firing or a wall. The threshold follows
+// from the readings nearby, because the late, decayed motion does not represent the beginning.
 std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   std::vector<char> kinks(rows.blocks(), 0);
   const bool slides = platform.slides();
@@ -203,7 +206,7 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
   return result;
 }
 
-// The recording with its angles converted from this convention.
+// The recording with its angles converted from the convention `angles`.
 Recording read_as(const AngleConvention& angles, Recording recording) {
   recording.angle_sequence = angles.sequence;
   for (Channel& channel : recording.channels) {
@@ -215,8 +218,8 @@ Recording read_as(const AngleConvention& angles, Recording recording) {
   return recording;
 }
 
-// The recording of a sliding body with zero for the one coordinate that it lacks: the body slides
-// along a line. Nothing if it has both or none.
+// The recording with zeros for the missing coordinate of a body that slides along a line. Empty if
+// the recording has both coordinates or none.
 std::optional<Recording> on_a_line(const Recording& recording, const Platform& platform) {
   if (!platform.slides()) return std::nullopt;
   const bool has_x = recording.find("x_m") != nullptr, has_y = recording.find("y_m") != nullptr;
@@ -270,7 +273,8 @@ Segments observe_segments(const Recording& recording, const std::string& name,
 
 namespace {
 
-// Each rate the median of five neighbours: a count that was lost halves a reading or two.
+// Rates, each replaced by the median of five neighbours: a lost count of an encoder halves one or
+// two readings.
 AxisReadings smoothed_rates(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
   AxisReadings read = rates_about(rows, axis, first, last);
   const std::vector<double> raw = read.value;
@@ -326,9 +330,9 @@ struct Break {
   double standard_errors() const { return change_rad_s2() / error_rad_s2; }
 };
 
-// The slopes of `window` readings on either side of every reading where the rate goes on as before;
-// of long windows at every 48th part of one, or long recordings would take the square of their
-// time.
+// Slopes of `window` readings on both sides of every reading at which the rate keeps its sign and
+// is not near zero. For long windows only every (window/48)-th reading is used; the time would
+// otherwise grow with the square of the length.
 std::vector<Break> changes_of(const AxisReadings& read, size_t window) {
   std::vector<Break> changes;
   const size_t step = std::max<size_t>(1, window / 48);
@@ -344,8 +348,8 @@ std::vector<Break> changes_of(const AxisReadings& read, size_t window) {
   return changes;
 }
 
-// The changes of slope that are far larger than all others. Of neighbouring ones, only the most
-// significant is kept. An oscillating law has such changes everywhere and therefore no breaks.
+// The changes of slope that are much larger than all others. Among neighbouring changes, only the
+// most significant is kept. An oscillating law has such changes everywhere and therefore no breaks.
 std::vector<Break> breaks_of(const AxisReadings& read, size_t window) {
   constexpr double least_standard_errors = 10.0, least_share = 0.5, least_medians = 8.0;
   const std::vector<Break> changes = changes_of(read, window);
@@ -357,7 +361,7 @@ std::vector<Break> breaks_of(const AxisReadings& read, size_t window) {
   for (const Break& found : changes) {
     if (found.change_rad_s2() < least_share * found.larger_rad_s2() ||
         found.change_rad_s2() < least_medians * median_rad_s2 ||
-        !(found.standard_errors() >= least_standard_errors)) {  // of equal readings 0/0
+        !(found.standard_errors() >= least_standard_errors)) {  // 0/0 for equal readings
       continue;
     }
     if (breaks.empty() || found.at - breaks.back().at > window) {
@@ -377,7 +381,7 @@ ConsistentSegment consistent_segment(const Observation& rows, const Vec3& axis, 
   if (is_commanded(rows.schedule)) return whole;
   const AxisReadings read = smoothed_rates(rows, axis, first, last);
   std::vector<Break> breaks;
-  // A long window sees a weak torque; the shortest that sees one locates it best.
+  // A long window detects a weak torque. The shortest window that detects a break locates it best.
   for (size_t window = 12; breaks.empty() && 8 * window <= read.row.size(); window *= 2) {
     breaks = breaks_of(read, window);
   }
@@ -398,7 +402,7 @@ ConsistentSegment consistent_segment(const Observation& rows, const Vec3& axis, 
                                                                : "after";
     }
   };
-  constexpr size_t passing = 3;  // rows in which the law changes: the median of five blurs it
+  constexpr size_t passing = 3;  // rows that the median of five blurs around a break
   for (const Break& found : breaks) {
     const size_t at = read.row[found.at];
     close(at > first + passing ? at - passing : first, &found);

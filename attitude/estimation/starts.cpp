@@ -21,14 +21,15 @@ std::optional<double> first_of(const Observation& seen, Scalar scalar) {
   return std::nullopt;
 }
 
-// Attitudes of this tilt and yaw that lean in eight directions; one where it stands upright.
+// Attitudes with this tilt and yaw, in eight directions of the tilt; one attitude if the tilt is
+// zero.
 std::vector<Quat> leaning(double tilt_rad, double yaw_rad) {
   constexpr int directions = 8;
   std::vector<Quat> all;
   for (int d = 0; d < directions; ++d) {
     const double towards = 2.0 * pi * d / directions;
     const Quat lean(Eigen::AngleAxisd(tilt_rad, Vec3(-std::sin(towards), std::cos(towards), 0.0)));
-    // The lean turns body x a little, in the second order of the tilt.
+    // The tilt also rotates body x slightly, by a second-order effect.
     double about_z = yaw_rad;
     Quat q;
     for (int i = 0; i < 8; ++i) {
@@ -52,8 +53,9 @@ std::optional<Vec3> first_of_three(const Observation& seen, Scalar first) {
   return all;
 }
 
-// The attitude in which two directions of the lab lie as they are felt in the body (H. D. Black,
-// AIAA Journal 2 (1964) 1350): the first exactly, the second as far as it can.
+// The attitude from two directions that are known in the lab and measured in the body (H. D. Black,
+// AIAA Journal 2 (1964) 1350). The first direction is matched exactly, the second as well as
+// possible.
 Quat attitude_from_two(const Vec3& first_lab, const Vec3& second_lab, const Vec3& first_body,
                        const Vec3& second_body) {
   const auto frame = [](const Vec3& a, const Vec3& b) {
@@ -103,14 +105,14 @@ std::vector<Quat> attitudes_of(const AttitudeModel& model, const Observation& se
   return leaning(tilt.value_or(0.0), about_z);
 }
 
-// The rate of an angle at the beginning.
+// Rate of an angle at the start of the run.
 double first_slope(const Observation& seen, Scalar scalar) {
   constexpr int most = 10;
   return first_line(seen, scalar, most).slope_1_s;
 }
 
-// Rates of this magnitude along the axes that no gyro reads, in all directions; those that one
-// reads stay.
+// Initial rates to try. Measured axes keep the rates of `base`. The rest of the measured magnitude
+// is along all directions of the unmeasured axes.
 std::vector<Vec3> rates_of(const Observation& seen, const Vec3& base, const Quat& attitude) {
   std::array<bool, 3> is_read{};
   for (int k = 0; k < 3; ++k) {
@@ -153,7 +155,7 @@ struct FittedStart {
   double chi2;
 };
 
-// Fits only the first blocks of one run.
+// Fits the first blocks of one run.
 FittedStart begun_from(const Hypothesis& h, const RunStart& start, const Observation& seen) {
   constexpr int iterations = 20;
   Hypothesis one = h;
@@ -165,7 +167,7 @@ FittedStart begun_from(const Hypothesis& h, const RunStart& start, const Observa
   return {fitted.best.runs.empty() ? start : fitted.best.runs.front(), fitted.chi2};
 }
 
-// The start rotated by half a turn about the vertical. If gravity is the only direction, the
+// The start rotated by half a turn about the vertical. If gravity is the only known direction,
 // readings of a tilt do not distinguish it from the original; only priors do.
 RunStart mirrored(RunStart start) {
   const Quat half(Eigen::AngleAxisd(pi, Vec3::UnitZ()));

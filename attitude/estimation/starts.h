@@ -1,4 +1,4 @@
-// Initial conditions of runs without readings of attitude and rates: a search over many starts.
+// Initial conditions of runs without readings of attitude: a search over many starts.
 #pragma once
 
 #include <vector>
@@ -7,10 +7,11 @@
 
 namespace photorque {
 
-// A tilt has no direction and the magnitude of a rate no axis, and fits from the wrong one end in
-// other minima. Runs that are read by scalars (recordings/columns.h) and not by an attitude begin
-// where, of leans and axes all around, the fit of their first blocks ends best. Other runs keep the
-// start that they have.
+// Chooses the starts of runs that have scalar readings (recordings/columns.h) but no attitude
+// readings. A tilt does not determine its direction, nor the magnitude of a rate its axis, and fits
+// from a wrong start end in other local minima. Many tilt directions and rotation axes are tried.
+// The one whose fit of the first blocks has the smallest χ² becomes the start. Other runs keep
+// their start.
 void choose_starts(Hypothesis& hypothesis, const std::vector<Observation>& runs);
 
 }  // namespace photorque

@@ -10,8 +10,8 @@
 namespace photorque {
 namespace {
 
-// Without what it rests at the end: from where it stays as near to its last angle as a swing hardly
-// shows.
+// Removes the rest at the end: the readings from which on the angle stays within 1 % of the range
+// around its last value.
 void leave_out_rest(AxisReadings& read) {
   constexpr double hardly = 0.01;
   const auto [least, most] = std::minmax_element(read.value.begin(), read.value.end());
@@ -23,7 +23,7 @@ void leave_out_rest(AxisReadings& read) {
   read.value.resize(count);
 }
 
-// Twice the median time between passages through the median angle; 0 where there are few.
+// Twice the median time between passages through the median angle; 0 if there are fewer than six.
 double period_s(const AxisReadings& read) {
   constexpr size_t fewest_passages = 6;
   const double middle_rad = upper_median(read.value);
@@ -37,13 +37,12 @@ double period_s(const AxisReadings& read) {
   return between_s.size() < fewest_passages ? 0.0 : 2.0 * upper_median(between_s);
 }
 
-// Angle, rate and acceleration at the middles of local cubics; empty where it swings less than
-// three times.
+// Angle, rate and acceleration at the centres of local cubics; empty for fewer than three periods.
 struct LocalMotion {
   std::vector<size_t> row;
   std::vector<double> time_s;
-  Eigen::MatrixXd motion;  // a row each
-  bool is_fine = false;    // each cubic spans a quarter of a period at most
+  Eigen::MatrixXd motion;  // one row per centre: angle, rate, acceleration
+  bool is_fine = false;    // each cubic spans at most about a quarter of a period
 };
 
 constexpr int steps_per_period = 32;
@@ -90,8 +89,8 @@ LocalMotion local_motion(const AxisReadings& read) {
   return result;
 }
 
-// Residuals of a robust regression; `off`: over its usual scatter or, where that is more, over
-// `least` of every row.
+// Residuals of a robust regression. `off`: the residuals in units of their usual scatter or, if
+// that is larger, of the row's entry of `least`.
 struct RobustResidual {
   Eigen::VectorXd left, off;
 };
@@ -116,7 +115,7 @@ RobustResidual robust_residual(Eigen::MatrixXd law, const Eigen::VectorXd& value
   return result;
 }
 
-// The columns of dry, viscous and quadratic friction, and before them those given.
+// The columns `of_angle`, followed by those of dry, viscous and quadratic friction.
 Eigen::MatrixXd with_friction(const Eigen::MatrixXd& motion, const Eigen::MatrixXd& of_angle) {
   Eigen::MatrixXd law(motion.rows(), of_angle.cols() + 3);
   const auto rate = motion.col(1).array();
@@ -125,9 +124,9 @@ Eigen::MatrixXd with_friction(const Eigen::MatrixXd& motion, const Eigen::Matrix
   return law;
 }
 
-// The residual of the accelerations under the one law, over its usual scatter; over a twentieth of
-// the largest acceleration within half a period where that is more, because local cubics are off by
-// such a part.
+// Residuals of the accelerations under the common law, in units of their usual scatter or of 5 %/3
+// of the largest acceleration within half a period, if that is larger. The error of local cubics
+// has about this size.
 Eigen::VectorXd scaled_residuals(const Eigen::MatrixXd& motion) {
   constexpr double part = 0.05 / 3.0;
   constexpr Eigen::Index half_period = steps_per_period / 2;
@@ -144,7 +143,7 @@ Eigen::VectorXd scaled_residuals(const Eigen::MatrixXd& motion) {
   return robust_residual(with_friction(motion, of_angle), motion.col(2), least).off;
 }
 
-// The integral of each, from the first, by the trapezoidal rule.
+// Integral from the first time to each time, by the trapezoidal rule.
 std::vector<double> integral(const std::vector<double>& time_s, const std::vector<double>& values) {
   std::vector<double> sum = {0.0};
   for (size_t i = 1; i < values.size(); ++i) {
@@ -153,13 +152,13 @@ std::vector<double> integral(const std::vector<double>& time_s, const std::vecto
   return sum;
 }
 
-// A turning point of a swing, and the angle there as integrated.
+// A turning point of a swing, with the integrated angle there.
 struct TurningPoint {
   double time_s = 0.0, angle_rad = 0.0;
 };
 
-// Where the rates pass zero, from a fifth of the largest nearby on one side to as much on the
-// other.
+// Times at which the rates pass zero between at least a fifth of the largest rate nearby on one
+// side and on the other.
 std::vector<TurningPoint> turning_points(const AxisReadings& rates,
                                          const std::vector<double>& turned_rad) {
   constexpr double far = 0.2, least_of_largest = 0.02;
@@ -190,8 +189,8 @@ std::vector<TurningPoint> turning_points(const AxisReadings& rates,
   return points;
 }
 
-// The middles of the swing between turning points: the mean of each and of the mean of both
-// neighbours. A bias of the rates, or their noise, moves them.
+// Centres of the swing at the turning points: the mean of a point and of the mean of its two
+// neighbours. Bias and noise of the rates shift them.
 std::vector<TurningPoint> middles(const std::vector<TurningPoint>& points) {
   std::vector<TurningPoint> result;
   for (size_t i = 1; i + 1 < points.size(); ++i) {
@@ -261,7 +260,7 @@ bool swings(const std::vector<Observation>& runs, const Vec3& axis) {
 
 namespace {
 
-// The angles of a swing within the rows; empty if there are few.
+// Angles of a swing in the rows, without the rest at the end; empty if there are few.
 AxisReadings swing_of(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
   constexpr size_t fewest_readings = 60;
   AxisReadings read = rows.has_some_attitude() ? angles_about(rows, axis, first, last)
@@ -274,8 +273,8 @@ LocalMotion motion_of(const AxisReadings& read) {
   return read.row.empty() ? LocalMotion() : local_motion(read);
 }
 
-// A series at steps of local motion less its mean over a period about each: small errors of an
-// angle that last long add up in integrals, and the mean removes them.
+// A series at the steps of local motion, minus its mean over a period around each step. Small
+// errors of an angle that last long accumulate in integrals; subtracting the mean removes them.
 Eigen::VectorXd without_slow_part(const Eigen::VectorXd& values) {
   constexpr Eigen::Index half = steps_per_period / 2;
   Eigen::VectorXd result(values.size() - 2 * half);
@@ -287,7 +286,7 @@ Eigen::VectorXd without_slow_part(const Eigen::VectorXd& values) {
   return result;
 }
 
-// The arithmetic-geometric mean.
+// Arithmetic-geometric mean.
 double agm(double a, double b) {
   while (std::abs(a - b) > 1e-12 * a) {
     const double mean = 0.5 * (a + b);
@@ -297,14 +296,14 @@ double agm(double a, double b) {
   return a;
 }
 
-// A period of a swing, between every second passage through its middle, and its amplitude.
+// A period of a swing, between every second passage through its centre, and its amplitude.
 struct Period {
   double period_s = 0.0, amplitude_rad = 0.0;
 };
 
 std::vector<Period> periods_of(const AxisReadings& read) {
   const double middle_rad = upper_median(read.value);
-  std::vector<double> passed_s, extreme_rad;  // and the farthest angle before
+  std::vector<double> passed_s, extreme_rad;  // largest angle before each passage
   double farthest_rad = 0.0;
   for (size_t i = 1; i < read.row.size(); ++i) {
     const double before = read.value[i - 1] - middle_rad, now = read.value[i] - middle_rad;
@@ -322,8 +321,9 @@ std::vector<Period> periods_of(const AxisReadings& read) {
   return all;
 }
 
-// A weight swings more slowly the farther it swings, a spring does not: the period is
-// T/agm(1, cos(A/2)). What drives or brakes the swing hardly matters, nor do coarse readings.
+// The period of a weight increases with the amplitude A: it is T/agm(1, cos(A/2)). The period of a
+// spring is constant. Driving and damping torques and a coarse resolution of the readings have
+// little effect on it.
 RestoringLaw law_of_periods(const AxisReadings& read) {
   constexpr size_t fewest = 8;
   constexpr double largest_rad = 3.0;
@@ -341,7 +341,7 @@ RestoringLaw law_of_periods(const AxisReadings& read) {
     for (const double value : values) sizes.push_back(std::abs(value - middle));
     return upper_median(sizes);
   };
-  // While the body rests or is pushed, periods do not follow the law.
+  // The medians exclude periods in which the body rests or is pushed.
   constexpr double clearly = 2.0;
   const double spring = scatter(of_spring), weight = scatter(of_weight);
   return clearly * spring < weight   ? RestoringLaw::spring
@@ -395,7 +395,7 @@ RestoringLaw restoring_law(const Observation& rows, const Vec3& axis) {
   const bool is_spring = of_spring.squaredNorm() < of_weight.squaredNorm();
   const Eigen::VectorXd &better = is_spring ? of_spring : of_weight,
                         &worse = is_spring ? of_weight : of_spring;
-  // Neighbouring residuals are alike: as many are independent as their correlation leaves.
+  // Neighbouring residuals are correlated, which reduces the number of independent ones.
   const Eigen::Index count = better.size() - 1;
   const double alike =
       std::clamp(better.head(count).dot(better.tail(count)) / better.squaredNorm(), 0.0, 0.999);

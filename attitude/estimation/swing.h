@@ -1,38 +1,45 @@
-// A body that swings about one axis: the instant of its release, and the law that drives it back.
+// A body that swings about one axis: the time of its release, and the law of its restoring torque.
 #pragma once
 
 #include "attitude/estimation/axis_readings.h"
 
 namespace photorque {
 
-// The first of the rows [first, last) from which on the angle about `axis` swings freely: a hand
-// that set it swinging acts before. Local cubics through a quarter of a period, or nine readings
-// where a quarter has fewer, give angle, rate and acceleration; one law of angle and rate (a
-// constant, sin, cos and the angle itself, sign, rate, rate |rate|) is fitted to all accelerations,
-// robustly (Tukey's biweight). It swings freely from where that law holds for a quarter of a
-// period, to three times the usual scatter or a twentieth of the accelerations around. What rests
-// at the end does not count. `first` where it swings less than three times or there are too few
-// rows, and where that would leave out more than a quarter of the rows.
+// First of the rows [first, last) from which on the angle about `axis` swings freely. Before it,
+// for example, a hand sets the body swinging.
+//
+// Local cubics through a quarter of a period, or through nine readings if a quarter has fewer, give
+// angle, rate and acceleration. One law of angle and rate (a constant, sin, cos and the angle
+// itself, sign, rate, rate |rate|) is fitted to all accelerations by a robust regression (Tukey's
+// biweight). The body swings freely when the residuals of this law stay below a limit for a quarter
+// of a period. The limit is three times the usual scatter, or 5 % of the accelerations nearby if
+// that is larger. A rest at the end is ignored.
+//
+// Returns `first` if the body swings less than three times, if there are too few rows, or if more
+// than a quarter of the rows would be left out.
 size_t released_at(const Observation& rows, const Vec3& axis, size_t first, size_t last);
 
-// The angles of a swing that its rates alone show: their integral from the middle of the swing,
-// which is found between turning points, so that neither a bias of the gyro nor its noise adds up.
-// Empty if the rates do not pass zero four times, or if the times between differ by a factor of
-// two.
+// Angles of a swing of which only rates were measured. They are the integral of the rates relative
+// to the centre of the swing. The centre is determined between turning points, so that bias and
+// noise of the gyro do not accumulate. Empty if the rates pass zero less than four times, or if the
+// intervals between differ by a factor of two.
 AxisReadings angles_of_swing(const Observation& rows, const Vec3& axis);
 
-// Whether the angle about `axis` passes its mean again and again, by a fifth of its range on either
-// side; of runs without an angle, whether angles_of_swing() finds a swing.
+// Whether the angle about `axis` repeatedly passes its mean, by at least a fifth of its largest
+// deviation on both sides. For runs without an angle: whether angles_of_swing() finds a swing.
 bool swings(const std::vector<Observation>& runs, const Vec3& axis);
 
-// The restoring torque about `axis`: proportional to the sine of the angle from a rest position (a
-// weight about a level axis), or to the angle (a spring, a twisted line). The law under which the
-// periods depend on the amplitudes with half the scatter. If neither does and there are 28 readings
-// a period, beside dry, viscous and quadratic friction each law is fitted to the rates of local
-// cubics (integrated over time); the one with the smaller residual, if that gains a tenth of χ² and
-// 16 in χ² for as many independent residuals as their correlation leaves. `unclear` for small
-// swings, where both are alike, or where there are too few readings. Where there is no angle, those
-// of angles_of_swing().
+// The law of the restoring torque about `axis`. The torque of a weight about a level axis is
+// proportional to the sine of the angle from the rest position. The torque of a spring or a twisted
+// line is proportional to the angle.
+//
+// The result is the law under which the periods depend on the amplitudes with half the scatter of
+// the other law. If neither does, and there are 28 readings per period, each law plus dry, viscous
+// and quadratic friction is fitted to the rates of local cubics (integrated over time). The law
+// with the smaller residual is chosen if it reduces χ² by a tenth and by 16, for the number of
+// independent residuals that their correlation leaves. `unclear` for small swings, for which both
+// laws are equivalent, and for too few readings. Without an angle, those of angles_of_swing() are
+// used.
 enum class RestoringLaw { unclear, weight, spring };
 RestoringLaw restoring_law(const Observation& rows, const Vec3& axis);
 

@@ -19,7 +19,7 @@ NormalisedError normalised_error(const AttitudeEstimate& estimate, const TruthAt
   std::vector<int> places;
   const auto put = [&](const Vec3& error, int first) {
     for (int k = 0; k < 3; ++k) {
-      // About an axis that cannot turn there is nothing to be wrong.
+      // An axis that cannot turn has no error.
       if (!(estimate.covariance(first + k, first + k) > 0.0)) continue;
       errors.push_back(error[k]);
       places.push_back(first + k);

@@ -11,20 +11,21 @@
 
 namespace photorque {
 
-// The true values at one row, as far as they are known.
+// The true values at one row, if they are known.
 struct TruthAtRow {
   Quat lab_from_body = Quat::Identity();
   std::optional<Vec3> rate_body_rad_s;
 };
 using TruthTrack = std::vector<std::optional<TruthAtRow>>;
 
-// e P⁻¹ e over the attitude and, where it is known, the rate; expected `numbers` in the mean.
+// Normalised error squared, e P⁻¹ e, of the attitude and, if it is known, the rate. Its expectation
+// is `numbers`.
 struct NormalisedError {
   double chi2 = 0.0;
   int numbers = 0;
 };
 NormalisedError normalised_error(const AttitudeEstimate& estimate, const TruthAtRow& truth);
-// Angle between them.
+// Angle between estimated and true attitude.
 double attitude_error_rad(const AttitudeEstimate& estimate, const TruthAtRow& truth);
 
 // The 95 % interval of a chi-square variable, between its 2.5 % and 97.5 % quantiles, by E. Wilson
@@ -38,26 +39,26 @@ Band chi2_band_95(double freedom);
 // The errors of one run; NaN if the true values are unknown.
 struct RunErrors {
   double rms_attitude_rad = 0.0, rms_rate_rad_s = 0.0;
-  double mean_nees = 0.0;     // per number
-  double part_in_band = 0.0;  // of the rows, 0.95 expected
+  double mean_nees = 0.0;     // NEES per degree of freedom
+  double part_in_band = 0.0;  // fraction of rows in the 95 % band
   size_t rows = 0;
 };
-// Rows from `from` on.
+// Errors of the rows from `from` on.
 RunErrors run_errors(const std::vector<AttitudeEstimate>& estimates, const TruthTrack& truth,
                      size_t from = 0);
 
-// Many runs of the same length, row by row.
+// Errors of many runs of the same length, row by row.
 class RunEnsemble {
  public:
   void add(const Estimation& estimation, const TruthTrack& truth);
 
   int runs() const { return runs_; }
-  // Mean over the runs of the normalised error squared of the filter, and of the smoother.
+  // Mean over the runs of the normalised error squared, for filter and smoother.
   std::vector<double> nees_filtered() const { return mean_of(chi2_filtered_); }
   std::vector<double> nees_smoothed() const { return mean_of(chi2_smoothed_); }
   // The 95 % interval of these means.
   Band band() const;
-  // The fraction of the rows, from `from` on, whose mean is in the band.
+  // Fraction of the rows from `from` on whose mean is in the band.
   double part_in_band(const std::vector<double>& nees, size_t from) const;
   // Root-mean-square attitude errors over the runs [rad].
   std::vector<double> rms_filtered_rad() const;
@@ -74,7 +75,7 @@ class RunEnsemble {
   InnovationSum attitude_, gyro_;
 };
 
-// Mean of a sum of squares per number, with the band of its 95 %.
+// The 95 % interval of InnovationSum::per_number().
 Band innovation_band(const InnovationSum& sum);
 
 }  // namespace photorque

@@ -20,8 +20,8 @@ double AttitudeEstimate::rate_sigma_rad_s() const {
 
 namespace {
 
-// x with a covariance's inverse applied, in units in which its diagonal is one; directions without
-// any variance stay out.
+// Inverse of `covariance` times `right`, computed with a unit diagonal. Directions without variance
+// give zero.
 MatX solved_by(const MatX& covariance, const MatX& right) {
   VecX scale = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   for (double& s : scale) s = s > 0.0 ? 1.0 / s : 0.0;
@@ -86,9 +86,9 @@ AttitudeEstimate estimate_of(const MotionModel& model, const FilterState& state)
 
 // Quantities of one reading that the smoother needs.
 struct Passed {
-  FilterState after;      // the reading
-  FilterState predicted;  // at this reading, before it
-  MatX phi;               // to here
+  FilterState after;      // after the reading
+  FilterState predicted;  // at this reading, before its update
+  MatX phi;               // transition to this reading
   bool begins_anew = false;
 };
 
@@ -135,12 +135,12 @@ class FilterRun {
       return model_.start(first.time_s, Quat::Identity(), options_.unread_attitude_rad2);
     }
     const Quat attitude = *first.lab_from_body;
-    // Wider than any camera's noise: the first reading itself is an update like the others.
+    // Wider than the noise of any camera: the first reading is an update like the others.
     constexpr double wide_rad = 0.05;
     return model_.start(first.time_s, attitude, Mat3::Identity() * wide_rad * wide_rad);
   }
 
-  // One reading, whose likelihood counts in the first pass over it.
+  // Processes one reading. Its likelihood counts only if `counts`, in the first pass.
   void pass(FilterState& state, size_t i, Passed* passed, bool counts) {
     const Reading& reading = readings_.all[i];
     const FilterSettings& settings = model_.settings();
@@ -166,7 +166,7 @@ class FilterRun {
     const bool drove =
         settings.motion == Motion::gyro_drives && reading.gyro_rad_s.allFinite() && i != first_;
     if (settings.uses_gyro && reading.has_gyro() && !drove) {
-      // Nor is the first rate one.
+      // The first rate initialises the state too.
       update_by_gyro(model_, state, reading.gyro_rad_s, i == first_ ? unused : sum(out_.gyro),
                      i == first_ ? unused_likelihood : likelihood);
     }
@@ -189,7 +189,7 @@ class FilterRun {
   void smooth(FilterState later, const std::vector<FilterState>& checkpoints) {
     out_.smoothed.resize(readings_.rows);
     put(out_.smoothed, last_ - 1, later);
-    // `later` is the smoothed estimate at `next`, whose prediction and way stand in `ahead`.
+    // `later` is the smoothed estimate at the reading of `ahead`.
     std::optional<Passed> ahead;
     for (size_t c = checkpoints.size(); c-- > 0;) {
       const size_t from = first_ + c * checkpoint_rows,
@@ -212,8 +212,8 @@ class FilterRun {
 
   FilterState smoothed_at(const FilterState& here, const Passed& ahead,
                           const FilterState& later) const {
-    // Readings after a kick determine only the parameters before it; those few are left to the
-    // filter.
+    // After a kick, readings determine only the parameters before it, and weakly. The estimate
+    // before it remains that of the filter.
     if (ahead.begins_anew) return here;
     const MatX gain =
         solved_by(ahead.predicted.covariance, ahead.phi * here.covariance).transpose();
@@ -254,7 +254,7 @@ double max_likelihood_rate_walk(const AttitudeModel& model, const Sensors& senso
     most = likelihood;
     best = walk;
   };
-  // A larger random walk is used only if it increases the log likelihood by more than this.
+  // A larger random walk is used only if it increases the log-likelihood by more than this.
   constexpr double min_gain = 0.5;
   constexpr int lowest = -28, highest = 4;
   for (int half = lowest; half <= highest; ++half) look(std::pow(10.0, 0.5 * half), min_gain);

@@ -21,11 +21,11 @@ struct AttitudeEstimate {
   // Covariance of rotation vector and rate, body axes.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
-  double attitude_sigma_rad() const;  // root of the sum over the three axes
+  double attitude_sigma_rad() const;  // root of the sum of the variances of the three axes
   double rate_sigma_rad_s() const;
 };
 
-// Normalised innovations squared of one kind of reading: their sum, and of how many numbers.
+// Sum of the normalised innovations squared of one kind of reading, and their number.
 struct InnovationSum {
   double chi2 = 0.0;
   double numbers = 0.0;
@@ -33,31 +33,31 @@ struct InnovationSum {
 };
 
 struct Estimation {
-  std::vector<AttitudeEstimate> filtered, smoothed;  // by row; the latter empty if not asked for
+  std::vector<AttitudeEstimate> filtered, smoothed;  // by row; `smoothed` may be empty
   InnovationSum attitude, gyro, yaw;
   double log_likelihood = 0.0;  // of the readings after the first attitude
-  // Parameters at the end, with their standard deviations, and their initial values.
+  // Parameters at the end with their standard deviations, and their priors.
   std::vector<std::string> parameter_names;
   VecX parameters, sigma, prior_mean, prior_sigma;
 };
 
 struct EstimationOptions {
   bool smooths = true;
-  size_t max_readings = SIZE_MAX;  // only so many, from the first
-  // Covariance of the initial attitude, if the attitude is never measured; otherwise the first
-  // reading initialises it.
+  size_t max_readings = SIZE_MAX;  // only the first readings
+  // Covariance of the initial attitude about lab axes if no attitude is measured. Otherwise the
+  // first reading initialises the attitude.
   Mat3 unread_attitude_rad2 = Mat3::Zero();
   std::function<void(double)> progress = {};
 };
 
-// Runs the filter over the readings and the smoother back over them. Rows before the first attitude
-// have its estimate. The smoother stores a checkpoint every few hundred readings and recomputes the
-// steps between, so that only the estimates need memory.
+// Runs the filter forward over the readings and the smoother backward. Rows before the first
+// attitude get its estimate. The smoother stores a checkpoint every few hundred readings and
+// recomputes the steps between them, so that only the estimates need memory.
 Estimation estimate_attitude(const MotionModel& model, const Readings& readings,
                              const EstimationOptions& options = {});
 
-// The rate's random walk of maximum likelihood, to an eighth of a decade from 1e-14 to 100 rad/s
-// per √s; over the first `max_readings`.
+// Maximum-likelihood random walk of the rate [rad/s per √s], to an eighth of a decade from 1e-14 to
+// 100, from the first `max_readings` readings.
 double max_likelihood_rate_walk(const AttitudeModel& model, const Sensors& sensors,
                                 FilterSettings settings, const Readings& readings,
                                 size_t max_readings);

@@ -13,11 +13,11 @@ namespace photorque {
 
 namespace {
 
-// A gyro's bias where the experiment does not state its size.
+// Prior sigma of a gyro bias if the experiment states none.
 constexpr double usual_bias_rad_s = 5e-3;
-// Steps as short as this always suffice, also for swings of several per second.
+// Steps of this length are always sufficient, for oscillations of several periods per second too.
 constexpr double short_step_s = 0.05;
-// Between two readings: more would take a minute, and predict nothing useful.
+// Limit between two readings: more steps would take a minute, for a useless prediction.
 constexpr double most_steps = 200000.0;
 
 bool is_of_gyro(const Disturbance& disturbance) {
@@ -25,7 +25,7 @@ bool is_of_gyro(const Disturbance& disturbance) {
   return kind != nullptr && kind->instrument == "gyro";
 }
 
-// Whether a disturbance concerns only instruments, or what the gyro senses besides the rate.
+// Whether a disturbance affects only instruments, or only the difference of gyro and body rate.
 bool is_of_instruments(const Disturbance& disturbance) {
   const DisturbanceKind* kind = find_kind(disturbance.kind);
   return disturbance.stage == Stage::measurement || disturbance.kind == "earth_rotation" ||
@@ -103,7 +103,7 @@ FilterState MotionModel::start(double time_s, const Quat& lab_from_body,
     const double about_rad2 = model_.platform.axis.dot(attitude_lab_rad2 * model_.platform.axis);
     state.covariance.topLeftCorner<3, 3>() = about_rad2 * along;
   }
-  // Extra states start as in the model: at rest with the platform.
+  // Extra states start as in the model: at rest relative to the platform.
   for (Eigen::Index i = 0; i < prior_sigma_.size(); ++i) {
     const Eigen::Index at = first_parameter() + i;
     state.covariance(at, at) = std::pow(prior_sigma_[i], 2);
@@ -123,7 +123,7 @@ void MotionModel::reset_after_kick(FilterState& state) const {
 }
 
 void MotionModel::refresh(FilterState& state) const {
-  // The laws hold the parameters to this fraction of their uncertainty.
+  // Largest change of a parameter, relative to its sigma, without new dynamics.
   constexpr double near = 0.05;
   for (Eigen::Index i = 0; i < state.parameters.size(); ++i) {
     const Eigen::Index at = first_parameter() + i;
@@ -136,7 +136,7 @@ void MotionModel::refresh(FilterState& state) const {
   }
 }
 
-// The derivative of the error state's rate by the error state.
+// Derivative of the rate of the error state with respect to the error state.
 MatX MotionModel::rate_matrix(const FilterState& state) const {
   MatX a = MatX::Zero(size_, size_);
   a.topLeftCorner<3, 3>() = -skew(state.mean.rate_body_rad_s);
@@ -157,7 +157,7 @@ VecX MotionModel::right_hand_side(const FilterState& state, const VecX& y, doubl
   return out;
 }
 
-// A fraction of the time in which the platform turns, swings or slows down by one.
+// Step length [s]: a fraction of the shortest time scale of rotation, oscillation and damping.
 double MotionModel::step_length_s(const FilterState& state, double wanted_s) const {
   if (wanted_s <= short_step_s || extras_ > 0) return short_step_s;
   constexpr double part = 0.1;
@@ -166,14 +166,15 @@ double MotionModel::step_length_s(const FilterState& state, double wanted_s) con
     const MatX a = rate_matrix(state);
     fastest_1_s = std::max({fastest_1_s, std::sqrt(a.block<3, 3>(rate, attitude).norm()),
                             a.block<3, 3>(rate, rate).norm()});
-    // Laws in time alone are not visible from here.
+    // Laws that depend on time alone do not contribute to the derivatives.
     constexpr double longest_s = 60.0;
     wanted_s = std::min(wanted_s, longest_s);
   }
   return std::max(short_step_s, std::min(wanted_s, part / std::max(fastest_1_s, 1e-12)));
 }
 
-// One step of the mean: by the laws (Runge and Kutta, fourth order) or at a constant rate.
+// One step of the mean: by the laws with the fourth-order Runge–Kutta method, or at a constant
+// rate.
 void MotionModel::step(FilterState& state, double length_s) const {
   PlatformState& mean = state.mean;
   if (settings_.motion != Motion::disturbances) {
@@ -209,13 +210,14 @@ void MotionModel::add_noise(MatX& covariance, double length_s) const {
   }
 }
 
-// The attitude turns by the mean of the rates before and after, the latter as the gyro reads it.
+// Motion by gyro readings: the attitude rotates by the mean of the rates before and after, where
+// the latter is the gyro reading.
 void MotionModel::drive(FilterState& state, double length_s, const Vec3& gyro_rad_s,
                         Transition& whole) const {
   const double h = length_s;
   FilterState end = state;
   end.mean.time_s += h;
-  // Readings depend on the attitude by the Earth's rotation alone, so that a first guess will do.
+  // Readings depend on the attitude only by the Earth's rotation, so a first guess is sufficient.
   end.mean.lab_from_body =
       (state.mean.lab_from_body * turn_by(h * state.mean.rate_body_rad_s)).normalized();
   const Prediction reading = predicted_readings(end);
@@ -224,7 +226,7 @@ void MotionModel::drive(FilterState& state, double length_s, const Vec3& gyro_ra
   end.mean.rate_body_rad_s += inverse * (gyro_rad_s - reading.gyro_rad_s);
   const Vec3 turn_rad = 0.5 * h * (state.mean.rate_body_rad_s + end.mean.rate_body_rad_s);
   end.mean.lab_from_body = (state.mean.lab_from_body * turn_by(turn_rad)).normalized();
-  // Errors of the new rate come from the parameters' and from the gyro's noise alone.
+  // Errors of the new rate result only from those of the parameters and from the gyro's noise.
   MatX by_before = MatX::Identity(size_, size_), noise = MatX::Zero(size_, size_);
   const Mat3 back = turn_by(-turn_rad).toRotationMatrix();
   MatX new_rate = MatX::Zero(3, size_);
@@ -265,7 +267,8 @@ Transition MotionModel::advance(FilterState& state, double time_s, const Vec3& g
     const int steps = std::max(1, static_cast<int>(least));
     const double h = length_s / steps;
     for (int i = 0; i < steps; ++i) {
-      // The derivatives at the middle of the step: of second order, as the covariance needs.
+      // Derivatives at the middle of the step give second order, which is enough for the
+      // covariance.
       FilterState middle = state;
       step(middle, 0.5 * h);
       const MatX a = h * rate_matrix(middle);
@@ -307,7 +310,7 @@ VecX MotionModel::difference(const FilterState& to, const FilterState& from) con
   return error;
 }
 
-// The readings that a filter expects of the instruments: the readings' part of MotionModel.
+// Expected readings of the instruments, and their derivatives.
 
 namespace {
 
@@ -337,7 +340,7 @@ MotionModel::Derivatives MotionModel::derivatives_of(const FilterState& state,
   const ZeroOrderHold held = model_.schedule.at(state.mean.time_s);
   const int components = dynamics.size();
   const int rows = of_readings ? Dynamics::reading_count : components;
-  // Attitude and rate, extra states, parameters.
+  // Order: attitude and rate, extra states, parameters.
   const int variables = component::charge + extras_ + static_cast<int>(places_.size());
   MatX by_variable(rows, variables);
   std::vector<Lanes> out(static_cast<size_t>(rows) * DualLanes::block);
@@ -401,12 +404,12 @@ Measurement MotionModel::of_attitude(const FilterState& state, const Quat& lab_f
   const Prediction reading = predicted_readings(state);
   const Quat mean = state.mean.lab_from_body;
   const Quat error = turn_by(reading.camera_error_rad);
-  // In lab axes, in which the noise is stated and axes are seen or not.
+  // In lab axes, in which the noise is stated and the measured axes are defined.
   const Vec3 residual_rad = mean * turn_vector((mean * error).conjugate() * lab_from_body);
   MatX derivative = MatX::Zero(3, size_);
   derivative.leftCols<3>() = error.conjugate().toRotationMatrix();
   derivative += reading.derivative.middleRows<3>(3);
-  // A later reading shows where the platform was still earlier.
+  // With a longer delay, the reading shows an earlier attitude.
   derivative -= state.mean.rate_body_rad_s * reading.derivative.row(6);
   derivative = mean.toRotationMatrix() * derivative;
   Sensors::Camera camera;
@@ -443,7 +446,7 @@ Measurement MotionModel::of_yaw(const FilterState& state, double seen_rad) const
       (ahead.x() * by_turn.row(1) - ahead.y() * by_turn.row(0)) / ahead.head<2>().squaredNorm();
   const double difference_rad = std::remainder(seen_rad - yaw_rad(state.mean), 2.0 * pi);
   const double step_rad = sensors_.encoder ? sensors_.encoder->resolution_rad : 1e-4;
-  // Even within a step.
+  // Uniform distribution within a step of the encoder.
   return {VecX::Constant(1, difference_rad), derivative,
           MatX::Constant(1, 1, step_rad * step_rad / 12.0)};
 }

@@ -1,8 +1,8 @@
-// A filter's model of the motion between readings and of the instruments.
+// The model of motion and instruments that a filter uses between readings.
 //
-// The error state: rotation vector of the true against the estimated attitude in body axes, rate,
-// extra states of the disturbances, and every parameter that has a sigma. All derivatives are the
-// exact ones of the disturbances' laws (Dynamics).
+// The error state consists of the rotation vector from the estimated to the true attitude in body
+// axes, the rate, the extra states of the disturbances, and every parameter with a sigma. All
+// derivatives are exact derivatives of the laws (Dynamics).
 #pragma once
 
 #include <memory>
@@ -17,38 +17,39 @@ namespace photorque {
 using MatX = Eigen::MatrixXd;
 using VecX = Eigen::VectorXd;
 
-// The model of the motion from one reading to the next.
+// The model of the motion between readings.
 enum class Motion {
-  gyro_drives,   // as the gyro reads; between its readings the rate walks
-  rate_walks,    // the rate does a random walk
-  disturbances,  // by Euler's equations under the modelled torques, beside which an unknown torque
-                 // lets the rate walk
+  gyro_drives,   // gyro readings give the rate; in their gaps, a random walk
+  rate_walks,    // random walk of the rate
+  disturbances,  // Euler's equations with the modelled torques and an unknown torque, which causes
+                 // a random walk of the rate
 };
 
 struct FilterSettings {
   Motion motion = Motion::disturbances;
-  // Random walk of the rate, body axes: its standard deviation grows with the square root of time.
+  // Random walk of the rate, body axes: the standard deviation that the square root of 1 s adds.
   double rate_walk_rad_s_rts = 1e-4;
-  double rate_sigma_rad_s = 1.0;  // of the rate before the first reading
-  bool uses_attitude = true;      // beyond the first
+  double rate_sigma_rad_s = 1.0;  // before the first reading
+  bool uses_attitude = true;      // in addition to the first attitude
   bool uses_gyro = true;
 };
 
 struct FilterState {
   PlatformState mean;
-  VecX parameters;  // of the model, those with a sigma
+  VecX parameters;  // those of the model with a sigma
   MatX covariance;
-  // The dynamics with the parameters at which it was made.
+  // The dynamics with the parameters `reference`.
   std::shared_ptr<const Dynamics> dynamics;
   VecX reference;
 };
 
 struct Transition {
-  MatX phi;         // of the error state
-  MatX covariance;  // of the noise that came in
+  MatX phi;         // transition matrix of the error state
+  MatX covariance;  // of the noise during the transition
 };
 
-// A measurement: residual = reading − prediction, its derivative by the error state, its noise.
+// A measurement: residual (reading − prediction), its derivative with respect to the error state,
+// and the covariance of its noise.
 struct Measurement {
   VecX residual;
   MatX derivative;
@@ -57,15 +58,15 @@ struct Measurement {
 
 class MotionModel {
  public:
-  // The torques are used only if `settings` selects the model with disturbances. A gyro without a
-  // bias in the model gets one. The schedule is that of the recording.
+  // The torques are used only if `settings` selects the model with disturbances. A gyro bias is
+  // added if the model has none. The schedule is that of the recording.
   MotionModel(const AttitudeModel& model, const Sensors& sensors, const FilterSettings& settings,
               const Schedule& schedule);
 
   static constexpr int attitude = 0, rate = 3, extra = 6;
   int size() const { return size_; }
   int first_parameter() const { return extra + extras_; }
-  // Names of the parameters: "gyro_bias.bias_rad_s[0]".
+  // Names of the parameters, for example "gyro_bias.bias_rad_s[0]".
   const std::vector<std::string>& parameter_names() const { return names_; }
   const VecX& prior_mean() const { return prior_mean_; }
   const VecX& prior_sigma() const { return prior_sigma_; }
@@ -73,24 +74,25 @@ class MotionModel {
 
   // The initial state, from an attitude with the covariance `attitude_lab_rad2`.
   FilterState start(double time_s, const Quat& lab_from_body, const Mat3& attitude_lab_rad2) const;
-  // The motion has changed by an unknown kick: rate and attitude are uncertain again.
+  // After an unknown kick: rate and attitude become uncertain again.
   void reset_after_kick(FilterState& state) const;
 
-  // Propagates the state to a later time. `gyro_rad_s` is the reading there; it replaces the rate
-  // if the motion model uses the gyro and all three axes were read. NumericalError if that takes
-  // more than 200,000 steps.
+  // Propagates the state to a later time. `gyro_rad_s` is the reading there. It replaces the rate
+  // if the motion model uses the gyro and all three axes were read. NumericalError if more than
+  // 200,000 steps are necessary.
   Transition advance(FilterState& state, double time_s, const Vec3& gyro_rad_s) const;
 
+  // Measurements of attitude, rate and yaw at a state.
   Measurement of_attitude(const FilterState& state, const Quat& lab_from_body,
                           const std::array<bool, 3>& sees_axis) const;
   Measurement of_gyro(const FilterState& state, const Vec3& gyro_rad_s) const;
   Measurement of_yaw(const FilterState& state, double yaw_rad) const;
-  // Adds an error to an estimate; the dynamics are rebuilt where parameters have moved far.
+  // Adds an error to an estimate. The dynamics are rebuilt if parameters have changed much.
   void add(FilterState& state, const VecX& error) const;
   // The error state that add() adds to `from` to give `to`.
   VecX difference(const FilterState& to, const FilterState& from) const;
 
-  // Rate against the inertial frame, body axes: the reading of a perfect gyro.
+  // Body rate relative to the inertial frame, body axes: the reading of a perfect gyro.
   Vec3 inertial_rate_rad_s(const FilterState& state) const;
   double camera_delay_s() const;
 

@@ -28,7 +28,8 @@ Readings readings_of(const Recording& recording, const std::string& name, const 
   readings.unused = columns.unused();
   readings.first_s = recording.time_s.front();
   readings.last_s = recording.time_s.back();
-  // About one axis the yaw is the attitude, among three angles a part of it.
+  // For one axis of rotation, the yaw is the attitude. With roll and pitch, it is part of the
+  // attitude.
   const Channel* yaw =
       platform.turns_about_one_axis() || columns.has_angles() ? nullptr : recording.find("yaw_rad");
   double before_s = readings.first_s;
@@ -71,7 +72,7 @@ Readings readings_of(const Recording& recording, const std::string& name, const 
          return readings.all[a].time_s < readings.all[b].time_s;
        })) {
     in_time.push_back(readings.all[i]);
-    // An image of a time before the first row belongs to the start.
+    // Images from before the first row are assigned to the start.
     in_time.back().time_s = std::max(in_time.back().time_s, readings.first_s);
   }
   readings.all = std::move(in_time);

@@ -66,7 +66,7 @@ size_t thinning(size_t rows) {
 
 namespace {
 
-// Root of the mean square within each block of rows.
+// Root-mean-square error in each block of rows.
 Plot::Curve error_curve(const std::string& label, const std::vector<AttitudeEstimate>& estimates,
                         const TruthTrack& truth) {
   Plot::Curve curve;

@@ -44,7 +44,7 @@ constexpr TableKey estimate("estimate", "how the attitude is estimated");
 // Variance of the initial tilt if only an encoder measures the attitude: (0.01 rad)².
 constexpr double level_rad2 = 1e-4;
 
-// The methods that channels allow, the simplest first.
+// The methods that the channels permit, the simplest first.
 std::vector<Ingredients> possible_methods(const EstimateStudy& study, const Readings& readings) {
   struct Method {
     const char* name;
@@ -75,7 +75,7 @@ std::vector<Ingredients> possible_methods(const EstimateStudy& study, const Read
   return methods;
 }
 
-// The fullest method of the motion that was asked for.
+// The method with the most instruments for the requested motion model.
 size_t choose(const std::vector<Ingredients>& methods, Motion motion) {
   size_t best = methods.size() - 1;
   for (size_t i = 0; i < methods.size(); ++i) {
@@ -88,7 +88,7 @@ size_t choose(const std::vector<Ingredients>& methods, Motion motion) {
 void set_walk(const EstimateStudy& study, const Readings& readings, FilterSettings& settings) {
   const bool by_torques = settings.motion == Motion::disturbances;
   const auto& stated = by_torques ? study.disturbed_rate_walk : study.rate_walk;
-  // A gyro that drives needs it in its gaps alone.
+  // A method driven by the gyro needs the random walk only in gaps of the gyro.
   FilterSettings searched = settings;
   if (settings.motion == Motion::gyro_drives) {
     searched.motion = Motion::rate_walks;
@@ -127,7 +127,7 @@ std::vector<std::string> unseen_by(const Platform& platform, const Readings& rea
       if (seen[k] == 0.0) lines.push_back(std::string("no gyro about body ") + "xyz"[k]);
     }
   }
-  // Bands of six standard deviations: recordings are long.
+  // Six standard deviations, because recordings have many readings.
   const auto odd = [](const InnovationSum& sum) {
     return sum.numbers > 0.0 &&
            std::abs(sum.per_number() - 1.0) > 6.0 * std::sqrt(2.0 / sum.numbers);
@@ -289,7 +289,7 @@ SimulatedRun simulate_run(const PropagationRun& nominal, uint64_t seed) {
   PropagationRun run = nominal;
   run.seed = seed;
   uint64_t number = 0;
-  constexpr uint64_t stream = 1000;  // beyond those of the instruments
+  constexpr uint64_t stream = 1000;  // different from those of the instruments
   for (Disturbance& disturbance : run.model.disturbances) {
     for (Parameter& parameter : disturbance.parameters) {
       parameter.value += parameter.sigma * gaussian(seed, stream, number++, 0);

@@ -9,7 +9,7 @@ namespace photorque {
 
 namespace {
 
-// The key under which the user wrote `key`: the same quantity, perhaps in another unit.
+// The key under which the user wrote `key`: the same quantity, possibly in another unit.
 std::string written_key(const Settings& settings, const std::string& key) {
   const KeyUnit wanted = unit_of_key(key);
   for (const std::string& other : settings.keys()) {
@@ -19,7 +19,7 @@ std::string written_key(const Settings& settings, const std::string& key) {
   return key;
 }
 
-// The first of the three numbers of `axis`; −1: it has none.
+// Index of the first of the three numbers of the parameter `axis`; −1 if there is none.
 int first_of_axis(const Disturbance& disturbance) {
   const auto at = std::ranges::find(disturbance.parameters, "axis", &Parameter::key);
   return at == disturbance.parameters.end() ? -1
@@ -82,8 +82,8 @@ PlacedParameters array_parameter(const Settings& settings, const std::string& ke
     }
     return x;
   };
-  // Settings knows uncertain numbers and triples; longer arrays come apart here. Inside their table
-  // the keys carry no unit, so its factor is applied by hand.
+  // Settings reads uncertain numbers and triples; longer arrays are read here. The keys inside
+  // their table carry no unit, so the unit's factor is applied here.
   const bool with_sigma = settings.raw(key).is_table();
   const double factor = with_sigma ? unit_of_key(written_key(settings, key)).to_SI : 1.0;
   const std::vector<double> value =

@@ -47,8 +47,8 @@
 
 namespace photorque {
 
-// When a disturbance acts while one instant is evaluated. Within a stage the order is that of the
-// experiment file and must not matter.
+// The stage at which a disturbance acts when an instant is evaluated. Within a stage the order is
+// that of the experiment file, and the result must not depend on it.
 enum class Stage {
   conditions,   // changes the input of all others: gravity, field, command, inertia
   mass,         // moves the centre of mass, by EvaluationContext::move_mass(), or turns the lab
@@ -56,9 +56,9 @@ enum class Stage {
   measurement,  // changes only the readings of the instruments
 };
 
-// The evaluation context: everything about eight instants that a disturbance may read, and what it
-// may add to. Body vectors are in body axes and about the centre of rotation; `_lab` vectors are in
-// lab axes.
+// The evaluation context: all quantities at eight instants that a disturbance may read, and the
+// results to which it may add. Body vectors are in body axes and about the centre of rotation;
+// `_lab` vectors are in lab axes.
 template <class T>
 struct EvaluationContext {
   const Platform& platform;
@@ -79,19 +79,20 @@ struct EvaluationContext {
   Vec3Of<T> up_lab;                 // unit, away from the Earth's centre
   T gravity_gradient_1_s2;          // g/R on the ground, μ/r³ in orbit
   T illumination;                   // fraction of the light that arrives: 1 lit, 0 in shadow
-  Vec3Of<T> command_body_N_m;       // torque commanded; acts on the body without a law
+  Vec3Of<T> command_body_N_m;       // commanded torque; acts on the body directly
   Vec3Of<T> command_lab_N;          // commanded force on a sliding platform
   T battery_current_A;              // drawn from the battery (positive discharges)
   bool current_is_measured;         // Schedule::current_is_measured
   T led_current_A;                  // ZeroOrderHold::led_current_A
   T lamps_as_stated;                // ZeroOrderHold::lamps_as_stated
-  T array_power_W;                  // that the solar array delivers
-  Vec3Of<T> traced_light_body_N_m;  // ZeroOrderHold::light_body, now
+  T array_power_W;                  // power that the solar array delivers
+  Vec3Of<T> traced_light_body_N_m;  // ZeroOrderHold::light_body at this instant
   Vec3Of<T> wheel_rad_s;            // of wheels about the body's axes, relative to the body
   Vec3Of<T> wheel_rad_s2;           // their acceleration
 
-  // Dry friction about one axis: 1 where its direction is held (ZeroOrderHold::slip), 0 where the
-  // rate decides, and the direction of slip that is held, 0 where the platform sticks.
+  // Dry friction about one axis. slip_is_held: 1 if the direction of slip is constant in the step
+  // (ZeroOrderHold::slip), 0 if it follows the rate. slip_sign: the constant direction, 0 if the
+  // platform sticks.
   T slip_is_held, slip_sign;
 
   // Position and velocity of a planar platform; zero for all others.
@@ -102,49 +103,49 @@ struct EvaluationContext {
   Vec3Of<T> magnetic_field_body_T;
   Vec3Of<T> up_body;
 
-  // Displacement of the centre of mass from the centre of rotation so far: complete after
-  // Stage::mass. Use move_mass().
+  // Displacement of the centre of mass from the centre of rotation, summed over the laws so far;
+  // complete after Stage::mass. Change it with move_mass().
   Vec3Of<T> mass_offset_body_m;
 
   // Results.
   Vec3Of<T> torque_body_N_m;  // add to it
   Vec3Of<T> force_lab_N;      // on a platform that slides; add to it
-  // Inertia that does not turn with the body: use detach_inertia().
+  // Inertia that does not turn with the body. Change it with detach_inertia().
   Mat3Of<T> detached_inertia_kg_m2;
-  bool inertia_changed = false;  // false: inertia_kg_m2 is the platform's and nothing is detached
-  // The inertial rate, which an ideal gyro senses and a rotor resists: earth_rotation adds to it.
-  // Complete after Stage::mass.
+  bool inertia_changed = false;  // false: inertia_kg_m2 is the platform's, none is detached
+  // The rate relative to the inertial frame, which an ideal gyro measures and which acts on a
+  // rotor. earth_rotation adds to it. Complete after Stage::mass.
   Vec3Of<T> inertial_rate_body_rad_s;
   // Stage::measurement adds to these.
   Vec3Of<T> gyro_error_rad_s;  // reading − inertial rate, body axes
-  Vec3Of<T> camera_error_rad;  // rotation vector of the seen from the true body axes
+  Vec3Of<T> camera_error_rad;  // rotation vector from the true to the observed body axes
   T camera_delay_s;            // the camera reports the attitude this much earlier
 
   // A lab vector in body axes.
   Vec3Of<T> to_body(const Vec3Of<T>& v_lab) const { return lab_from_body.transpose() * v_lab; }
 
-  // For Stage::conditions: the inertia differs by this much.
+  // For Stage::conditions: adds to the inertia.
   void change_inertia(const Mat3Of<T>& by_kg_m2) {
     inertia_kg_m2 += by_kg_m2;
     inertia_changed = true;
   }
 
-  // This part of the inertia, J a aᵀ, sits on its own spring or bearing about the axis a and does
-  // not follow the body's acceleration. The law also adds the torque −ω × (J a σ) with its absolute
-  // rate σ about that axis, and the torque of its spring or motor.
+  // Detaches this part of the inertia, J a aᵀ: it has a separate spring or bearing about the axis a
+  // and does not follow the body's acceleration. The law also adds the torque −ω × (J a σ) with the
+  // part's absolute rate σ about that axis, and the torque of the spring or motor.
   void detach_inertia(const Mat3Of<T>& part_kg_m2) {
     detached_inertia_kg_m2 += part_kg_m2;
     inertia_changed = true;
   }
 
-  // The centre of mass moves by `offset_body_m`; adds the torque m r × g that this causes.
+  // Moves the centre of mass by `offset_body_m` and adds the torque m r × g that this causes.
   void move_mass(const Vec3Of<T>& offset_body_m) {
     mass_offset_body_m += offset_body_m;
     torque_body_N_m += mass_kg * offset_body_m.cross(gravity_body_m_s2);
   }
 };
 
-// One number of a disturbance that can be read, edited and differentiated with respect to.
+// A number of a disturbance that can be read, edited and differentiated with respect to.
 struct Parameter {
   std::string key;     // as in the experiment file, ends in the unit as written: "shift_m_per_Ah"
   int component = -1;  // of an array, row by row for a matrix; −1: the key is one number
@@ -157,19 +158,19 @@ struct ExtraState {
   std::string name;  // ends in its unit
   double initial = 0.0;
   double scale = 1.0;  // > 0, a deviation of this size matters as much as 1 rad of attitude
-  // Its additional initial value when the platform starts by turning as one rigid body: this times
-  // the rate, body axes. For states that count from the inertial frame.
+  // Additional initial value if the platform starts by turning as one rigid body: this vector times
+  // the rate, body axes. For states that are measured relative to the inertial frame.
   Vec3 per_body_rate = Vec3::Zero();
   // Key of an experiment file for `initial`, in the key's unit; empty: none.
   std::string key = {};
 };
 
-// A key of a law, and where its numbers stand among the law's parameters. A law names its keys in
-// their order,
+// A key of a law, and the position of its numbers among the law's parameters. A law declares its
+// keys in their order:
 //   constexpr VectorKey torque_N_m("torque_N_m", "amplitude, body axes");
 //   constexpr ScalarKey frequency_Hz("frequency_Hz", {0.0, 1e6}, "of it", torque_N_m.end());
-// reads them by these names, own[frequency_Hz], which costs no more than an index, and lists them
-// among the keys of its kind.
+// It reads them by these names, own[frequency_Hz], at the cost of an index, and lists them among
+// the keys of its kind.
 template <int size>
 struct KeyOf {
   const char* name;
@@ -191,14 +192,14 @@ struct KeyOf {
 
   constexpr operator std::string_view() const { return name; }
   constexpr int end() const { return first + size; }
-  // The table can do without it.
+  // The key may be absent.
   constexpr KeyOf optional() const {
     KeyOf copy = *this;
     copy.required = false;
     return copy;
   }
 
-  // As it is declared, where its numbers may have a sigma each.
+  // The key as declared in the table of keys. Keys of up to six numbers may have a sigma for each.
   operator Key() const requires(size <= 6) {
     KeyTraits traits{.optional = !required, .has_error = true};
     if constexpr (size == 3) return Vec3Key(name, what, traits);
@@ -224,8 +225,8 @@ struct StateKey {
 template <class T>
 struct ParametersAndStates {
   const T* parameters;
-  const T* states;  // of the ExtraStates that it declared
-  T* state_rates;   // to be set: d/dt of each
+  const T* states;  // those of its ExtraStates
+  T* state_rates;   // output: d/dt of each state
 
   const T& operator[](const ScalarKey& key) const { return parameters[key.first]; }
   Vec3Of<T> operator[](const VectorKey& key) const {
@@ -253,14 +254,14 @@ struct ParametersAndStates {
   T& rate_of(StateKey key) const { return state_rates[key.index]; }
 };
 
-// An instant at which a law jumps. The propagator ends a step there exactly.
+// A time at which a law jumps. The propagator ends a step exactly there.
 struct Switch {
   double time_s = 0.0;
   int parameter = -1;  // index of the parameter that is this time, −1 if none is
 };
 
-// A law: immutable, without state, called from many threads. It must be smooth between switches;
-// the smoother, the longer the steps. Derive from TorqueLaw or LawOf below.
+// A law: immutable, without state, called from many threads. It must be smooth between switches; a
+// smoother law allows longer steps. Derive from TorqueLaw or LawOf below.
 class Law {
  public:
   virtual ~Law() = default;
@@ -269,8 +270,8 @@ class Law {
   virtual void act(const ParametersAndStates<DualLanes>& own,
                    EvaluationContext<DualLanes>& now) const = 0;
 
-  // Jumps in (from_s, to_s), in any order. A law that jumps uses active_from() or the like, which
-  // look at each lane.
+  // Jumps in (from_s, to_s), in any order. A law that jumps uses active_from() or a similar
+  // function that treats each lane separately.
   virtual std::vector<Switch> switches(std::span<const Parameter> /*parameters*/, double /*from_s*/,
                                        double /*to_s*/) const {
     return {};
@@ -295,7 +296,7 @@ class LawOf : public Law {
   const Derived& self() const { return static_cast<const Derived&>(*this); }
 };
 
-// For laws that are just a torque: Derived has
+// For laws that are only a torque: Derived has
 //   template <class T> Vec3Of<T> torque(const ParametersAndStates<T>& own, const
 //   EvaluationContext<T>& now) const;
 template <class Derived>
@@ -307,8 +308,8 @@ class TorqueLaw : public LawOf<TorqueLaw<Derived>> {
   }
 };
 
-// The base of laws that are a force on a platform that slides: Derived has force() in place of
-// torque(), in lab axes.
+// For laws that are a force on a platform that slides: Derived has force(), in lab axes, instead of
+// torque().
 template <class Derived>
 class ForceLaw : public LawOf<ForceLaw<Derived>> {
  public:
@@ -319,35 +320,38 @@ class ForceLaw : public LawOf<ForceLaw<Derived>> {
 };
 
 // A disturbance that acts on the platform: plain data and the law that reads it. Copies share the
-// law; editing `parameters` of one copy changes that copy alone.
+// law, but not `parameters`.
 struct Disturbance {
   std::string kind;  // set by the reader of the kind
   Stage stage = Stage::torque;
   std::vector<Parameter> parameters;
   std::vector<ExtraState> states;
   std::shared_ptr<const Law> law;
-  // The torque may change its sign within a far shorter time than the motion takes: the propagator
-  // then looks closely at the ends of its steps too.
+  // The torque may change its sign in a far shorter time than that of the motion. The propagator
+  // then also checks the error at the ends of its steps.
   bool is_abrupt = false;
-  // Dry friction: about one axis it acts against the slip that the propagator holds, and sticks.
+  // Dry friction: about one axis it acts against the direction of slip that the propagator sets,
+  // and may stick.
   bool is_dry_friction = false;
-  // Its uncertain parameters have other values in every recording: a dry torque that differs from
-  // day to day.
+  // The uncertain parameters have different values in every recording, for example a dry torque
+  // that changes from day to day.
   bool per_recording = false;
 };
 
-// Parameters from settings, in SI, with their sigma. A missing key is an InputError, or
-// `otherwise_SI` with sigma 0 where that is given.
+// Parameters from settings, in SI, with their sigma. If the key is missing: `otherwise_SI` with
+// sigma 0 where it is given, else InputError.
 using Parameters = std::vector<Parameter>;
-// Where they are to stand is checked by make_disturbance().
+// Parameters and the position that their law expects, which make_disturbance() checks.
 struct PlacedParameters {
   int first = 0;
   Parameters parameters;
 };
+// One number.
 PlacedParameters scalar_parameter(const Settings& settings, const ScalarKey& key);
 PlacedParameters scalar_parameter(const Settings& settings, ScalarKey key, Range range);
 PlacedParameters scalar_parameter_or(const Settings& settings, ScalarKey key, double otherwise_SI,
                                      Range range = {});
+// Three numbers.
 PlacedParameters vector_parameter(const Settings& settings, const VectorKey& key);
 // `size` numbers, e.g. the six of a symmetric matrix.
 PlacedParameters array_parameter(const Settings& settings, const std::string& key, size_t size,
@@ -364,19 +368,18 @@ PlacedParameters parameters_of(const Settings& settings, const KeyOf<size>& key)
   }
 }
 // Number of values that the user wrote for `key`: 0 for a single number, the length of an array,
-// nine for three rows of three; looks into { value = …, sigma = … }.
+// nine for three rows of three. In { value = …, sigma = … } it counts those of `value`.
 size_t count_as_written(const Settings& settings, std::string_view key);
-// The file that `key` names; a relative path counts from the experiment file.
+// The file that `key` names. A relative path is relative to the folder of the experiment file.
 std::filesystem::path file_of(const Settings& settings, std::string_view key);
-// Parameters that were not written but computed (a compliance from a beam's dimensions).
+// Parameters that were computed, for example a compliance from the dimensions of a beam.
 PlacedParameters fixed_parameter(const std::string& key, std::span<const double> values_SI,
                                  int first = 0);
 
-// `parameters` and those of `group` behind them; NumericalError where the law looks for them
-// elsewhere.
+// Appends `group` to `parameters`. NumericalError if the law expects the group at another position.
 void append(Parameters& parameters, const PlacedParameters& group);
 
-// The parameters of all groups in order, and a law built from `law_arguments`.
+// A disturbance with the parameters of all groups in order, and a law built from `law_arguments`.
 template <class LawType, class... Arguments>
 Disturbance make_disturbance(std::initializer_list<PlacedParameters> groups,
                              Stage stage = Stage::torque, std::vector<ExtraState> states = {},
@@ -389,21 +392,21 @@ Disturbance make_disturbance(std::initializer_list<PlacedParameters> groups,
   return d;
 }
 
-// 1 in the lanes at or after `start_s`, 0 before: for laws that begin with a jump. `start_s` must
-// be one of the law's switches; its derivative is the propagator's business.
+// 1 in the lanes at or after `start_s`, 0 before: for laws that start with a jump. `start_s` must
+// be one of the law's switches; the propagator adds the derivative with respect to it.
 template <class T>
 T active_from(const T& time_s, double start_s) {
   return where_at_least(time_s, start_s, T(1.0), T(0.0));
 }
 
-// Initial values of states relative to the inertial frame, if the platform starts as one rigid
-// body.
-
-// The body axis whose rate such a state has at the start: the present value of `axis` of the
-// disturbance or, without one, ExtraState::per_body_rate. Zero: the state starts at zero.
+// The body axis along which a state relative to the inertial frame takes up the initial rate, if
+// the platform starts as one rigid body. It is the present value of the parameter `axis` of the
+// disturbance or, without one, ExtraState::per_body_rate. Zero: the state starts at
+// ExtraState::initial.
 Vec3 bound_axis(const Disturbance& disturbance, const ExtraState& state);
 
-// ∂(bound_axis · rate) by a parameter of the disturbance [(rad/s) per the parameter's SI unit].
+// Derivative of (bound_axis · rate) with respect to a parameter of the disturbance [(rad/s) per the
+// parameter's SI unit].
 double bound_rate_slope(const Disturbance& disturbance, const ExtraState& state, int parameter,
                         const Vec3& rate_body_rad_s);
 

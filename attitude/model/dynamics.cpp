@@ -91,11 +91,12 @@ void Dynamics::try_laws() {
   try {
     if (tried(rest, others) == tried(moving, others)) offsets_ = as_stated;
   } catch (const NumericalError&) {
-    // A table that does not cover these states: the offsets are computed at every state.
+    // The states lie outside a table: the offsets are computed at every state.
   }
 }
 
-// With these parameters of the instruments.
+// Offsets of the instruments at `state`, with these parameters of the instruments. Also sets
+// changes_inertia_.
 Dynamics::Offsets Dynamics::tried(const PlatformState& state,
                                   const std::vector<Lanes>& instruments) {
   const std::vector<double> start = to_vector(state);
@@ -281,7 +282,7 @@ void Dynamics::solve(const EvaluationContext<T>& now, const T* y, T* rates) cons
     acceleration = (1.0 - sticks(now)) * about_axis<T>(now.torque_body_N_m, inertia);
   } else if (now.inertia_changed) {
     const Mat3Of<T> inertia = now.inertia_kg_m2 - now.detached_inertia_kg_m2;
-    // The inverse from cross products of the columns: Eigen's needs comparisons of scalars.
+    // The inverse from cross products of the columns: Eigen's inverse needs comparisons of scalars.
     const Vec3Of<T> a = inertia.col(0), b = inertia.col(1), c = inertia.col(2);
     const Vec3Of<T> bc = b.cross(c), ca = c.cross(a), ab = a.cross(b);
     const Vec3Of<T> torque = now.torque_body_N_m - w.cross(Vec3Of<T>(inertia * w));
@@ -298,7 +299,7 @@ void Dynamics::solve(const EvaluationContext<T>& now, const T* y, T* rates) cons
   }
 }
 
-// The result of solve() when only the command acts, without an evaluation context for laws to read.
+// The rates of solve() without disturbances: only the command acts. Needs no evaluation context.
 void Dynamics::free_body_rates(const Command& command, const Lanes* y, Lanes* rates) const {
   const Vec3Of<Lanes> w(y[4], y[5], y[6]);
   put_attitude_rates(y, rates);
@@ -344,14 +345,14 @@ Dynamics::Instants Dynamics::at(const Lanes& time_s,
                                      result.rates.data() + own.first_state},
                                     now);
     result.force_lab_N[d] = now.force_lab_N - force_before;
-    // A part that swings with the body exerts no torque on it but the gyroscopic one of a rigid
-    // body, which solve() no longer counts for the detached part.
+    // A detached part that moves with the body exerts only the gyroscopic torque of a rigid body,
+    // which solve() does not include for detached parts.
     const Vec3Of<Lanes>& w = now.rate_body_rad_s;
     const Vec3Of<Lanes> carried = Mat3Of<Lanes>(now.detached_inertia_kg_m2 - attached) * w;
     result.torque_body_N_m[d] = now.torque_body_N_m - before + w.cross(carried);
   };
   run_stages(order_, now, act);
-  // The bearing exerts the torque that the others do not.
+  // A platform that sticks: dry friction balances the sum of the other torques.
   for (size_t d = 0; d < model_.disturbances.size(); ++d) {
     if (!model_.disturbances[d].is_dry_friction) continue;
     const Vec3Of<Lanes> axis = model_.platform.axis.cast<Lanes>();
@@ -386,8 +387,9 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
         everything || block.state[k] < component::extra ||
         (translation_ >= 0 && block.state[k] >= translation_ && block.state[k] < translation_ + 4);
   }
-  // A torque depends on the body's state, on what is its own, and on what those of earlier stages
-  // did: these always act, and so do those that change the inertia that all torques are divided by.
+  // A torque depends on the body's state, on the parameters and states of its disturbance, and on
+  // the results of earlier stages. Therefore disturbances of earlier stages always act. So do those
+  // that change the inertia, by which all torques are divided.
   const auto owns = [&](size_t d) {
     const Disturbance& disturbance = model_.disturbances[d];
     const Layout& own = layout_[d];
@@ -402,7 +404,7 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
     }
     return false;
   };
-  // Torques and their results reach the instruments through the state alone.
+  // Torques affect the instruments only through the state.
   std::vector<size_t>&acting = room.acting, &owners = room.owners;
   acting.clear();
   owners.clear();
@@ -476,8 +478,8 @@ Dynamics::Instants Dynamics::at(const PlatformState& state) const {
   return at(state.time_s, held, y.data());
 }
 
-// The effect of every disturbance at one state, and the disturbance that holds the motion of a
-// planar platform.
+// The torque and force of every disturbance at one state, and the disturbance with the position and
+// velocity of a planar platform.
 
 namespace {
 
@@ -508,7 +510,7 @@ struct NoLaw final : LawOf<NoLaw> {
 }  // namespace
 
 Disturbance translation() {
-  // Deviations of a decimetre matter as much as those of a radian.
+  // A deviation of 0.1 m is as important as one of 1 rad.
   constexpr double scale = 0.1;
   const auto state = [](const char* name) { return ExtraState{name, 0.0, scale}; };
   Disturbance d = make_disturbance<NoLaw>({}, Stage::torque,
@@ -521,7 +523,7 @@ Disturbance translation() {
 bool depends_on_attitude(const AttitudeModel& model) {
   const Dynamics dynamics(model);
   const bool about_axis = model.platform.turns_about_one_axis();
-  // Some attitudes that no symmetry joins, and rates to go with them.
+  // Attitudes that are unrelated by symmetry, with different rates.
   std::vector<Lanes> y(static_cast<size_t>(dynamics.size()), Lanes(0.0));
   std::vector<Lanes> turned = y;
   for (int lane = 0; lane < Lanes::count; ++lane) {

@@ -4,10 +4,10 @@
 //   (I − I_d) ω' = T − ω × (I − I_d) ω
 //   Q' = battery current
 //
-// about one axis a alone where the platform has one, ω' = a (a·T) / (a·I a), m v' = F where it
-// slides, and the extra states of the disturbances; I_d is the inertia that sits on its own springs
-// and bearings (EvaluationContext::detach_inertia). The lab counts as inertial: earth_rotation is a
-// disturbance.
+// and the equations of the disturbances' extra states. I_d is the inertia with separate springs or
+// bearings (EvaluationContext::detach_inertia). A platform with one axis a has ω' = a (a·T) / (a·I
+// a) instead. A platform that slides also has m v' = F. The lab is treated as inertial;
+// earth_rotation is a disturbance.
 #pragma once
 
 #include <vector>
@@ -24,22 +24,23 @@ struct AttitudeModel {
   Environment environment;
   std::vector<Disturbance> disturbances;
   Schedule schedule;
-  // The attitude stays what it was at the start: neither is it seen nor does anything depend on it,
-  // and a run of thousands of turns needs no more steps than its rate does.
+  // The attitude stays constant. For models in which the attitude is not observed and has no
+  // effect: a run of thousands of turns then needs only the steps that its rate requires.
   bool holds_attitude = false;
 };
 
-// The state as the flat vector that is integrated: w, x, y, z, ω, charge, extra states.
+// Layout of the state as the flat vector that is integrated: w, x, y, z, ω, charge, extra states.
 namespace component {
 inline constexpr int attitude = 0, rate = 4, charge = 7, extra = 8;
 }
 
+// The state as a vector in this layout.
 std::vector<double> to_vector(const PlatformState& state);
-// Normalises the quaternion.
+// The state of such a vector, with a normalised quaternion.
 PlatformState to_state(double time_s, std::span<const double> y);
 
-// The additional states of a platform that slides: place and velocity in the lab's xy plane, as the
-// extra states of a disturbance that does nothing. A model of such a platform begins with it.
+// The additional states of a platform that slides: position and velocity in the lab's xy plane, as
+// the extra states of a disturbance without a torque. The model of such a platform must contain it.
 inline constexpr const char* translation_kind = "translation";
 Disturbance translation();
 
@@ -52,26 +53,26 @@ class Dynamics {
   const AttitudeModel& model() const { return model_; }
   // Components of the state: 8 and the extra states.
   int size() const { return size_; }
-  // Sizes at which deviations of the components matter equally (1 rad, 1 rad/s, 1 C, as declared).
+  // Deviations of the components that are equally important (1 rad, 1 rad/s, 1 C,
+  // ExtraState::scale).
   const std::vector<double>& scales() const { return scales_; }
-  // Where the extra states of disturbance d begin in the state vector.
+  // Index of the first extra state of disturbance d in the state vector.
   int first_state(size_t d) const { return layout_[d].first_state; }
-  // Where the parameters of disturbance d begin in the list of all parameters.
+  // Index of the first parameter of disturbance d in the list of all parameters.
   int first_parameter(size_t d) const { return layout_[d].first_parameter; }
 
-  // Where place (x, y) and velocity begin in the state vector; −1 where the platform does not
-  // slide.
+  // Index of position (x, y) and velocity in the state vector; −1 if the platform does not slide.
   int first_of_translation() const { return translation_; }
 
-  // At zero attitude, turning at this rate as one rigid body, the extra states at their initial
-  // values.
+  // State at zero attitude that turns at this rate as one rigid body, with the extra states at
+  // their initial values.
   PlatformState initial_state(const Vec3& rate_body_rad_s = Vec3::Zero()) const;
 
   // dy/dt at eight instants; `y` and `rates` hold size() components.
   void rates(const Lanes& time_s, const ZeroOrderHold& held, const Lanes* y, Lanes* rates) const;
 
-  // The variables of one differentiation, at most DualLanes::block: component `state`[k] of the
-  // state or parameter `parameter`[k], −1 for neither.
+  // The variables of one differentiation, at most DualLanes::block: component `state[k]` of the
+  // state or parameter `parameter[k]`. −1: unused.
   struct Block {
     std::array<int, DualLanes::block> state;
     std::array<int, DualLanes::block> parameter;
@@ -81,7 +82,7 @@ class Dynamics {
       parameter.fill(-1);
     }
   };
-  // Room for an evaluation with derivatives. Who asks often keeps it from one to the next.
+  // Memory for an evaluation with derivatives. Frequent callers reuse it.
   struct Workspace {
     std::vector<DualLanes> y, parameters, rates;
     std::vector<size_t> acting, owners;
@@ -95,13 +96,13 @@ class Dynamics {
     this->derivatives(time_s, held, y, block, derivatives, room);
   }
 
-  // Everything known about eight instants. `held`, the commands of each instant, may differ from
-  // lane to lane.
+  // All quantities at eight instants. `held`, the commands of each instant, may differ from lane to
+  // lane.
   struct Instants {
     std::vector<Vec3Of<Lanes>> torque_body_N_m;  // of each disturbance, in the model's order
-    std::vector<Vec3Of<Lanes>> force_lab_N;      // the same
-    Vec3Of<Lanes> command_body_N_m;              // as it acts
-    Vec3Of<Lanes> command_lab_N;                 // the same
+    std::vector<Vec3Of<Lanes>> force_lab_N;      // of each disturbance, in the model's order
+    Vec3Of<Lanes> command_body_N_m;              // the torque that acts
+    Vec3Of<Lanes> command_lab_N;                 // the force that acts
     Vec3Of<Lanes> mass_offset_body_m;
     Lanes battery_current_A;
     Lanes array_power_W;
@@ -114,11 +115,11 @@ class Dynamics {
   };
   Instants at(const Lanes& time_s, const std::array<ZeroOrderHold, Lanes::count>& held,
               const Lanes* y) const;
-  // At one state, in all lanes, with the commands of the model's schedule.
+  // The same quantities at one state, in all lanes, with the commands of the model's schedule.
   Instants at(const PlatformState& state) const;
 
-  // The offsets of noiseless instruments from the platform's rate and attitude, where that does not
-  // depend on the motion.
+  // Differences of noiseless readings from the platform's rate and attitude. They exist only if
+  // they do not depend on the motion.
   struct Offsets {
     Vec3 gyro_rad_s, camera_rad;
     double camera_delay_s = 0.0;
@@ -126,8 +127,8 @@ class Dynamics {
   };
   const std::optional<Offsets>& offsets() const { return offsets_; }
 
-  // Derivatives of the instruments' readings by the variables of `block`: gyro [0, 3), camera error
-  // [3, 6), camera delay [6], each a row of `block` numbers.
+  // Derivatives of the instruments' readings with respect to the variables of `block`: gyro [0, 3),
+  // camera error [3, 6), camera delay [6]; each is a row of `block` numbers.
   static constexpr int reading_count = 7;
   void reading_derivatives(const Lanes& time_s, const std::array<ZeroOrderHold, Lanes::count>& held,
                            const Lanes* y, const Block& block, Lanes* derivatives,
@@ -182,8 +183,8 @@ class Dynamics {
   std::optional<Offsets> offsets_;
 };
 
-// Whether the motion would differ at another attitude: a lab's gravity, field or draught acts.
-// About one axis alone, by turning about it.
+// Whether the motion depends on the attitude, for example by gravity, a magnetic field or a draught
+// of the lab. For a platform with one axis: on the rotation about that axis.
 bool depends_on_attitude(const AttitudeModel& model);
 
 // The torque of every disturbance at one state [N m], in the model's order, body axes.

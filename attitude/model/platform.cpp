@@ -17,7 +17,7 @@ void check_inertia(const Mat3& inertia_kg_m2, const InputLocation& where, const 
   if (!(principal[0] > 0.0)) {
     throw InputError(where, key, found.str(), "three positive principal moments");
   }
-  // Rounded tables of thin plates and rods touch the bound; a part in a thousand is theirs.
+  // Rounded tables of thin plates and rods are near the bound: an excess of 0.1 % is accepted.
   if (principal[2] > (principal[0] + principal[1]) * (1.0 + 1e-3)) {
     throw InputError(where, key, found.str(),
                      "moments none of which exceeds the sum of the other two");
@@ -30,7 +30,7 @@ namespace platform_key {
 constexpr UncertainNumberKey mass("mass_kg", Range::positive(), "mass of all rotating parts");
 constexpr OtherKey inertia("inertia_kg_m2", Key::an_array | Key::a_table,
                            "3 × 3, symmetric, positive, body axes, about the centre of rotation");
-// About the one axis that is free.
+// For platforms with one axis of rotation.
 constexpr OtherKey inertia_about(inertia.name, Key::a_number | Key::an_array | Key::a_table,
                                  "moment of inertia about the axis of rotation, or a 3 × 3 matrix",
                                  {.usually = "1"});
@@ -58,7 +58,7 @@ constexpr NumberKey battery_voltage("battery_voltage_V", usual_battery_voltage_V
 constexpr TableKey platform("platform", "the rotating body");
 }  // namespace platform_key
 
-// The table with value and sigma, or the platform's own.
+// Whether the inertia is given as { value, sigma }.
 bool has_sigma(const Settings& platform) {
   return platform.has(platform_key::inertia) && platform.raw(platform_key::inertia).is_table();
 }
@@ -74,7 +74,7 @@ Mat3 read_inertia(const Settings& settings, const Platform& platform) {
   return settings.uncertain(platform_key::inertia, Range::positive()).value * Mat3::Identity();
 }
 
-// Measured moments may break the triangle inequality by their errors.
+// Whether moments violate the triangle inequality by no more than their errors of measurement.
 bool breaks_within_sigma(const Mat3& inertia_kg_m2, const Mat3& sigma_kg_m2) {
   constexpr double most_sigma = 3.0;
   const Vec3 principal = Eigen::SelfAdjointEigenSolver<Mat3>(inertia_kg_m2).eigenvalues();
@@ -91,7 +91,7 @@ double mass_sigma_kg(const Settings& platform) {
 Mat3 inertia_sigma_kg_m2(const Settings& platform) {
   if (!has_sigma(platform)) return Mat3::Zero();
   const Settings both = platform.table(platform_key::inertia);
-  // Three moments without products: only the numbers of the diagonal.
+  // A single sigma applies to the three moments; the products are exact.
   if (!both.raw("sigma").is_array()) {
     return both.number("sigma", Range::not_negative()) * Mat3::Identity();
   }
@@ -126,7 +126,7 @@ Platform read_platform(const Settings& settings) {
 }
 
 double tilt_rad(const PlatformState& state) {
-  // sin(tilt/2)² = x² + y²: exact near zero, where the cosine of the tilt is blind.
+  // sin(tilt/2)² = x² + y²: accurate near zero, where the cosine of the tilt is not.
   const Quat& q = state.lab_from_body;
   return 2.0 * std::atan2(std::hypot(q.x(), q.y()), std::hypot(q.w(), q.z()));
 }

@@ -25,48 +25,46 @@ struct Platform {
   Topology topology = Topology::tabletop;
   double mass_kg = 1.0;                   // > 0, of everything that turns
   Mat3 inertia_kg_m2 = Mat3::Identity();  // body axes, about the centre of rotation, symmetric
-  // Angle between body z and lab z at which the bearing's stop is touched; none: no stop.
+  // Angle between body z and lab z at the bearing's stop; none: no stop.
   std::optional<double> tilt_limit_rad;
-  // Charge that the battery can give [C]; none: it never runs empty.
+  // Charge of the full battery [C]; none: it is never empty.
   std::optional<double> battery_capacity_C;
   double battery_voltage_V = usual_battery_voltage_V;  // nominal, > 0
   // Rotation axis of a one_axis platform: x, y or z, equal in body and lab axes.
   Vec3 axis = Vec3::UnitZ();
-  // The experiment names an effect that only a bearing has (its drag): then it stands on one,
-  // whatever the topology.
+  // The experiment states an effect that only a bearing has (its drag): the platform then has a
+  // bearing, independent of the topology.
   bool has_effects_of_bearing = false;
 
   bool turns_about_one_axis() const { return topology == Topology::one_axis || slides(); }
-  // Its centre of mass moves in the lab's xy plane.
+  // The centre of mass moves in the lab's xy plane.
   bool slides() const { return topology == Topology::planar; }
   bool has_bearing() const { return topology != Topology::free || has_effects_of_bearing; }
-  // It floats on air, about all three axes.
+  // The platform floats on air and turns about all three axes.
   bool has_air_bearing() const { return has_bearing() && !turns_about_one_axis(); }
 };
 
-// Reads [platform]. `axis` of a one_axis platform is "x", "y" or "z" (default); its
-// `inertia_kg_m2` may be one number, the moment about that axis, and both it and `mass_kg` default
-// to one: torques are then per unit of inertia, and forces of a planar platform, which turns about
-// z, per unit of mass. A free platform needs no mass either.
+// Reads [platform]. A one_axis platform has the axis "x", "y" or "z" (default); a planar platform
+// turns about z. Their `inertia_kg_m2` may be one number, the moment about that axis. Their inertia
+// and `mass_kg` default to one: torques are then per unit of inertia, and forces per unit of mass.
+// A free platform may omit the mass.
 // `mass_kg` and `inertia_kg_m2` may be { value, sigma }, see mass_sigma_kg() and
-// inertia_sigma_kg_m2(). InputError when the mass is not positive, the inertia not symmetric, not
-// positive definite or against the triangle inequality (the largest principal moment exceeds the
-// sum of the others: no body has such an inertia).
+// inertia_sigma_kg_m2(). InputError if the mass is not positive, or if the inertia is not
+// symmetric, not positive definite or violates the triangle inequality (the largest principal
+// moment exceeds the sum of the others, which is impossible for a body).
 Platform read_platform(const Settings& settings);
 Key platform_table();
 
-// The sigmas of [platform] inertia_kg_m2 = { value, sigma }, an entry each; zero where none is
-// given.
+// The sigmas of the entries of [platform] inertia_kg_m2 = { value, sigma }; zero if none is given.
 Mat3 inertia_sigma_kg_m2(const Settings& platform);
 
-// The sigma of [platform] mass_kg = { value, sigma }; zero where none is given.
+// Sigma of [platform] mass_kg = { value, sigma }; zero if none is given.
 double mass_sigma_kg(const Settings& platform);
 
-// Throws the same complaint as read_platform() without a place in a file; `key` names the value.
+// InputError at `where` if the inertia is not valid, see read_platform(). `key` names the value.
 void check_inertia(const Mat3& inertia_kg_m2, const InputLocation& where, const std::string& key);
 
 // The state of a platform: attitude, rate, charge, and the extra states of its disturbances.
-
 struct PlatformState {
   double time_s = 0.0;
   Quat lab_from_body = Quat::Identity();  // unit norm, Hamilton, rotates body into lab
@@ -78,7 +76,7 @@ struct PlatformState {
 
 // Angle between body z and lab z, in [0, π].
 double tilt_rad(const PlatformState& state);
-// Azimuths from lab x towards y, in (−π, π]: the heading of the direction in which body z leans (0
+// Azimuths from lab x towards y, in (−π, π]: the direction in which body z is tilted (0 if
 // upright), and the yaw of body x in the horizontal plane.
 double heading_rad(const PlatformState& state);
 double yaw_rad(const PlatformState& state);

@@ -1,5 +1,5 @@
 // Inputs from outside the equations of motion: commands that hold from their time to the next
-// (zero-order hold), and what a simulation beside them says (the light, the battery).
+// (zero-order hold), and inputs from coupled simulations (light, battery).
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 namespace photorque {
 
-// A torque that is known at some instants and continued between and after them: the polynomial
-// value + rate (t − from) + curvature (t − from)².
+// A torque that is known at some instants and interpolated or extrapolated by a polynomial: value +
+// rate (t − from) + curvature (t − from)².
 struct ContinuedTorque {
   double from_s = 0.0;
   Vec3 value_N_m = Vec3::Zero();
@@ -36,19 +36,19 @@ struct WheelSpeeds {
   bool operator==(const WheelSpeeds&) const = default;
 };
 
-// Which way a platform that turns about one axis slips in its dry friction. The propagator holds it
-// within a step and changes it between two; elsewhere the rate decides.
+// Direction of slip of a platform that turns about one axis with dry friction. The propagator keeps
+// it constant within a step and changes it between steps. by_rate: the direction follows the rate.
 enum class Slip : int64_t { by_rate, backward, sticks, forward };
 
 struct ZeroOrderHold {
   Vec3 command_body_N_m = Vec3::Zero();
-  // Forces on a platform that slides; they add up.
+  // Forces on a platform that slides; their sum acts.
   Vec3 force_lab_N = Vec3::Zero();
   Vec3 force_body_N = Vec3::Zero();
   double battery_current_A = 0.0;   // positive discharges
-  double led_current_A = 0.0;       // through lamps in the laboratory, where it is known
-  double lamps_as_stated = 1.0;     // 1: it is not, and they shine as the model states; else 0
-  ContinuedTorque light_body = {};  // of light that is traced beside the motion
+  double led_current_A = 0.0;       // current of lamps in the laboratory, if it is known
+  double lamps_as_stated = 1.0;     // 1: current unknown, lamps as the model states; else 0
+  ContinuedTorque light_body = {};  // torque of light that is traced during the run
   WheelSpeeds wheel = {};
   Slip slip = Slip::by_rate;
 
@@ -59,20 +59,22 @@ struct ZeroOrderHold {
   bool operator==(const ZeroOrderHold&) const = default;
 };
 
-// Before the first time everything is zero. `time_s` rises strictly; `held` has the same length.
+// Commands in order of time. All are zero before the first. `time_s` is strictly increasing; `held`
+// has the same length.
 struct Schedule {
   std::vector<double> time_s;
   std::vector<ZeroOrderHold> held;
-  // The battery's current is the measured one: no law of the model adds to it.
+  // The battery current is the measured one, and no law of the model adds to it.
   bool current_is_measured = false;
 
+  // The commands that hold at `t_s`.
   ZeroOrderHold at(double t_s) const {
     const auto later = std::upper_bound(time_s.begin(), time_s.end(), t_s);
     if (later == time_s.begin()) return {};
     return held[static_cast<size_t>(later - time_s.begin()) - 1];
   }
-  // Appends unless the values are those that hold already. NumericalError unless `t_s` is later
-  // than all before.
+  // Appends the commands unless they are equal to the last. NumericalError unless `t_s` is later
+  // than all times before.
   void append(double t_s, const ZeroOrderHold& values) {
     if (!time_s.empty() && t_s <= time_s.back()) {
       throw NumericalError("a schedule must be written in order of time");

@@ -17,10 +17,9 @@ namespace {
 constexpr double usual_blocks = 1200.0, most_turn_rad = 0.1;
 constexpr double knot_distance_s = 60.0;
 constexpr size_t fewest_intervals = 2, most_intervals = 24;
-// Spectral density of the third derivative of the angle [rad²/s⁵]: so large that it allows any
-// torque.
+// Spectral density of the third derivative of the angle [rad²/s⁵], large enough for any torque.
 constexpr double any_roughness = 1e-2;
-// Decrease of χ², beyond that expected by chance, above which the larger model is used.
+// The larger model is used if it decreases χ² by more than this, beyond the decrease by chance.
 constexpr double least_gain = 50.0;
 
 // The columns of a KinematicSeries (kinematics.h) that all recordings have in common.
@@ -41,7 +40,7 @@ struct Span {
   double knot_s(Eigen::Index k) const {
     return first_s + (last_s - first_s) * static_cast<double>(k) / static_cast<double>(intervals);
   }
-  // The knot before an instant, and the weight of the next one.
+  // The knot before a time, and the weight of the next knot.
   std::pair<Eigen::Index, double> place(double t_s) const {
     const double x =
         std::clamp((t_s - first_s) / (last_s - first_s), 0.0, 1.0) * static_cast<double>(intervals);
@@ -163,15 +162,15 @@ Equations equations_of(const std::vector<Span>& spans) {
   return sums;
 }
 
-// Scale and misalignment of a gyro: its nine numbers, by rows, come first of the shared columns.
+// Scale and misalignment of a gyro: its nine numbers, by rows, are the first shared columns.
 constexpr Eigen::Index of_matrix = 9;
 constexpr std::array<Eigen::Index, 3> scales = {0, 4, 8};
 // The usual error of each, and the largest error that is attributed to the scale of a gyro.
 constexpr double usual_matrix_error = 0.01, most_scale_error = 0.3;
 
 // Adds priors to the parameters that all recordings have in common: scale and misalignment, with
-// these widths, camera delay and rotation of the laboratory. If the motion does not separate them
-// from a bias, the difference is therefore attributed to the bias.
+// the widths `matrix_errors`, camera delay and rotation of the laboratory. If the motion does not
+// separate these from a bias, the difference is attributed to the bias.
 Equations with_priors(Equations sums, const Eigen::VectorXd& matrix_errors) {
   Eigen::VectorXd widths = Eigen::VectorXd::Constant(sums.right.size(), 0.1);
   widths.head<shared_count>() << matrix_errors, 0.05, Vec3::Constant(7e-5);
@@ -246,9 +245,9 @@ Solution solved(Bias model, const std::vector<Span>& spans, const Equations& sum
 }
 
 // Standard deviations of the scale and misalignment of a gyro. A scale gets a wider prior if the
-// motion determines a large error whatever the bias is; with the usual prior it would appear as a
-// drift. Misalignments keep the usual prior, because large ones are beyond first order, and the
-// parameters would explain them only in part.
+// motion determines a large error independently of the bias; with the usual prior it would appear
+// as a drift. Misalignments keep the usual prior, because the linear model explains large ones only
+// in part.
 Eigen::VectorXd matrix_errors(const std::vector<Span>& spans, const Equations& sums) {
   constexpr double clear_sigma = 3.0;
   const Solution free =
@@ -303,8 +302,8 @@ std::vector<BiasHistory> bias_histories(const std::vector<const Observation*>& p
   const Equations sums = with_priors(seen, matrix_errors(spans, seen));
   const Solution constant = solved(Bias::constant, spans, sums),
                  lines = solved(Bias::lines, spans, sums), finer = solved(Bias::finer, spans, sums);
-  // Noise above the stated level or with a correlation decreases χ² by more than one per parameter,
-  // also for the odd knots, which no bias needs.
+  // Noise that is correlated or above the stated level decreases χ² by more than one per parameter.
+  // This is measured by the odd knots, which a bias does not need.
   const double by_noise =
       std::max(1.0, (finer.gain - lines.gain) / (finer.count() - lines.count()));
   const double more = lines.count() - constant.count();

@@ -1,5 +1,5 @@
-// The drift of the gyro's bias, by the camera: whatever torque acts, what the gyro reads less what
-// the camera sees turning is the gyro's own.
+// The drift of the gyro's bias, determined from the camera. It is the gyro reading minus the
+// rotation that the camera measures, independent of the torques.
 #pragma once
 
 #include <string>
@@ -9,22 +9,22 @@
 
 namespace photorque {
 
-// The bias of one recording minus its mean: linear between instants. Body axes.
+// The bias of one recording minus its mean, linear between the given times. Body axes.
 struct BiasHistory {
   std::string recording;
   std::vector<double> time_s;
-  std::vector<Vec3> bias_rad_s;   // at each instant
-  std::vector<Vec3> sigma_rad_s;  // standard errors, widened to the noise that is seen
+  std::vector<Vec3> bias_rad_s;   // at each time
+  std::vector<Vec3> sigma_rad_s;  // standard errors, scaled to the observed noise
 
-  // The first and last values hold outside.
+  // The bias at a time. Before the first and after the last time it is constant.
   Vec3 at(double t_s) const;
 };
 
-// Empty where a constant bias does for each recording, and where one has no camera or no gyro or
-// turns by more than 0.1 rad from row to row.
-// Otherwise a history for each recording (pieces of one name count as one), with a knot about every
-// minute. Scale, misalignment, a late camera and the turning of the laboratory, which all
-// recordings share, are fitted besides and take what they can.
+// The histories of the biases, one for each recording (segments with one name count as one), with a
+// knot about every minute. Errors that all recordings have in common are fitted too: scale,
+// misalignment, camera delay and rotation of the laboratory. Empty if a constant bias is sufficient
+// for each recording. Empty too if a recording has no camera or no gyro, or if it rotates by more
+// than 0.1 rad from row to row.
 std::vector<BiasHistory> bias_histories(const std::vector<const Observation*>& pieces);
 
 }  // namespace photorque

@@ -34,8 +34,8 @@ double fastest_of_scalar(const ScalarReadings& read, Measures measures,
 // oscillate at the fastest observed rate.
 size_t instants_needed(const Observation& seen, double fastest_rad_s) {
   constexpr double of_noise = 0.05;
-  // Bounds of the error of a mean, for equally spaced readings: of second order with one instant,
-  // of fourth order with two.
+  // Bounds of the error of a mean, for equally spaced readings: of second order with one time, of
+  // fourth order with two.
   constexpr double second = 0.5, fourth = 0.1;
   size_t needed = 1;
   for (size_t block = 0; block < seen.spread.size(); ++block) {
@@ -164,8 +164,8 @@ struct BlockRows {
     double value = NAN, by = 0.0;
   };
 
-  // Second and fourth moments of the times of the readings. Rows that are means contribute their
-  // own spread.
+  // Second and fourth moments of the times of the readings. Rows that are means contribute the
+  // spread of their readings.
   struct Moments {
     double rows = 0.0, sum_s2 = 0.0, sum_s4 = 0.0;
 
@@ -239,15 +239,16 @@ struct BlockRows {
     return {rate_sum / rows + by_rad_s, by_rad_s};
   }
 
-  // An attitude that is not missing.
+  // An attitude that was read.
   struct Turned {
     Quat attitude;
     double since_s, rows;
   };
 
-  // The mean attitude: each attitude is moved to the block's time with the constant rate that
-  // leaves no trend, then the rotation vectors from the first are averaged. The effect of a
-  // changing rate remains, as in the mean of the gyro, so that one is the integral of the other.
+  // Mean attitude. Each attitude is moved to the time of the block with the constant rate that
+  // leaves no trend, then the rotation vectors relative to the first are averaged. The effect of a
+  // changing rate remains, as in the mean of the gyro, so that the mean attitude is the integral of
+  // the mean rate.
   Quat mean_attitude(double at_s) const {
     std::vector<Turned> all;
     double sum_s2 = 0.0, rows = 0.0;
@@ -267,7 +268,7 @@ struct BlockRows {
       return one.attitude * turn_by(-one.since_s * rate_rad_s);
     };
     Quat reference = moved(all.front());
-    // The remaining trend decreases each time by the square of the rotation angle.
+    // Each iteration decreases the remaining trend by the square of the rotation angle.
     constexpr int times = 3;
     for (int again = 0; again < times && all.size() > 2; ++again) {
       Vec3 trend = Vec3::Zero();
@@ -318,7 +319,7 @@ struct BlockRows {
   }
 };
 
-// A change between two instants, divided by the interval.
+// A change between two times, divided by the interval.
 template <typename Value>
 struct Slope {
   Value per_s;
@@ -364,7 +365,7 @@ class CentredReading {
  private:
   double before_s() const { return all_.time_s[block_] - all_.time_s[block_ - 1]; }
   double after_s() const { return all_.time_s[block_ + 1] - all_.time_s[block_]; }
-  // Rows spread evenly over a block have a root mean square of its length over sqrt(12).
+  // For rows spread evenly over a block, the root mean square of the times is the length over √12.
   bool is_far() const {
     const double length_s = std::sqrt(12.0) * all_.spread_of(block_).readings_s;
     return std::max(before_s(), after_s()) > 2.0 * length_s;

@@ -1,4 +1,4 @@
-// Rows averaged into blocks, and the instants at which a model is evaluated for their means.
+// Rows averaged into blocks, and the times at which a model is evaluated for their means.
 #pragma once
 
 #include <cstddef>
@@ -8,27 +8,26 @@
 
 namespace photorque {
 
-// The instants at which a model is evaluated for the mean over a block.
-
 // The largest observed rate of the platform, from the gyro or from consecutive attitudes; at least
 // 0.1 rad/s.
 double fastest_rad_s(const Observation& seen);
 
-// When a block is looked at, and with which weights: Gauss's rules for the moments of its rows'
-// times. A single reading, and what is as good as one against the noise, is one instant; two have
-// the second moment, three the fourth too.
+// The times at which a model is evaluated for the mean over a block, and their weights: Gauss's
+// rules for the moments of the times of the rows. One time is enough for a single reading, and for
+// a block whose curvature is far below the noise. Two match the second moment, three the fourth
+// moment too.
 class BlockInstants {
  public:
-  // `fastest_rad_s`: as fast as that the motion may oscillate.
+  // `fastest_rad_s`: the assumed largest angular frequency of the motion.
   BlockInstants(const Observation& seen, double fastest_rad_s);
 
   size_t per_block() const { return per_block_; }
-  // Time of the i-th of all instants. The times do not decrease.
+  // The i-th of all times. The times do not decrease.
   double time_s(size_t i) const {
     const size_t block = i / per_block_;
     return seen_.time_s[block] + since_s(block, i % per_block_);
   }
-  // Interval from the block's time to one of its instants.
+  // Interval from the time of the block to one of its evaluation times.
   double since_s(size_t block, size_t which) const {
     if (per_block_ == 1 || (per_block_ == 3 && which == 1)) return 0.0;
     return which == 0 ? -rules_[block].reach_s : rules_[block].reach_s;
@@ -38,7 +37,7 @@ class BlockInstants {
     const double outer = rules_[block].outer_weight;
     return per_block_ == 3 && which == 1 ? 1.0 - 2.0 * outer : outer;
   }
-  // Weight of an instant for the gyro, whose mean time may differ from the block's time.
+  // Weight of a time for the gyro, whose mean time may differ from that of the block.
   double gyro_weight(size_t block, size_t which) const;
   // Difference of the second moments of the times of attitudes and of other readings.
   double attitudes_excess_s2(size_t block) const;
@@ -56,16 +55,14 @@ class BlockInstants {
   std::vector<Rule> rules_;
 };
 
-// Rows of an observation on their way to one, and what their mean holds of the motion.
-
 // A copy of an observation without its blocks.
 Observation without_blocks(const Observation& seen);
 
 // Appends the mean of the rows [first, last) of `from` as a block.
 void append_mean(const Observation& from, size_t first, size_t last, Observation& to);
 
-// Makes the first block of `to`, a mean that is the given block of `all`, a reading at its middle,
-// with the curvature of the motion from its neighbours there.
+// Converts the first block of `to`, which is the mean over block `block` of `all`, to a reading at
+// its centre. The curvature of the motion follows from the neighbouring blocks of `all`.
 void correct_first_block(const Observation& all, size_t block, Observation& to);
 
 }  // namespace photorque

@@ -10,8 +10,8 @@ namespace photorque {
 
 namespace {
 
-// A correlated noise as one reading, or the mean of some, sees it: by what the process at the
-// middle counts, and the variance that it does not explain.
+// The effect of a correlated noise on one reading or on a mean. `reach`: factor of the process at
+// the centre of the mean. `alone`: variance that the process at the centre does not explain.
 struct Seen {
   double reach = 1.0, alone = 0.0;
 };
@@ -25,8 +25,8 @@ Seen seen_by(double rows, double interval_s, double variance, double time_s) {
   return {mean.reach, variance * (mean.variance - mean.reach * mean.reach + less)};
 }
 
-// Angle, rate, acceleration, the camera's correlated noise and, as a fifth state, the gyro's;
-// columns of states share one covariance.
+// Kalman filter with the states angle, rate, acceleration, the camera's correlated noise and, as a
+// fifth state, the gyro's. All columns of states have the same covariance.
 template <int States, int Columns>
 class AngleFilter {
  public:
@@ -52,14 +52,14 @@ class AngleFilter {
     const double t = to_s - last_s_;
     last_s_ = to_s;
     if (t != step_s_) set_step(t);
-    // When in between the command changed is not known.
+    // The time of a change of the command within the interval is unknown.
     if (jumps) covariance_(2, 2) += free_acceleration;
     covariance_ = (step_ * covariance_ * step_.transpose() + noise_step_).eval();
     if (jumps) covariance_(2, 2) += free_acceleration;
     states_ = (step_ * states_).eval();
   }
 
-  // Both return the variance of the innovations, which replace the readings.
+  // read_angle() and read_rate() return the variance of the innovations, which replace `reading`.
   double read_angle(double rows, double interval_s, Row& reading) {
     const Seen seen = seen_by(rows, interval_s, coloured_, noise_.camera.time_s);
     Vector of = Vector::Zero();
@@ -67,7 +67,7 @@ class AngleFilter {
     of[3] = seen.reach;
     return read(of, white_ / rows + seen.alone, reading);
   }
-  // `variance`: as if all of the noise were white.
+  // `variance`: the variance of the rate if all of the noise were white.
   double read_rate(double rows, double interval_s, double variance, Row& reading) {
     Vector of = Vector::Unit(1);
     if (States == 4) return read(of, variance, reading);
@@ -187,10 +187,10 @@ void add_normal_equations(const KinematicSeries& series, const AngleNoise& noise
 namespace {
 
 constexpr double tolerance = 0.1;  // of twice the logarithm of the likelihood
-// Correlation times that are looked for [s]. Longer ones look like a gyro that drifts.
+// Range of correlation times that is searched [s]. Longer ones are equivalent to a gyro drift.
 constexpr double shortest_s = 0.02, longest_s = 12.0;
 
-// ln(level over the stated), coloured fraction, ln(time), ln(roughness).
+// ln(level / stated level), coloured fraction, ln(time), ln(roughness).
 struct Point {
   double level = 0.0, coloured = 0.0, time = 0.0, roughness = 0.0;
 };
@@ -208,7 +208,7 @@ class Search {
   CameraNoise run() {
     const auto plain = [&](const Eigen::VectorXd& x) { return of({x[0], 0.0, 0.0, x[1]}); };
     Minimum white{Eigen::Vector2d::Zero(), INFINITY};
-    // Twice, because another level may need another roughness.
+    // Two rounds, because another level may need another roughness.
     for (int round = 0; round < 2; ++round) {
       const Eigen::Vector2d start(white.at[0], max_likelihood_roughness(white.at[0]));
       const Minimum next = simplex_minimum(plain, start, Eigen::Vector2d(0.2, 1.0), tolerance);
@@ -237,7 +237,7 @@ class Search {
   }
 
   double of(const Point& p) const {
-    // Far beyond real instruments; the search stays inside.
+    // Limits far beyond real instruments, for the search.
     if (std::abs(p.level) > 7.0 || p.roughness < -60.0 || p.roughness > 20.0) return INFINITY;
     const bool is_coloured = p.coloured > 0.0;
     if (is_coloured && (p.time < std::log(shortest_s) || p.time > std::log(longest_s))) {
@@ -285,8 +285,8 @@ class Search {
     found.level_sigma = sigma[0];
     double time_sigma = sigma[1];
     find_white_part(best, time_sigma, found);
-    // A level as stated is taken as known: the time then is much better determined. So it is where
-    // a curve through the attitudes may have taken up part of the slow noise.
+    // A level that agrees with the stated one is fixed, which determines the time much better. It
+    // is also fixed if a curve through the attitudes may have absorbed part of the slow noise.
     const bool may_hide =
         best_.level < 0.0 &&
         std::any_of(runs_.begin(), runs_.end(), [](auto* run) { return run->about_readings; });

@@ -5,11 +5,11 @@
 
 namespace photorque {
 
-// The parts of the one class of this file.
+// The parts of ExpectedReadings.
 namespace expected {
 
-// The delay of the attitude that a camera reports. Body axes; the angular acceleration is assumed
-// constant during the delay, which is accurate to the square of delay over period of the motion.
+// The delay of the attitude that a camera reports, in body axes. The angular acceleration is
+// assumed to be constant during the delay. The error is of second order in delay over period.
 struct Delay {
   double time_s = 0.0;
   Vec3 rate_rad_s = Vec3::Zero(), acceleration_rad_s2 = Vec3::Zero();  // now
@@ -23,7 +23,7 @@ struct StateChange {
 };
 
 // Readings of accelerometer and magnetometer: f = ω' × r + ω × (ω × r) − g, without g in free fall,
-// and the field of the lab.
+// and the magnetic field of the lab.
 class FieldReadings {
  public:
   FieldReadings(const Dynamics& dynamics, const Observation& seen)
@@ -47,7 +47,7 @@ class FieldReadings {
     return row;
   }
 
-  // `turning`: the change of ω'.
+  // Derivatives for a change `by` of the state; `turning` is the change of ω'.
   FieldRow slope(const PlatformState& state, const StateChange& by, const Vec3& turning) const {
     const Vec3 &w = state.rate_body_rad_s, &dw = by.rate_rad_s;
     const Vec3 gravity = state.lab_from_body.conjugate() * gravity_lab_m_s2_,

@@ -19,22 +19,22 @@ using SlopeRows = Eigen::Matrix<double, channel_count, Eigen::Dynamic, Eigen::Ro
 struct ExpectedInstant {
   PlatformState state;
   Vec3 camera_offset_body = Vec3::Zero(), gyro_rad_s = Vec3::Zero();
-  Vec3 gyro_mean_rad_s = Vec3::Zero();  // of a block: over the gyro's own times
+  Vec3 gyro_mean_rad_s = Vec3::Zero();  // of a block: mean over the times of the gyro readings
   FieldRow fields = FieldRow::Zero();
-  Eigen::Vector4d place = Eigen::Vector4d::Zero();  // and velocity
+  Eigen::Vector4d place = Eigen::Vector4d::Zero();  // position and velocity
 };
 
-// Expected readings at up to eight instants. The samples are stored by reference.
+// Expected readings at up to eight times. The samples are stored by reference.
 class ExpectedReadings {
  public:
-  // `sensitivity`: null where no slopes are asked for. `scalars`: those that were read.
+  // `sensitivity`: null if no derivatives are needed. `scalars`: those that were read.
   ExpectedReadings(const Dynamics& dynamics, const Sensitivity* sensitivity, const Samples& samples,
                    const Observation& seen, const std::vector<int>& scalars);
   ~ExpectedReadings();
 
   ExpectedInstant at(int lane) const;
-  // The derivatives by each variable, but for scalars that follow from attitude and gyro. Nothing
-  // without a sensitivity.
+  // Writes the derivatives with respect to each variable, except for scalars that are functions of
+  // attitude and gyro. No effect without a sensitivity.
   void fill_slopes(int lane, const ExpectedInstant& instant, SlopeRows& slope) const;
 
  private:

@@ -42,7 +42,7 @@ Deviations deviations(const Prediction& residuals, const Observation& seen, int 
   for (size_t i = 0; i < residuals.off.size(); ++i) {
     const double x = residuals.off[i][channel];
     const double rows = seen.rows_of(i, channel);
-    // A residual of this size may be a whole turn in the next reading.
+    // A residual of this size may be a whole turn at the next reading.
     constexpr double elsewhere_rad = 0.5;
     if (!std::isfinite(x) || !(rows > 0.0) || (channel < 3 && std::abs(x) > elsewhere_rad))
       continue;
@@ -76,8 +76,8 @@ void fit_smooth_curves(Deviations& channel, const std::vector<double>& weight) {
     }
     const Eigen::Matrix3d inverse = matrix.inverse();
     channel.curve[i] = inverse.row(0).dot(right);
-    // At its ends the curve nearly passes through the readings, so that the residual there is
-    // small without being precise.
+    // At the ends of the data the curve nearly passes through the readings, so that a small
+    // residual there is no sign of precision.
     constexpr double least_left = 0.05;
     const double left = std::max(1.0 - weight_of(i) * inverse(0, 0), least_left);
     channel.size[i] = channel.root_rows[i] * (channel.left[i] - channel.curve[i]) / std::sqrt(left);
@@ -193,7 +193,7 @@ struct TailFit {
 };
 
 // Searches the degrees of freedom from 1 (the Cauchy distribution) to nearly normal, first in large
-// steps, then in small steps around the best.
+// steps, then in small steps around the best value.
 TailFit max_likelihood_tail(const std::vector<Deviations>& runs, double scale) {
   constexpr double large = 0.25, small = 0.05, longest = 4.0;
   TailFit best{0.0, scale, INFINITY};
@@ -224,7 +224,7 @@ double log_degrees_sigma(const std::vector<Deviations>& runs, const TailFit& at)
   return curvature > 0.0 ? std::sqrt(2.0 / curvature) : INFINITY;
 }
 
-// Whether many readings equal the previous one: with such coarse steps, tails are not visible.
+// Whether many readings equal the previous one: such a coarse resolution hides tails.
 bool are_coarse(const std::vector<Observation>& runs, int channel) {
   constexpr double coarse_fraction = 0.05;
   double same = 0.0, count = 0.0;
@@ -297,8 +297,8 @@ void robustify(const HeavyTails& tails, const std::vector<Prediction>& residuals
   for (int channel = 0; channel < 6; ++channel) {
     const std::optional<HeavyTail>& tail = tails[static_cast<size_t>(channel)];
     if (!tail) continue;
-    // Divided by the mean slope of the influence function, so that a shift of all readings is
-    // unchanged.
+    // Divides by the mean slope of the influence function, so that a common shift of all readings
+    // is preserved.
     const double slope = (tail->degrees + 1.0) / (tail->degrees + 3.0);
     for (size_t run = 0; run < runs.size(); ++run) {
       std::vector<Deviations> one = {deviations(residuals[run], runs[run], channel)};
@@ -339,7 +339,7 @@ int64_t drop_bursts(const std::vector<Prediction>& residuals, const Thresholds::
       }
       found += static_cast<size_t>(std::count(in_burst[run].begin(), in_burst[run].end(), 1));
     }
-    // A larger fraction is not a fault of a few readings.
+    // With a larger fraction, the readings are not isolated faults.
     if (static_cast<double>(found) >
         limits.max_burst_fraction * static_cast<double>(count_of(all))) {
       continue;
@@ -349,7 +349,7 @@ int64_t drop_bursts(const std::vector<Prediction>& residuals, const Thresholds::
         if (in_burst[run][i] == 0) continue;
         ++dropped;
         const size_t block = all[run].block[i];
-        // An attitude is right or wrong as a whole.
+        // The components of an attitude are dropped together.
         if (channel < 3) runs[run].attitude_rows[block] = 0.0;
         if (channel >= 3) runs[run].gyro_rows[block][channel - 3] = 0.0;
       }

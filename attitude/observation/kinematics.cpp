@@ -15,8 +15,8 @@ struct Turning {
   Vec3 rate_lab_rad_s;
 };
 
-// A smooth curve through the attitudes: a parabola about each of some knots gives attitude and
-// rate there, a cubic joins them.
+// A smooth curve through the attitudes. A parabola about each knot gives attitude and rate there,
+// and cubics connect the knots.
 class SmoothMotion {
  public:
   explicit SmoothMotion(const Observation& seen) {
@@ -75,14 +75,14 @@ class SmoothMotion {
   std::vector<Turning> knot_;
 };
 
-// Residuals about a motion in one block, in lab axes.
+// Residuals about a motion in one block; the angle in lab axes.
 struct Left {
   Turning motion;
   Vec3 angle_rad = Vec3::Constant(NAN), rate_body_rad_s = Vec3::Constant(NAN);
 };
 
 bool is_near(const Prediction& about) {
-  // Products of two such angles are smooth, and below the noise of the quantities compared.
+  // The square of such an angle is a smooth error below the noise of the compared quantities.
   constexpr double farthest_rad = 0.05;
   for (const WhiteRow& off : about.off) {
     if (off.head<3>().array().isFinite().all() && off.head<3>().norm() > farthest_rad) return false;
@@ -117,7 +117,7 @@ std::vector<Left> block_residuals(const Observation& seen, const Prediction* abo
   return all;
 }
 
-// Blocks since whose predecessor a command changed.
+// Marks the blocks before which a command changed, since the previous block.
 std::vector<char> jumps_of(const Observation& seen) {
   std::vector<char> jumps(seen.blocks(), 0);
   const Schedule& schedule = seen.schedule;
@@ -185,7 +185,7 @@ KinematicRun kinematic_run(const Observation& seen, const Prediction* about) {
 
 Eigen::VectorXd instrument_widths() {
   Eigen::VectorXd widths(instrument_columns);
-  // The Earth turns by 7.3e-5 rad/s.
+  // The rate of the Earth's rotation is 7.3e-5 rad/s.
   widths << Vec3::Constant(0.1), Vec3::Constant(1e-4), Eigen::VectorXd::Constant(9, 0.3), 1.0, 1e-2,
       Vec3::Constant(2e-4);
   return widths;

@@ -16,7 +16,8 @@ struct ReadingAt {
   double time_s, value;
 };
 
-// The channel's readings as one reading would be: means of n are noisier by √n. Angles are unwound.
+// Readings of the channel in order of time. Attitudes are rotation angles from the first, without
+// jumps.
 std::vector<ReadingAt> readings_of(const Observation& seen, int channel) {
   std::vector<ReadingAt> all;
   double angle_rad = 0.0;
@@ -53,8 +54,9 @@ double mean_rows(const Observation& seen, int channel) {
   return count > 0.0 ? sum / count : 1.0;
 }
 
-// The divided difference of `order` + 1 readings from the one at `first`, which no polynomial below
-// that order enters, however unevenly they lie; over the noise of one reading it has unit variance.
+// Divided difference of `order` + 1 readings from the one at `first`. Polynomials below that order
+// do not contribute, even for unequal steps. It is scaled so that the noise of one reading gives
+// the standard deviation of this noise.
 double difference(const std::vector<ReadingAt>& x, size_t first, size_t order) {
   double sum = 0.0, squares = 0.0;
   const double unit_s = (x[first + order].time_s - x[first].time_s) / static_cast<double>(order);
@@ -70,7 +72,8 @@ double difference(const std::vector<ReadingAt>& x, size_t first, size_t order) {
 }
 
 // Whether the `order` + 1 readings from `first` on are equal to the last digit. A counter that
-// stands still contains no information on its noise. If it mostly does, its step gives the noise.
+// stands still contains no information on its noise. If it mostly stands still, its step determines
+// the noise.
 bool stands_still(const std::vector<ReadingAt>& x, size_t first, size_t order) {
   constexpr double rounding = 1e-12;
   for (size_t k = first + 1; k <= first + order; ++k) {
@@ -80,9 +83,9 @@ bool stands_still(const std::vector<ReadingAt>& x, size_t first, size_t order) {
   return true;
 }
 
-// Differences of readings, and differences of these: multiples of the last digit, and the smaller
-// ones of both where something moves steadily. Less than what rounding to the digits of a file
-// leaves is none.
+// Collects the sizes of the differences of readings and of the second differences. They are
+// multiples of the last digit; second differences are small for a steady motion. Sizes below the
+// rounding of a file are left out.
 void collect_steps(const std::vector<ReadingAt>& x, std::vector<double>& steps) {
   double largest = 0.0;
   for (const ReadingAt& reading : x) largest = std::max(largest, std::abs(reading.value));
@@ -125,8 +128,9 @@ std::optional<double> reading_level(const std::vector<Observation>& runs, int ch
   // The median of |x| of a Gaussian is 0.6745 σ.
   const bool moves = 2 * sizes[lowest_order].size() > windows;
   double level = moves ? upper_median(sizes[lowest_order]) / 0.6745 : 0.0;
-  // White noise is alike at every order. Where the next is clearly quieter, what this one holds is
-  // motion that the readings follow too coarsely: with six readings a period the ratio is 0.53.
+  // White noise gives the same level at every order. If the next order gives a much lower one, the
+  // present level contains motion that the readings resolve too coarsely. With six readings per
+  // period the ratio is 0.53.
   constexpr double quieter = 0.7;
   for (size_t order = lowest_order + 1; order <= highest_order; ++order) {
     if (sizes[order].size() < fewest) break;
@@ -143,7 +147,7 @@ std::optional<double> reading_level(const std::vector<Observation>& runs, int ch
 namespace {
 
 struct Differences {
-  std::vector<double> values;  // zero where there is none
+  std::vector<double> values;  // zero where there is no difference
   size_t count = 0;
   int order = 2;
 };
@@ -168,7 +172,7 @@ Differences differences_of(const Observation& seen, const KinematicRun& run, int
     const size_t before = read[n - 1];
     const double rows = std::max(seen.gyro_rows[i][k], seen.gyro_rows[before][k]);
     const bool gap = seen.time_s[i] - seen.time_s[before] > 1.5 * interval_s * rows + 1e-9;
-    // Averages over differs numbers of readings have no common level.
+    // Averages over different numbers of readings have different levels.
     const bool differs = seen.gyro_rows[i][k] != seen.gyro_rows[before][k];
     const auto jump = run.axis[0].jumps.begin();
     if (gap || differs ||
@@ -191,7 +195,8 @@ Differences differences_of(const Observation& seen, const KinematicRun& run, int
   return result;
 }
 
-// Power over that of white noise of unit variance, tapered so that slow motion does not leak.
+// Power relative to that of white noise of unit variance, tapered so that slow motion does not
+// leak.
 void add_powers(const Differences& d, std::vector<double>& powers) {
   const size_t n = d.values.size();
   std::vector<double> tapered(n);
@@ -205,7 +210,7 @@ void add_powers(const Differences& d, std::vector<double>& powers) {
   constexpr size_t most = 800;
   const size_t frequencies = std::min(most, n / 4);
   for (size_t f = 0; f < frequencies; ++f) {
-    // Below the Nyquist frequency, at which a sinusoid has no phase.
+    // Frequencies below the Nyquist frequency, at which a sinusoid has no phase.
     const double angle =
         pi * (0.5 + 0.48 * (static_cast<double>(f) + 0.5) / static_cast<double>(frequencies));
     const std::complex<double> turn = std::polar(1.0, angle);
@@ -235,9 +240,9 @@ std::optional<NoiseLevel> gyro_level(const std::vector<Observation>& seen,
   powers.resize(powers.size() * 4 / 5);
   double sum = 0.0;
   for (const double power : powers) sum += power;
-  // Powers are exponentially distributed. Below the quantile 4/5, which is ln 5, their mean is
-  // 1 − ln(5)/4 = 0.598 of the whole mean, and it scatters by 1.15/√n of itself (by drawing);
-  // tapered neighbours are correlated, as if there were 1.9 times fewer.
+  // Powers are exponentially distributed. Below the quantile 4/5, which is ln 5, their mean is 1 −
+  // ln(5)/4 = 0.598 of the whole mean. Its relative scatter is 1.15/√n (from random draws). Tapered
+  // neighbours are correlated, which reduces their number by a factor of 1.9.
   const double power = sum / static_cast<double>(powers.size()) / (1.0 - std::log(5.0) / 4.0);
   const double sigma = 0.5 * 1.15 * std::sqrt(1.9 * 0.8 / static_cast<double>(powers.size()));
   return NoiseLevel{std::sqrt(power), sigma};
@@ -264,7 +269,7 @@ void append_left(const std::vector<Prediction>& residuals, const std::vector<Obs
   }
 }
 
-// Channels with one remainder between them: forces on a table have no preferred axis.
+// Groups of channels with a common residual noise: forces on a table have no preferred axis.
 std::vector<std::vector<int>> alike_channels() {
   std::vector<std::vector<int>> groups;
   for (int channel = 0; channel < channel_count; ++channel) {
@@ -279,7 +284,7 @@ std::vector<std::vector<int>> alike_channels() {
   return groups;
 }
 
-// Mean square of the residuals of blocks, and of one reading where those of a block are
+// Mean square of the residuals of blocks, and of single readings if those of a block are
 // independent.
 struct MeanSquares {
   double of_blocks = 0.0, of_readings = 0.0;
@@ -300,12 +305,12 @@ MeanSquares mean_squares(const std::vector<ResidualSeries>& all) {
   return {sum.of_blocks / count, sum.of_readings / count};
 }
 
-// The part of the mean square that neighbours share, and the time over which they do.
+// The correlated fraction of the mean square, and its correlation time.
 struct Shared {
   double fraction = 0.0, time_s = 0.0;
 };
 
-// Mean product of values so many readings apart, over the mean square.
+// Mean product of values `lag` readings apart, relative to the mean square.
 double autocorrelation(const std::vector<ResidualSeries>& all, double square, size_t lag) {
   double sum = 0.0, count = 0.0;
   for (const ResidualSeries& s : all) {
@@ -315,7 +320,7 @@ double autocorrelation(const std::vector<ResidualSeries>& all, double square, si
   return count > 0.0 ? sum / count / square : 0.0;
 }
 
-// Correlation of next neighbours; then where that has fallen to 1/e.
+// Correlation of neighbours, and the time after which it has fallen to 1/e.
 Shared shared_by_neighbours(const std::vector<ResidualSeries>& all, double square) {
   size_t longest = 0;
   double read_s = 0.0, intervals = 0.0;
@@ -366,7 +371,7 @@ NoiseLevels with_discrepancy(const std::vector<Prediction>& residuals,
 
 void set_profiles(const std::vector<Prediction>& residuals, size_t parts,
                   std::vector<Observation>& runs) {
-  // The residuals of a part count as so many independent numbers, those of all as one.
+  // Weight of the residuals of a part relative to that of the prior factor of one.
   constexpr double independent = 4.0;
   size_t blocks = 0;
   for (const Observation& seen : runs) blocks += seen.blocks();

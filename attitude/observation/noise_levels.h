@@ -1,4 +1,4 @@
-// Levels of noise: of single channels, and with the residual of a model counted as noise.
+// Noise levels of single channels, and noise levels that include the residual of a model.
 #pragma once
 
 #include <optional>
@@ -11,16 +11,12 @@
 
 namespace photorque {
 
-// The noise of one channel from its own readings, where no other instrument checks it.
-
-// Standard deviation of one reading of a channel (Observation::rows_of), from divided third
-// differences of neighbouring readings, which smooth motion hardly affects, also with unequal
-// steps. Orders up to six are used if their result is smaller by 0.7. The result is at least that
-// of the digitisation steps. Rough motion counts as noise. Empty if there are fewer than ten
-// differences.
+// Standard deviation of one reading of a channel (Observation::rows_of), for channels that no other
+// instrument checks. It follows from divided third differences of neighbouring readings, which
+// smooth motion hardly affects, even for unequal steps. Higher orders, up to six, are used while
+// each reduces the result to less than 0.7. The result is at least the noise of the digitisation
+// steps. Rough motion counts as noise. Empty if there are fewer than ten differences.
 std::optional<double> reading_level(const std::vector<Observation>& runs, int channel);
-
-// The level of a gyro's white noise, from the fine end of its spectrum.
 
 // The standard deviation of one reading, and the standard error of its logarithm.
 struct NoiseLevel {
@@ -34,30 +30,32 @@ std::optional<NoiseLevel> gyro_level(const std::vector<Observation>& seen,
                                      const std::vector<KinematicRun>& runs, int k,
                                      const Thresholds::Noise& limits);
 
-// Hardly any model of a real machine leaves only noise. The residual of a fit then counts as
-// correlated noise, and an effect is certain only if it exceeds that.
+// Models of real machines rarely leave only noise. The functions below count the residual of a fit
+// as noise, and an effect is certain only if it is larger.
 
-// The noise of the runs including the residuals of a fit (`residuals`, NaN where nothing was read),
-// at least `own`, the noise of the readings alone. Channel by channel. White: with the mean square
-// of the residuals, independent from block to block; correlated: also with the time after which
-// their autocorrelation falls below 1/e, so that a slow residual counts as few independent numbers.
+// The noise of the runs including the residuals of a fit (`residuals`, NaN for missing readings),
+// channel by channel. It is at least `own`, the noise of the readings alone. `white`: the level is
+// the root mean square of the residuals, which are independent from block to block. `correlated`:
+// also with the time after which their autocorrelation falls below 1/e, so that a slow residual
+// counts as few independent numbers.
 enum class Remainder { white, correlated };
 NoiseLevels with_discrepancy(const std::vector<Prediction>& residuals,
                              const std::vector<Observation>& runs, const NoiseLevels& own,
                              Remainder remainder);
 
-// Sets the profiles of the runs, whose noise is that of with_discrepancy(): in each of about
-// `parts` parts of them the mean square of the residuals, drawn towards that of all. A part in
-// which something else acts then counts less, as with Student's t (K. L. Lange, R. J. A. Little and
-// J. M. G. Taylor, J. Am. Stat. Assoc. 84 (1989) 881).
+// Sets the profiles of the runs, whose noise is that of with_discrepancy(). Each run is divided
+// into parts, about `parts` in all. The factor of a part follows from the mean square of its
+// residuals, shrunk towards that of all. A part with an unmodelled effect then has less weight, as
+// with Student's t (K. L. Lange, R. J. A. Little and J. M. G. Taylor, J. Am. Stat. Assoc. 84 (1989)
+// 881).
 void set_profiles(const std::vector<Prediction>& residuals, size_t parts,
                   std::vector<Observation>& runs);
 
-// Whether some channel of `now` is quieter than before by a tenth or more.
+// Whether the level of some channel decreased by a tenth or more.
 bool is_quieter(const NoiseLevels& now, const NoiseLevels& before);
 
-// Noise under which what was stated holds, whatever the motion does: a tenth of the readings' own
-// spread, or `own` where that is louder.
+// A large noise, under which the stated model holds for any motion: a tenth of the spread of the
+// readings of each rate, or `own` if that is larger.
 NoiseLevels noise_from_spread(const std::vector<Observation>& runs, const NoiseLevels& own);
 
 }  // namespace photorque

@@ -26,14 +26,14 @@ class NoiseSearch {
   }
 
   NoiseFindings run() {
-    // About a curve through the attitudes, noise and the kinks of a fast motion look alike.
+    // Relative to a curve through the attitudes, noise is not distinguishable from a fast motion.
     result_.is_open = std::any_of(left_.begin(), left_.end(),
                                   [](const KinematicRun& run) { return run.about_readings; });
     if (result_.is_open) return result_;
     gyro_.gyro_rad_s = stated_.gyro_rad_s;
     for (int k = 0; k < 3; ++k) find_gyro_level(k);
     if (has_gyro_) {
-      // In the first step, any torque is allowed.
+      // First with a roughness that allows any torque.
       constexpr double any_roughness = 1e-2;
       for (size_t k = 0; k < 3; ++k) {
         axes_[k].axis = gyro_;
@@ -81,8 +81,8 @@ class NoiseSearch {
     }
   }
 
-  // Searches for correlated noise of the gyro, with one time and fraction for all axes: in addition
-  // to that of the camera, or instead of it if this increases the likelihood.
+  // Searches for correlated noise of the gyro, with a common time and fraction for all axes. It is
+  // tried in addition to that of the camera, and instead of it.
   void find_gyro_colour() {
     double now = 0.0;
     for (const CameraNoise& axis : axes_) now += axis.value;
@@ -109,13 +109,13 @@ class NoiseSearch {
     if (any_colour()) try_beside(camera_alone);
     if (!found) return;
     const Minimum max_likelihood_tail = at_stated_level(with_white_part(best, *beside), *beside);
-    // A lower level with a correlated part may explain more than the stated one with it.
+    // A lower level with a correlated part may fit better than the stated level with one.
     if (!(max_likelihood_tail.value < now - limits_.min_colour_gain)) return;
     use_gyro(max_likelihood_tail);
     find_cameras();
   }
 
-  // A level as stated is taken as known: the rest beside it.
+  // If the level agrees with the stated one, fixes it and fits the other parameters.
   Minimum at_stated_level(const Minimum& free, const std::array<AngleNoise, 3>& cameras) const {
     if (is_off(free.at[0], gyro_log_sigma, limits_)) return free;
     const auto whole = [](const Eigen::VectorXd& rest) {
@@ -132,11 +132,11 @@ class NoiseSearch {
     return {whole(held.at), held.value};
   }
 
-  // Minus twice the logarithm of the likelihood of all axes. `x`: ln(level over the stated),
-  // ln(time), ln(roughness over the present) and, where there are four, the logit of the coloured
-  // fraction, else one.
+  // Minus twice the logarithm of the likelihood of all axes. `x`: ln(level / stated level),
+  // ln(time), ln(roughness / present roughness) and, as an optional fourth, the logit of the
+  // coloured fraction, which is else one.
   double of_gyro(const std::array<AngleNoise, 3>& cameras, const Eigen::VectorXd& x) const {
-    // Neighbours correlated by less than a third change no level much, and roughness looks like it.
+    // Correlations of neighbours below one third hardly change the levels and resemble roughness.
     double shortest_s = 0.05;
     constexpr double longest_s = 12.0;
     for (const KinematicRun& run : left_) {
@@ -163,10 +163,10 @@ class NoiseSearch {
     return x.size() > 3 ? 1.0 / (1.0 + std::exp(-x[3])) : 1.0;
   }
 
-  // The steps of the search, and how many readings there are, make the errors no better.
+  // Lower limit of the errors, due to the steps of the search and the number of readings.
   static constexpr double gyro_log_sigma = 0.05;
 
-  // A gyro that reads in coarse steps has a white part beside a correlated one.
+  // A gyro with coarse steps has a white part in addition to a correlated one.
   Minimum with_white_part(const Minimum& pure, const std::array<AngleNoise, 3>& cameras) const {
     const auto of = [&](const Eigen::VectorXd& x) { return of_gyro(cameras, x); };
     const Eigen::Vector4d start(pure.at[0], pure.at[1], pure.at[2], 1.5);
@@ -205,7 +205,7 @@ class NoiseSearch {
     }
   }
 
-  // Contributions of instrument errors are fitted under the noise of each axis and removed.
+  // Fits the contributions of instrument errors with the noise of each axis, and removes them.
   void remove_instruments() {
     double weight = 0.0, sum = 0.0;
     const Eigen::VectorXd prior = instrument_widths().cwiseAbs2().cwiseInverse();
@@ -244,7 +244,7 @@ class NoiseSearch {
   const NoiseLevels stated_;
   std::vector<KinematicRun> left_;
   bool has_gyro_ = false;
-  AngleNoise gyro_;  // the gyro's part alone
+  AngleNoise gyro_;  // only the gyro's part
   std::array<CameraNoise, 3> axes_;
   NoiseFindings result_;
 };

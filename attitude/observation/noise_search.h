@@ -1,4 +1,4 @@
-// The noise of the readings, determined from the readings under any torque.
+// Determines the noise of the readings from the readings, independent of the torques.
 #pragma once
 
 #include <array>
@@ -9,21 +9,22 @@
 
 namespace photorque {
 
-// The growth of the camera's delay against the gyro's clock [s/s], and its standard error.
+// Growth of the camera's delay relative to the gyro's clock [s/s], and its standard error.
 struct ClockDrift {
   double rate = 0.0, sigma = 0.0;
 };
 
 struct NoiseFindings {
-  // The model that the readings were compared with is far from them: the noise stays as stated
-  // until a better one is at hand.
+  // The readings are far from the model with which they were compared. The noise stays as stated
+  // until there is a better model.
   bool is_open = false;
   std::array<FoundNoise, 6> channel;  // camera about lab x, y, z; gyro x, y, z
-  std::optional<ClockDrift> drift;    // where there is a gyro
+  std::optional<ClockDrift> drift;    // only with a gyro
 };
 
-// `about`: predictions of a fit for the runs with their residuals; empty: there is no such fit. The
-// noise of the first run is taken as stated for all. Deterministic.
+// Estimates the noise of the runs. `about`: predictions of a fit for the runs, with their
+// residuals; empty if there is no fit. The stated noise of the first run applies to all.
+// Deterministic.
 NoiseFindings find_noise(const std::vector<Observation>& runs, const std::vector<Prediction>& about,
                          const Thresholds::Noise& limits);
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr size_t fewest_readings = 20;
 
-// Angles that come again after a whole turn, made continuous so that means of them mean something.
+// Removes jumps by whole turns, so that means of the angles are meaningful.
 void unwind(std::vector<double>& angle_rad) {
   double last_rad = NAN;
   for (double& angle : angle_rad) {
@@ -61,10 +61,10 @@ NoiseLevels noise_levels(const Sensors& sensors) {
     double& level = noise.scalar[static_cast<size_t>(s)].level;
     constexpr double usual_force_m_s2 = 0.01, usual_field_T = 1e-7;
     switch (channel_traits(vector_channels + s).measures) {
-      case Measures::angle:  // as good as the camera about the vertical
+      case Measures::angle:  // as accurate as the camera about the vertical
         level = noise.camera_rad[2];
         break;
-      case Measures::rate:  // a magnitude is as good as one of its axes
+      case Measures::rate:  // a magnitude is as accurate as one of its axes
         level = noise.gyro_rad_s[2];
         break;
       case Measures::force:
@@ -213,23 +213,23 @@ Observation Observation::averaged(size_t max_blocks) const {
   if (blocks() <= max_blocks) return *this;
   Observation result = without_blocks(*this);
   const double block_s = duration_s() / static_cast<double>(max_blocks);
-  // Attitudes that are fewer than the blocks are somewhere in them: where the body turns far within
-  // one, they and the gyro's readings beside them stand apart.
+  // If there are fewer attitudes than blocks and the body rotates far within a block, rows with an
+  // attitude become separate blocks, with their gyro readings.
   constexpr double far_rad = 0.1;
   const auto attitudes = static_cast<size_t>(
       std::ranges::count_if(attitude_rows, [](double rows) { return rows > 0.0; }));
   const bool apart = attitudes <= max_blocks && fastest_rad_s(*this) * block_s > far_rad;
   for (size_t first = 0, last = 0; first < blocks(); first = last) {
-    // Half a row of slack, so that rounding of the times does not make uneven blocks.
+    // Half a row of tolerance, so that rounding of the times does not make uneven blocks.
     const double end_s = time_s[first] + block_s - 0.5 * row_interval_s;
     last = first + 1;
     const auto is_within = [&](size_t row) {
       return time_s[row] <= end_s && !(apart && attitude_rows[row] > 0.0);
     };
-    // A motion starts at a reading: no mean over times before its start could be predicted.
+    // A motion starts at a reading: a mean over times before the start cannot be predicted.
     const bool stands_alone = first == 0 || (apart && attitude_rows[first] > 0.0);
     while (!stands_alone && last < blocks() && is_within(last)) ++last;
-    // No short one at the end, unless it is far from the one before.
+    // A short last block is merged with the previous one unless there is a gap between them.
     const double left_s = last < blocks() ? time_s.back() - time_s[last] + row_interval_s : block_s;
     const bool goes_on = last < blocks() && time_s[last] - time_s[last - 1] < block_s;
     if (!stands_alone && !apart && goes_on && left_s < 0.5 * block_s) last = blocks();

@@ -1,5 +1,5 @@
-// A recording made ready to be compared with a model: complete attitudes, gyro readings, commands,
-// averaged over blocks that are short against the motion.
+// A recording prepared for comparison with a model: complete attitudes, gyro readings and commands,
+// averaged over blocks that are short compared with the motion.
 #pragma once
 
 #include <array>
@@ -14,11 +14,11 @@
 
 namespace photorque {
 
-// Noise of one reading of one channel: its standard deviation, of whose square a fraction is
-// correlated in time as exp(−t/τ) (an AR(1) process); the rest is white.
+// Noise of one reading of one channel. A fraction `coloured` of its variance is correlated in time
+// as exp(−t/τ) (an AR(1) process); the rest is white.
 struct ChannelNoise {
-  double level = 0.0;     // rad or rad/s
-  double coloured = 0.0;  // 0 to 1
+  double level = 0.0;     // standard deviation, rad or rad/s
+  double coloured = 0.0;  // fraction, 0 to 1
   double time_s = 0.0;    // τ
 };
 
@@ -31,35 +31,37 @@ struct NoiseLevels {
   } camera_colour, gyro_colour;
   std::array<ChannelNoise, scalar_count> scalar = {};  // in SI
 
-  // The noise of a channel (recordings/columns.h).
+  // Noise of a channel, in the order of recordings/columns.h.
   ChannelNoise of(int channel) const;
   void set(int channel, const ChannelNoise& noise);
 };
 
-// Factors of the noise in equal parts of a run, where a model leaves more in some than in others.
+// Factors of the noise in equal parts of a run, for a model that fits some parts worse than others.
 struct NoiseProfile {
   double begin_s = 0.0, part_s = 0.0;
   std::vector<double> factor;  // of each part; empty: 1
 
+  // Factor at a time.
   double at(double time_s) const;
 };
 
-// Noise levels of the instruments; without stated ones the defaults above.
+// Noise levels of the instruments; without stated ones, the defaults above.
 NoiseLevels noise_levels(const Sensors& sensors);
+// Whether the camera or the gyro states its noise.
 bool states_camera_noise(const Sensors& sensors);
 bool states_gyro_noise(const Sensors& sensors);
 // Whether the instruments state the noise of a channel.
 bool states_noise(const Sensors& sensors, int channel);
 
-// Readings of one scalar, block by block; empty where there are none at all.
+// Readings of one scalar, block by block; empty if there are none.
 struct ScalarReadings {
   std::vector<double> value;
-  std::vector<double> rows;  // how many readings went into each; 0: none
+  std::vector<double> rows;  // number of readings in each mean; 0: none
 };
 
-// The settings of the instruments that measure a field.
+// Settings of accelerometer and magnetometer.
 struct FieldInstruments {
-  Vec3 accelerometer_place_m = Vec3::Zero();  // from the centre of rotation, or of mass where free
+  Vec3 accelerometer_place_m = Vec3::Zero();  // from the centre of rotation; if free, of mass
   Vec3 accelerometer_bias_m_s2 = Vec3::Zero();
   Vec3 magnetometer_bias_T = Vec3::Zero();
 };
@@ -71,13 +73,13 @@ struct Observation {
   Schedule schedule;
   double initial_charge_C = 0.0;  // drawn before the first row
   bool has_gyro = false;
-  bool is_piece = false;  // of a recording that was cut for the search alone
-  // Lab axes about which the attitude is read; none: there is no attitude.
+  bool is_piece = false;  // a segment of a recording that was cut for the search
+  // Lab axes about which the attitude was measured; none: there is no attitude.
   std::array<bool, 3> sees_axis = {true, true, true};
 
-  // Blocks of rows, by the mean of their times. A block without a reading has count 0.
+  // Blocks of rows, at the mean of their times. A block without a reading has count 0.
   std::vector<double> time_s;
-  // The times over which a block's means are taken. They contain the motion's curvature.
+  // Spread of the times of a block's readings, on which the effect of the curvature depends.
   struct Spread {
     double readings_s = 0.0, attitude_s = 0.0;  // root mean square about time_s
     double readings_fourth_s = 0.0;             // fourth root of the mean fourth power
@@ -87,18 +89,18 @@ struct Observation {
   };
   std::vector<Spread> spread;         // empty: blocks of one row each
   std::vector<Quat> attitude;         // lab from body, mean of the block
-  std::vector<double> attitude_rows;  // how many rows went into it
+  std::vector<double> attitude_rows;  // number of rows in the mean
   std::vector<Vec3> gyro_rad_s;
-  std::vector<Vec3> gyro_rows;  // by axis
+  std::vector<Vec3> gyro_rows;  // number of rows in each axis
   std::array<ScalarReadings, scalar_count> scalar = {};
   NoiseLevels noise;
   NoiseProfile profile = {};
-  double row_interval_s = 0.0;  // of the file
-  int64_t rows = 0;             // of the file
+  double row_interval_s = 0.0;  // of the rows of the file
+  int64_t rows = 0;             // number of rows of the file
 
   size_t blocks() const { return time_s.size(); }
   Spread spread_of(size_t block) const { return spread.empty() ? Spread() : spread[block]; }
-  // Number of readings of a channel, numbered as in NoiseLevels.
+  // Number of readings of a channel in a block. Channels are numbered as in NoiseLevels.
   double rows_of(size_t block, int channel) const {
     if (channel >= vector_channels) {
       const auto& one = scalar[static_cast<size_t>(channel - vector_channels)];
@@ -111,21 +113,23 @@ struct Observation {
   bool has_some_attitude() const { return sees_axis[0] || sees_axis[1] || sees_axis[2]; }
   bool has(Scalar s) const { return !scalar[static_cast<size_t>(s)].rows.empty(); }
   bool has_scalars() const;
-  // Whether anything that is read would be different at another attitude of this platform.
+  // Whether some measured quantity depends on the attitude of this platform.
   bool measures_attitude(const Platform& platform) const;
-  // Readings in the blocks [first, last): attitudes, or rates and scalars where there are none.
+  // Number of blocks with a reading in [first, last): of an attitude or, if there is none, of a
+  // rate or scalar.
   size_t readings(size_t first, size_t last) const;
   double duration_s() const { return time_s.back() - time_s.front(); }
-  // The blocks [first, last) alone, the charge drawn before them counted. Of the first, a mean over
-  // times before the part began, a reading at its middle is made as far as its neighbours allow.
+  // The blocks [first, last), with the charge drawn before them. If the first block is a mean, it
+  // is converted to a reading at its centre, as far as its neighbours permit.
   Observation part(size_t first, size_t last) const;
-  // Neighbours averaged until about `max_blocks` are left, but for the first row, with which a
-  // motion starts: sufficient for slow motion.
+  // Neighbouring rows averaged to about `max_blocks` blocks. The first row, at which a motion
+  // starts, is not averaged. For motion that is slow compared with a block.
   Observation averaged(size_t max_blocks) const;
 };
 
-// About `max_blocks` blocks at most; a recording with fewer rows keeps them all. InputError when
-// the recording has neither an attitude nor a rate (columns.h), or fewer than 20 readings of them.
+// Prepares a recording: at most about `max_blocks` blocks; a recording with fewer rows is not
+// averaged. InputError if the recording has neither an attitude nor a rate (columns.h), or fewer
+// than 20 readings of them.
 Observation observe(const Recording& recording, const std::string& name,
                     const Platform& platform = {}, size_t max_blocks = 6000);
 

@@ -13,7 +13,7 @@
 namespace photorque {
 
 MeanOfCorrelated mean_of_correlated(double n, double steps) {
-  if (n <= 1.0 || !(steps > 0.0)) return {};  // one reading, or all of them one
+  if (n <= 1.0 || !(steps > 0.0)) return {};  // one reading, or all of them equal
   const double rho = std::exp(-steps), left = -std::expm1(-steps);
   const double variance =
       ((1.0 + rho) / left + 2.0 * rho * std::expm1(-n * steps) / (n * left * left)) / n;
@@ -52,23 +52,24 @@ Whitening::Whitening(const Observation& seen, int channel, Eigen::Index width)
 }
 
 Whitening::Gain Whitening::gain(double time_s, double rows) {
-  // Means over more than so many correlation times would lose all digits to the reach; the
-  // correlation of neighbours is below a twentieth there.
+  // For means over more correlation times, `reach` is too large for the precision of a double. The
+  // correlation of neighbours is below 5 % there.
   constexpr double longest_means = 20.0;
   const double steps = std::min(interval_s_ / time_s_, longest_means / std::max(1.0, rows));
   const MeanOfCorrelated mean = mean_of_correlated(rows, steps);
-  // A reading with a weight below one has correspondingly more independent noise.
+  // A reading with a weight below one has more independent noise.
   const double own = white_variance_ / rows +
                      (rows < 1.0 ? (1.0 / rows - 1.0) * coloured_variance_ : 0.0) +
                      coloured_variance_ * mean.variance;
   const double scale = 1.0 / mean.reach;
-  // The part that only this block has; below zero for means, which are more alike than the process
-  // at their middles is.
+  // Variance that only this block has. It is negative for means, whose correlation is larger than
+  // that of the process at their centres.
   const double alone = own * scale * scale - coloured_variance_;
   const double decay = std::exp(-(time_s - last_s_) / time_s_);
   variance_ = coloured_variance_ + decay * decay * (variance_ - coloured_variance_);
   last_s_ = time_s;
-  // Lower bound of the variance: blocks that are closer than their readings would have none.
+  // Lower bound of the variance, which would be zero for blocks that are closer than their
+  // readings.
   constexpr double least = 1e-6;
   const double total = std::max(variance_ + alone, least * own * scale * scale);
   const double gain = variance_ / total;
@@ -78,9 +79,9 @@ Whitening::Gain Whitening::gain(double time_s, double rows) {
 
 namespace {
 
-// The mean of a block's instants. Of attitudes it is what observation.cpp makes of readings: moved
-// to the block's time as by the constant rate that leaves no trend, which puts the outer two into
-// the middle between them.
+// Mean over the evaluation times of a block. The mean attitude corresponds to that of the readings
+// (blocks.cpp): with the constant rate that leaves no trend, the two outer attitudes move to the
+// middle between them.
 ExpectedInstant mean_of(const std::vector<ExpectedInstant>& all, const BlockInstants& instants,
                         size_t block, double time_s) {
   if (all.size() == 1) {
@@ -110,7 +111,7 @@ ExpectedInstant mean_of(const std::vector<ExpectedInstant>& all, const BlockInst
     turn_rad =
         instants.weight(block, 1) * turn_vector(middle.conjugate() * all[1].state.lab_from_body);
   }
-  // Attitudes may stand closer together than the other readings.
+  // The times of attitudes may have a smaller spread than those of other readings.
   const double between_s = instants.since_s(block, all.size() - 1) - instants.since_s(block, 0);
   if (between_s > 0.0) {
     const Vec3 acceleration_rad_s2 =
@@ -146,7 +147,7 @@ class Comparison {
 
   void add(const Dynamics& dynamics, const Sensitivity* sensitivity, const Samples& samples) {
     const ExpectedReadings expected(dynamics, sensitivity, samples, seen_, scalars_);
-    // The rest would not be worth its steps.
+    // Stops early, because the rest would not improve the decision.
     if (chi2_ > max_chi2_) throw NumericalError("the prediction has left the readings");
     for (int lane = 0; lane < samples.count; ++lane) {
       const size_t instant = samples.first + static_cast<size_t>(lane),
@@ -192,7 +193,7 @@ class Comparison {
         scalars[s] =
             s < first_place ? moment.fields[s - first_field] : moment.place[s - first_place];
         off[vector_channels + s] = read.value[block] - scalars[s];
-        continue;  // its slopes are filled
+        continue;  // its derivatives are already filled
       }
       const auto which = static_cast<Scalar>(s);
       const Vec3 camera_offset_lab = state.lab_from_body * camera_offset_body;
@@ -217,8 +218,8 @@ class Comparison {
     result_.scalars.push_back(scalars);
   }
 
-  // Whole turns about the one axis count: a prediction that lags by more than half a turn is off by
-  // as much. From one reading to the next it gains or loses less than half a turn.
+  // Counts whole turns about the only axis: a prediction that lags by more than half a turn has an
+  // error of that size. Between readings the error changes by less than half a turn.
   void count_turns(WhiteRow& off) {
     const Vec3& axis = platform_.axis;
     const double along_rad = axis.dot(off.head<3>());
@@ -227,7 +228,7 @@ class Comparison {
     off.head<3>() += 2.0 * pi * turns * axis;
   }
 
-  // Slopes and residual, whitened alike. Returns the whitened residual.
+  // Whitens the residual and its derivatives. Returns the whitened residual.
   double put(int channel, size_t block, double rows, double off) {
     auto row = sums_.next();
     const Eigen::Index n = slope_.cols();
@@ -238,17 +239,17 @@ class Comparison {
     return row[n];
   }
 
-  // Times the fastest motion seen: no trial of parameters is worth more.
+  // Largest predicted rate relative to the fastest observed one; above it, a trial is given up.
   static constexpr double runaway = 20.0;
 
   const Platform& platform_;
   const Observation& seen_;
   const BlockInstants& instants_;
-  double off_before_rad_ = 0.0;  // about the one axis
+  double off_before_rad_ = 0.0;  // about the only axis
   double max_chi2_, max_rate_rad_s_, chi2_ = 0.0;
   inference::SumsOfRows sums_;
   SlopeRows slope_, instant_slope_;
-  std::vector<ExpectedInstant> moments_;  // of a block that is not whole yet
+  std::vector<ExpectedInstant> moments_;  // of the present, incomplete block
   std::vector<int> scalars_;              // that were read
   std::vector<Whitening> whitening_;      // of each channel
   bool keep_;
@@ -265,8 +266,8 @@ Prediction predict(const Dynamics& dynamics, const PlatformState& initial, const
   Comparison comparison(dynamics.model().platform, seen, instants, fastest, variables.size(),
                         options.keep_residuals, options.max_chi2);
   PropagationOptions propagation = options.propagation;
-  // A trial of parameters that make the motion run away is not worth its steps.
-  // A body that friction stops needs thousands of steps in a short time.
+  // Limits the steps of a trial whose motion diverges. A body that friction stops needs thousands
+  // of steps in a short time.
   constexpr int64_t steps_at_least = 20000;
   constexpr double steps_per_second = 40.0;
   const size_t count = blocks * instants.per_block();

@@ -55,7 +55,8 @@ void CollocationStep::predict(double h_s, const ZeroOrderHold& held) {
   for (size_t c = 0; c < y_.size(); ++c) increments_[c] = h_s * Lanes(gauss::weights) * rates_[c];
 }
 
-// Makes a first guess; returns the size of the state, which rounding is relative to.
+// Predicts the increments. Returns the size of the state in units of its scales (at least 1), to
+// which rounding errors are relative.
 double CollocationStep::begin_attempt(double h_s, const ZeroOrderHold& held) {
   predict(h_s, held);
   h_s_ = h_s;
@@ -145,11 +146,12 @@ CollocationStep::Outcome CollocationStep::attempt_stiff(double h_s, const ZeroOr
   return outcome;
 }
 
-// Two errors from the fall of the Legendre terms of the rates. Between the ends, the polynomial
-// lacks the terms from the ninth on: less than the last one kept. At the end itself the terms from
-// the seventeenth on are missing, as the sums at Gauss points are exact up to there; they are
-// guessed from how the last four fall. A fast oscillation under a slow motion does not fall, and
-// would add up over the steps: the end is held to `end_fraction` of the bound on the inside.
+// Estimates two errors from the decrease of the Legendre terms of the rates. Between the ends, the
+// polynomial lacks the terms from the ninth on, which are smaller than the last term kept. At the
+// end, the terms from the seventeenth on are missing, because sums at Gauss points are exact up to
+// there. They are extrapolated from the decrease of the last four terms. The terms of a fast
+// oscillation under a slow motion do not decrease, and its errors would accumulate over the steps.
+// Therefore the bound at the end is `end_fraction` of the bound between the ends.
 double CollocationStep::estimate_error() const {
   constexpr double end_fraction = 1e-3;
   double error = 0.0;
@@ -167,9 +169,9 @@ double CollocationStep::estimate_error() const {
   return error;
 }
 
-// An error that the stages cannot see: a layer, as where friction turns its sign, between an end of
-// the step and the stage next to it. There the rates at the end are not those of the polynomial,
-// and the error is their difference over that interval.
+// Estimates an error that the stages do not show: a thin layer between an end of the step and the
+// nearest stage, for example where friction changes its sign. The rates at that end then differ
+// from the polynomial. The error is this difference times the interval between end and stage.
 double CollocationStep::estimate_error_of_ends(const ZeroOrderHold& held) const {
   constexpr double just_inside = 1.0 - 1e-12;  // a law may jump at the end itself
   const std::vector<double> end_y = end();

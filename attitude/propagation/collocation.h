@@ -1,12 +1,12 @@
-// One step of Gauss collocation with eight stages: order 16 at its end, a polynomial of degree 8 in
-// between.
+// One step of Gauss collocation with eight stages. It has order 16 at its end; between the ends it
+// is a polynomial of degree 8.
 //
-// The stages are found by fixed-point iteration from the continued polynomial of the step before,
-// or, where the equations are stiff, by Newton's method; all eight are evaluated at once. Symmetric
-// and symplectic: the norm of the quaternion, the energy and the momentum of a free body change by
-// rounding alone. Between the ends the polynomial is less accurate than at the end itself; the
-// error estimate is that of the polynomial, so that the dense output is as good as the tolerance
-// says and the ends are better.
+// The stages are found by fixed-point iteration, which starts from the extrapolated polynomial of
+// the previous step. Newton's method is used where the equations are stiff. All eight stages are
+// evaluated at once. The method is symmetric and symplectic: the norm of the quaternion, and the
+// energy and momentum of a free body, change only by rounding. Between the ends the polynomial is
+// less accurate than at the end itself. The error estimate is that of the polynomial, so the dense
+// output meets the tolerance and the ends are more accurate.
 //
 // Source: M. Antoñana, E. Alberdi, J. Makazaga, A. Murua, "SIMD-vectorized implicit symplectic
 // integrators can outperform explicit symplectic ones", arXiv:2211.03655 (2022).
@@ -27,23 +27,22 @@ class CollocationStep {
   // Starts at `y` (Dynamics::size() components). `dynamics` must outlive the step.
   CollocationStep(const Dynamics& dynamics, double time_s, std::vector<double> y);
 
-  // Attempts a step of length `h_s` from the current start with the commands held constant; the
-  // start does not move. `settled` is the size, relative to the scales, at which iteration errors
-  // are left alone.
+  // Attempts a step of length `h_s` from the current start with constant commands; the start does
+  // not move. The iteration ends when its error is below `settled`, relative to the scales.
   struct Outcome {
     bool converged = false;
     int iterations = 0;
     double error = 0.0;  // of the polynomial, relative to the scales; an upper estimate
   };
   Outcome attempt(double h_s, const ZeroOrderHold& held, double settled);
-  // Solves the stages by Newton's method: some 50 times the work, but it settles however stiff the
-  // equations are. stiffness() then says whether fixed-point iteration would do as well.
+  // Solves the stages by Newton's method: about 50 times the work, but it converges for equations
+  // of any stiffness. stiffness() then shows whether fixed-point iteration would converge too.
   Outcome attempt_stiff(double h_s, const ZeroOrderHold& held, double settled);
   // Method of the last attempt, and step length · stiffness_1_s() of its last iteration.
   bool is_stiff() const { return is_stiff_; }
   double stiffness() const { return stiffness_; }
-  // Moves the start to the end of the attempted step, in compensated summation, and to the time
-  // `end_s`, which is start + length but for rounding.
+  // Moves the start to the end of the attempted step, with compensated summation. The new time is
+  // `end_s`, which is start + length except for rounding.
   void accept(double end_s);
   // Forgets the polynomial (after a jump of the right-hand side), and starts the next attempt from
   // constant rates.
@@ -55,7 +54,7 @@ class CollocationStep {
   double start_s() const { return time_s_; }
   const std::vector<double>& start() const { return y_; }
   double length_s() const { return h_s_; }
-  // Results of the last attempt, accepted or not. `stages` are at start + c h.
+  // Results of the last attempt, accepted or not. `stages` are the states at stage_times_s().
   std::span<const Lanes> stages() const { return stages_; }
   Lanes stage_times_s() const;
   std::vector<double> end() const;
@@ -64,7 +63,7 @@ class CollocationStep {
   // Valid until accept().
   void dense(const Lanes& fraction, Lanes* y) const;
 
-  // After an attempt, without its stages.
+  // Stores or restores the state after an attempt, without the stages.
   void keep(Snapshot& snapshot);
 
  private:
@@ -78,15 +77,15 @@ class CollocationStep {
   std::vector<double> inverse_scales_;
   double time_s_;
   double h_s_ = 0.0;
-  bool is_abrupt_ = false;  // some law is
+  bool is_abrupt_ = false;  // some law is abrupt (Disturbance::is_abrupt)
   bool is_stiff_ = false;
   double stiffness_ = 0.0;
   std::vector<Dynamics::Block> state_blocks_;
   RateWorkspace room_;
-  bool has_polynomial_ = false;             // increments_ describe the accepted step before
-  std::vector<double> y_, carry_;           // the start and what rounding has taken from it
+  bool has_polynomial_ = false;             // accepted_increments_ are valid
+  std::vector<double> y_, carry_;           // the start, and its rounding error
   std::vector<Lanes> increments_;           // h b_j f_j of the attempt
-  std::vector<Lanes> accepted_increments_;  // of the step before
+  std::vector<Lanes> accepted_increments_;  // those of the previous step
   double accepted_h_s_ = 0.0;
   std::vector<Lanes> stages_, rates_;
   double continuation_ratio_ = 0.0;

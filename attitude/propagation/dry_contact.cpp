@@ -77,9 +77,9 @@ std::optional<DryContact::SlipEnd> DryContact::ends_within(const CollocationStep
   return std::nullopt;
 }
 
-// While the contact slips, the rate has to leave zero by the first stage. While it sticks, the rate
-// does not show whether the step is too long: the last Legendre term of f₊ does, relative to the
-// friction.
+// A step of a slipping contact is short enough if the rate has left zero at the first stage. While
+// the contact sticks, the rate does not show whether the step is too long. The criterion is then
+// the last Legendre term of f₊, relative to the friction.
 bool DryContact::resolves(const CollocationStep& step, const ZeroOrderHold& held) const {
   if (held.slip != Slip::sticks) {
     return step.start()[component_] != 0.0 ||

@@ -1,4 +1,4 @@
-// History of battery and array beside the motion, in a run with a simulation of the power system.
+// History of battery and solar array in a run with a simulated power system.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,8 @@ class PowerHistory {
   PowerHistory(double start_s, double start_charge_C)
       : start_charge_C_(start_charge_C), known_until_s_(start_s) {}
 
-  // In order of time. `power` holds since the time before, its charge is reached at `time_s`.
+  // Adds states in order of time. `power` holds since the previous time; its charge is that at
+  // `time_s`.
   void add(double time_s, const PowerState& power) {
     time_s_.push_back(time_s);
     power_.push_back(power);
@@ -28,9 +29,10 @@ class PowerHistory {
   void set_known_until(double time_s) { known_until_s_ = time_s; }
 
   double known_until_s() const { return known_until_s_; }
-  // The last state added. Needs one.
+  // The last state added. There must be one.
   const PowerState& last() const { return power_.back(); }
-  // Up to known_until_s(). Without a power system nothing flows and the charge stays.
+  // State at a time up to known_until_s(). Without a power system, current and power are zero and
+  // the charge is constant.
   PowerState at(double time_s) const {
     if (power_.empty()) return {.charge_drawn_C = start_charge_C_};
     const auto after = std::ranges::lower_bound(time_s_, time_s);

@@ -14,8 +14,8 @@
 namespace photorque {
 namespace {
 
-// `h` without its last bits, so that sums of steps of one length are exact: the time then carries
-// no rounding that would show as a phase error after 1e5 s.
+// `h` truncated to 12 significant bits, so that sums of equal steps are exact. Rounding errors of
+// the time would otherwise add up to a phase error after 1e5 s.
 double with_few_bits(double h) {
   int exponent = 0;
   const double mantissa = std::frexp(h, &exponent);
@@ -67,7 +67,7 @@ EventFunction eclipse_event(const Dynamics& dynamics) {
 
 namespace {
 
-// " (…)" with the kinds whose torque is no number here.
+// Kinds whose torque is not finite in this state, as text in brackets; empty if all are finite.
 std::string infinite_torques(const Dynamics& dynamics, double time_s, std::span<const double> y) {
   PlatformState state;
   state.time_s = time_s;
@@ -163,8 +163,9 @@ void Propagator::exchange(const Exchange& now) {
   exchange_is_new_ = true;
 }
 
-// The last exchanged inputs replace those of the schedule. The polynomial goes on: a current moves
-// the charge alone, and the light is continuous but for the error of its continuation.
+// The last exchanged inputs replace those of the schedule. The polynomial is kept: a current
+// changes only the charge, and the light torque is continuous except for the error of its
+// continuation.
 void Propagator::take_over() {
   if (!exchange_) return;
   held_.battery_current_A = exchange_->battery_current_A;
@@ -173,7 +174,7 @@ void Propagator::take_over() {
   exchange_is_new_ = false;
 }
 
-// Gives up early on motions that would need more steps than allowed.
+// NumericalError if steps as short as those so far would not reach the end in `max_steps`.
 void Propagator::check_pace() const {
   constexpr int64_t every = 1 << 16;
   if (statistics_.steps == 0 || statistics_.steps % every != 0) return;
@@ -190,14 +191,15 @@ void Propagator::take_step() {
   const double start_s = step_.start_s();
   double stop_s = next_jump_ < jumps_.size() ? jumps_[next_jump_].time_s : end_s_;
   if (exchange_ && exchange_->next_s > start_s) stop_s = std::min(stop_s, exchange_->next_s);
-  // A free body's phase shows every bit of its iterations after a day; torques hide them.
+  // After a day, iteration errors are visible in the phase of a free body. With torques, other
+  // errors are larger.
   const bool is_free = dynamics_.model().disturbances.empty();
   const double settled = (is_free ? 1e-10 : 1e-6) * options_.tolerance;
   const double planned_s = stop_s;
   int corrections = 0;
   slip_ends_ = false;
   for (;;) {
-    // Half of the remaining time rather than nearly all of it: no slivers.
+    // Half of the remaining time rather than nearly all of it: this avoids very short steps.
     const double left_s = stop_s - start_s;
     double h_s = std::min(h_s_, options_.max_step_s);
     const bool cut = slip_ends_ || h_s >= left_s;
@@ -212,8 +214,8 @@ void Propagator::take_step() {
       outcome =
           is_stiff_ ? step_.attempt_stiff(h_s, held_, settled) : step_.attempt(h_s, held_, settled);
     } catch (const BeyondTable&) {
-      // A shorter step stays within the table, and ends where an event ends the run; without such
-      // an event the motion comes to the table's edge.
+      // A stage lies outside a table. A shorter step stays inside it, and an event may end the run
+      // before the edge. If no event does, the motion reaches the edge and the error is passed on.
       if (start_s + 1e-9 * (1.0 + std::abs(start_s)) >= start_s + h_s) throw;
       outcome = {};
     }
@@ -258,7 +260,7 @@ void Propagator::take_step() {
 // until the fixed-point iteration would contract again (stiffness() at most `contracts`).
 void Propagator::choose_method(const CollocationStep::Outcome& outcome, bool was_at_ceiling) {
   constexpr int steps_before_switch = 8, slow_iterations = 20;
-  constexpr double far_below = 1e-5;  // of the tolerance: four times the length would do
+  constexpr double far_below = 1e-5;  // of the tolerance: a step four times as long would do
   constexpr double contracts = 3.0;
   if (is_stiff_) {
     if (step_.stiffness() > contracts) return;
@@ -275,8 +277,9 @@ void Propagator::choose_method(const CollocationStep::Outcome& outcome, bool was
 }
 
 // The length for the next attempt. Small changes are avoided, because each requires a new
-// continuation matrix. A step that ends at a jump is no reason for longer steps. If a step needs
-// many iterations, it is close to the limit of convergence, and shorter steps are cheaper.
+// continuation matrix. A step that was cut at a jump does not lengthen the following ones. If a
+// step needs many iterations, it is close to the limit of convergence, and shorter steps are
+// cheaper.
 double Propagator::propose_length(const CollocationStep::Outcome& outcome, double h_s,
                                   bool cut) const {
   constexpr int slow_iterations = 20, max_iterations = 30;
@@ -297,8 +300,9 @@ void Propagator::take_command(double now_s, bool is_tick) {
   }
 }
 
-// Switches to the values after the jumps at the start of the next step. Where the time of a jump is
-// a variable p, the derivative by it jumps by (f⁻ − f⁺) ∂t/∂p.
+// Switches to the values after the jumps at the start of the next step. If the time of a jump is a
+// variable, the derivative with respect to it changes by f⁻ − f⁺, the rates before and after the
+// jump.
 void Propagator::cross_jumps() {
   const double now_s = step_.start_s();
   if (next_jump_ == jumps_.size() || jumps_[next_jump_].time_s > now_s) return;
@@ -323,9 +327,9 @@ void Propagator::cross_jumps() {
   if (sensitivity_) sensitivity_->restart();
 }
 
-// Whether the slip that is held ends within the attempted step elsewhere than at its end: then
-// `stop_s` becomes a better guess of that time, by cutting first and by Newton's method from then
-// on, until the time is resolved.
+// Whether the present slip ends inside the attempted step, before its end. Then `stop_s` becomes an
+// improved estimate of that time: first by locate(), then by Newton's method, until the time is
+// resolved.
 bool Propagator::ends_slip(double& stop_s, int& corrections) {
   constexpr int most = 5;
   if (!slip_ends_) {
@@ -351,9 +355,10 @@ bool Propagator::ends_slip(double& stop_s, int& corrections) {
   return true;
 }
 
-// The rate has come to zero, or torques overcome what held the platform. The time t at which it
-// came to rest changes with every variable by ∂t/∂v = −(∂ω/∂v)/ω̇⁻, and the derivatives by
-// (f⁻ − f⁺) ∂t/∂v. What is released leaves with no acceleration, and theirs do not jump.
+// Starts the next step after the end of a slip or of sticking. The platform has come to rest, or
+// the torques have exceeded the static friction. The time t at which it comes to rest changes with
+// variable v by ∂t/∂v = −(∂ω/∂v)/ω̇⁻, and the derivatives change by (f⁻ − f⁺) ∂t/∂v. A platform
+// that is released starts with zero acceleration, so its derivatives do not jump.
 void Propagator::cross_end_of_slip() {
   const double now_s = step_.start_s();
   step_.restart();
@@ -370,7 +375,7 @@ void Propagator::cross_end_of_slip() {
   const std::vector<double> after = contact_.rates(now_s, held_, step_.start());
   const size_t count = sensitivity_->variables().size();
   for (size_t v = 0; v < count; ++v) {
-    if (before[rate] == 0.0) break;  // it came to rest ever more slowly
+    if (before[rate] == 0.0) break;  // no deceleration at rest: ∂t/∂v is undefined
     const double later_s = -sensitivity_->start()[rate * count + v] / before[rate];
     std::vector<double> change;
     for (size_t c = 0; c < before.size(); ++c) change.push_back((before[c] - after[c]) * later_s);
@@ -378,8 +383,9 @@ void Propagator::cross_end_of_slip() {
   }
 }
 
-// A command may have changed, or the run begins: one that begins with what sticks has no rate
-// whatever the variables are. A body that would stop within the resolution of the time is at rest.
+// Chooses the slip of the next step. At rest it depends on the commands, which may have changed. A
+// body that would stop within the resolution of the time is at rest. A platform that sticks at the
+// start of the run has a rate of zero for all values of the variables.
 void Propagator::choose_slip(bool released) {
   constexpr double slow_rad_s = 1e-9, slowest_rad_s = 1e-12;
   const size_t c = contact_.component();
@@ -461,7 +467,8 @@ void Propagator::find_events() {
   }
 }
 
-// Cuts the interval in nine, eight values at a time, until the time is resolved.
+// Time of the zero between `low_s` and `high_s`. The interval is divided by nine, with eight values
+// at a time, until the time is resolved.
 double Propagator::locate(const EventFunction& event, double low_s, double high_s) const {
   std::vector<Lanes> y(step_.start().size());
   dense(low_s, y.data());
@@ -552,7 +559,7 @@ double attitude_error_bound_rad(const Dynamics& dynamics, const PlatformState& i
   const Mat3 inverse_inertia = dynamics.model().platform.inertia_kg_m2.inverse();
   double integral = 0.0;
   for (size_t i = 0; i <= last; ++i) {
-    // ∂end/∂state(s) = ∂end/∂start (∂state(s)/∂start)⁻¹; rows of the attitude, columns of the rate.
+    // ∂end/∂state(s) = ∂end/∂start (∂state(s)/∂start)⁻¹; rows: attitude, columns: rate.
     const Eigen::FullPivLU<Matrix> lu(transition(i).transpose());
     if (!lu.isInvertible()) return std::numeric_limits<double>::quiet_NaN();
     const Matrix from_here = lu.solve(to_end.topRows(3).transpose()).transpose();

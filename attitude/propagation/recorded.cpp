@@ -18,7 +18,7 @@ std::vector<EventFunction> events_of(const Dynamics& dynamics, bool has_power_sy
   if (platform.tilt_limit_rad) events.push_back(tilt_event(*platform.tilt_limit_rad));
   if (platform.battery_capacity_C && !has_power_system) {
     events.push_back(battery_empty_event(*platform.battery_capacity_C));
-    // The platform turns on without power.
+    // The run continues without power when the battery is empty.
     events.back().ends_run = false;
   }
   for (const Disturbance& d : dynamics.model().disturbances) {
@@ -121,7 +121,7 @@ void RecordedRun::keep(Snapshot& snapshot) {
                 [&](Samples& samples) { samples.keep(snapshot, components, times_.size()); });
 }
 
-// Beside a power system states are handed on when its own is known until then.
+// With a power system, states are recorded when its history extends to their times.
 void RecordedRun::take_in(const Samples& samples) {
   if (beside_ == nullptr) return record(samples);
   waiting_.push_back(samples);

@@ -1,4 +1,4 @@
-// A run that its caller steps, and its recording.
+// A run whose integration steps the caller makes one by one, with its recording.
 #pragma once
 
 #include <deque>
@@ -70,7 +70,7 @@ class RecordedRun {
   std::optional<LiveInstruments> instruments_;
   std::vector<PlatformState> states_;
   std::deque<Quat> on_the_way_;  // seen by the camera, not yet reported
-  std::deque<Samples> waiting_;  // until `beside` is known
+  std::deque<Samples> waiting_;  // until `beside` extends to their times
 };
 
 }  // namespace photorque

@@ -95,7 +95,7 @@ Settings of_propagate(const Settings& root) {
   return own_table(root, std::string(propagate_key::propagate.name), false);
 }
 
-// Calendar time of t = 0, as stated.
+// Calendar time of t = 0 if `epoch` or the initial APM states it.
 std::optional<std::string> stated_epoch(const Settings& root) {
   const Settings settings = of_propagate(root);
   if (settings.has(propagate_key::epoch)) return settings.get(propagate_key::epoch);
@@ -103,8 +103,8 @@ std::optional<std::string> stated_epoch(const Settings& root) {
   return epoch_text(read_apm(file_of(settings, propagate_key::initial_apm)).epoch);
 }
 
-// [[disturbance]] alone: who reads the rest of the file complains about its keys. What counts from
-// the calendar time of t = 0 has it stated.
+// Settings with the [[disturbance]] tables only; other readers check the rest of the file. A
+// disturbance with an ephemeris but without an epoch receives the stated epoch.
 Settings disturbances_of(const Settings& root) {
   SettingsNode list = root.raw("disturbance");
   if (auto* all = std::get_if<SettingsNode::Array>(&list.value)) {
@@ -120,7 +120,8 @@ Settings disturbances_of(const Settings& root) {
   return Settings(std::move(holder));
 }
 
-// The calendar time of t = 0, and whether an ephemeris covers the run.
+// Sets the calendar time of t = 0 from an ephemeris unless it is stated. InputError if the
+// ephemeris does not cover the run.
 void take_ephemeris(const Settings& root, bool is_stated, PropagationRun& run) {
   if (!root.has("disturbance")) return;
   for (const Settings& one : disturbances_of(root).tables("disturbance")) {
@@ -170,7 +171,7 @@ Vec3 in_plane(const Settings& command, const NumbersKey& key) {
 
 Schedule read_schedule(const Settings& settings) {
   if (settings.has(propagate_key::commands)) {
-    // An empty list takes those of the file away.
+    // An empty list replaces the commands of the file by none, and is allowed.
     if (settings.has(propagate_key::command) && !settings.get(propagate_key::command).empty()) {
       throw settings.error(propagate_key::command, "[[propagate.command]] beside commands",
                            "one of the two");
@@ -206,16 +207,16 @@ Schedule read_schedule(const Settings& settings) {
   return schedule;
 }
 
-// Leaning as `lean`, with body x at the azimuth that [propagate] states.
+// Attitude with the tilt of `lean` and body x at the azimuth that [propagate] states.
 Quat with_initial_yaw(const Settings& settings, const Quat& lean) {
   const double yaw_rad = settings.get(propagate_key::initial_yaw);
   const Vec3 up = lean * Vec3::UnitZ(), level(std::cos(yaw_rad), std::sin(yaw_rad), 0.0);
-  constexpr double least = 1e-6;  // of the slope of body x, below which its azimuth is undefined
+  constexpr double least = 1e-6;  // cosine of the tilt: below, body x has no azimuth
   if (std::abs(up.z()) < least) {
     throw settings.error(propagate_key::initial_yaw, "a platform that leans by 90 deg",
                          "initial_attitude instead: body x has no azimuth of choice there");
   }
-  // Body x is perpendicular to body z, above or below the level line of that azimuth.
+  // Body x is perpendicular to body z, above or below the horizontal line of that azimuth.
   const Vec3 x = (std::abs(up.z()) * level -
                   std::copysign(up.dot(level), up.z() * up.dot(level)) * Vec3::UnitZ())
                      .normalized();
@@ -253,7 +254,8 @@ Quat read_initial_attitude(const Settings& settings, const std::optional<Attitud
   return attitude.normalized();
 }
 
-// Bearings leave one axis: initial motion about another axis is not allowed.
+// InputError if a platform on bearings with one axis is tilted or turns about another axis at the
+// start.
 void check_begins_about_axis(const Settings& settings, const Platform& platform,
                              const Quat& lab_from_body, const Vec3& rate_rad_s) {
   if (!platform.turns_about_one_axis()) return;
@@ -278,15 +280,15 @@ void check_begins_about_axis(const Settings& settings, const Platform& platform,
 
 Settings own_table(const Settings& root, const std::string& key, bool required) {
   if (!root.has(key) && !required) return Settings(SettingsNode{}, key);
-  const Settings table = root.table(key);  // complains when it is no table
+  const Settings table = root.table(key);  // InputError if it is not a table
   return Settings(root.raw(key), table.name());
 }
 
 namespace {
 
-// An inertia error of zero, with the uncertainty of [platform].
+// A disturbance of the kind for inertia errors, with value zero and the sigmas of [platform].
 Disturbance uncertain_inertia(const Mat3& sigma_kg_m2, const DisturbanceContext& context) {
-  // The one kind that changes it.
+  // The only kind that changes the inertia.
   const auto& kinds = disturbance_kinds();
   const auto kind = std::find_if(kinds.begin(), kinds.end(), [](const DisturbanceKind& k) {
     return k.screening.inertia_change_kg_m2 != nullptr;
@@ -299,7 +301,7 @@ Disturbance uncertain_inertia(const Mat3& sigma_kg_m2, const DisturbanceContext&
   return error;
 }
 
-// The error of the mass, as a disturbance.
+// A disturbance of the kind for mass errors, with value zero and sigma `sigma_kg`.
 Disturbance uncertain_mass(double sigma_kg, const DisturbanceContext& context) {
   const auto kind = std::ranges::find_if(
       disturbance_kinds(), [](const DisturbanceKind& k) { return k.screening.changes_mass; });
@@ -308,7 +310,8 @@ Disturbance uncertain_mass(double sigma_kg, const DisturbanceContext& context) {
   return error;
 }
 
-// A law of the ambient magnetic field needs one: stated, or set by another disturbance.
+// InputError if a disturbance depends on the ambient magnetic field, but neither [environment] nor
+// another disturbance states the field.
 void require_magnetic_field(const Settings& environment, const AttitudeModel& model) {
   if (environment.has("magnetic_field_T") || environment.has("igrf")) return;
   const DisturbanceKind* needy = nullptr;
@@ -344,7 +347,7 @@ NominalModel read_attitude_model(const Settings& root) {
   if (is_in_space && !environment.has("gravity_m_s2")) {
     model.environment.gravity_lab_m_s2 = Vec3::Zero();
   }
-  // Who reads the camera later complains about its keys.
+  // read_sensors() checks the keys of the camera later.
   std::optional<TrackingCamera> camera;
   if (sensors.has("camera")) camera = read_tracking_camera(sensors.table("camera"));
   const DisturbanceContext context{model.platform, model.environment, camera ? &*camera : nullptr};
@@ -365,7 +368,8 @@ NominalModel read_attitude_model(const Settings& root) {
   return nominal;
 }
 
-// A row has up to 220 bytes: a day's recording at most 10 MB.
+// Default output rate: at most 45000 rows. A row has up to 220 bytes, so a recording has at most 10
+// MB.
 double usual_output_rate_Hz(double duration_s) {
   constexpr double most_rows = 45000.0;
   for (double decade = 0.1;; decade *= 10.0) {
@@ -405,7 +409,7 @@ PropagationRun read_propagation(const Settings& root) {
     throw settings.error(propagate_key::epoch, "\"" + run.epoch + "\"",
                          "a time as 2000-01-01T12:00:00");
   }
-  // Times of a run count without leap seconds.
+  // Times of a run do not count leap seconds.
   if (run.epoch.find(":60") != std::string::npos) {
     throw settings.error(propagate_key::epoch, "\"" + run.epoch + "\"", "no leap second");
   }
@@ -439,7 +443,7 @@ PropagationRun read_propagation(const Settings& root) {
   }
   run.initial.time_s = settings.get(propagate_key::initial_time);
   take_ephemeris(root, stated_epoch(root).has_value(), run);
-  // A calendar time has four digits of the year in attitude.aem.
+  // The year of a calendar time in attitude.aem has four digits.
   const double left_s = parse_epoch("9999-12-31T23:59:59")->seconds_since(*parse_epoch(run.epoch));
   if (run.initial.time_s + run.duration_s > left_s) {
     throw settings.error(propagate_key::epoch, "an end after the year 9999", "an earlier time");

@@ -19,22 +19,22 @@
 namespace photorque {
 
 struct PropagationRun {
-  AttitudeModel model;  // the sensors' errors included, after the file's disturbances
+  AttitudeModel model;  // includes the errors of the sensors, after the file's disturbances
   Sensors sensors;
   PlatformState initial;
   double duration_s = 0.0;
   double output_rate_Hz = 10.0;  // rows of the recording
-  size_t history_rows = 5000;    // at most so many, evenly from the recording's, and its last
+  size_t history_rows = 5000;    // maximum; evenly spaced rows of the recording, and its last
   PropagationOptions options;
   uint64_t seed = 1;
   std::string epoch;  // calendar time of t = 0, ISO 8601, for files that need one
-  // Commands the run tick by tick, instead of the model's schedule. Needs options.tick_rate_Hz, and
-  // a recording at the same rate.
+  // Returns the commands at every tick and replaces the schedule of the model. It requires
+  // options.tick_rate_Hz and a recording at the same rate.
   LiveCommander commander = {};
 };
 
-// The table `key` of an experiment with its own record of the keys read, so that finish() reports
-// keys of this table alone. Empty where there is none and none is required.
+// The table `key` of an experiment with a separate record of the keys read, so that its finish()
+// reports keys of this table alone. An absent table is empty, or an InputError if it is `required`.
 Settings own_table(const Settings& root, const std::string& key, bool required);
 
 // The nominal model of the platform and its laboratory: [platform], [environment],
@@ -43,10 +43,10 @@ Settings own_table(const Settings& root, const std::string& key, bool required);
 struct NominalModel {
   AttitudeModel model;
   Sensors sensors;
-  // The disturbance by which the sigmas of [platform] inertia_kg_m2 stand in the model.
+  // Index of the disturbance that has the sigmas of [platform] inertia_kg_m2.
   std::optional<size_t> uncertain_inertia = {};
 
-  // The context for readers of more disturbances; for as long as this lives.
+  // Context for readers of further disturbances. It is valid as long as this object.
   DisturbanceContext context() const;
 };
 NominalModel read_attitude_model(const Settings& root);
@@ -56,7 +56,7 @@ PropagationRun read_propagation(const Settings& root);
 Key propagate_table();
 
 struct PropagationResult {
-  Recording recording;  // as the sensors saw it
+  Recording recording;  // readings of the sensors
   // Time history (table), tilt, heading, rates, charge and torques (plots), headline figures.
   Product product;
   std::vector<PlatformState> states;  // the truth at the recording's times
@@ -65,17 +65,17 @@ struct PropagationResult {
 };
 
 // Propagates the run. It ends early at the bearing's stop (Platform::tilt_limit_rad). `progress` is
-// called now and then with the fraction of the duration that is done. What runs beside the motion
-// needs the loop in plain view: RecordedRun (recorded.h).
+// called from time to time with the fraction of the duration that is done. A simulation that is
+// coupled to the motion needs access to the loop and uses RecordedRun (recorded.h).
 PropagationResult propagate(const PropagationRun& run,
                             const std::function<void(double)>& progress = {});
 
-// Reads initial_position_m[2] and initial_velocity_m_s[2] of [propagate], both zero by default;
-// nothing of a platform that does not slide.
+// Reads initial_position_m[2] and initial_velocity_m_s[2] of [propagate] into `initial`, both zero
+// by default. No effect on a platform that does not slide. InputError for other sizes than 2.
 void read_initial_place(const Settings& settings, const AttitudeModel& model,
                         PlatformState& initial);
 
-// Place (x, y) and velocity in a state vector; none where the platform does not slide.
+// Position (x, y) [m] and velocity [m/s] in a state vector; nullopt if the platform does not slide.
 std::optional<std::array<double, 4>> place_of(const Dynamics& dynamics,
                                               const std::vector<double>& y);
 

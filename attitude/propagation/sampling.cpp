@@ -44,9 +44,9 @@ void Sampler::flush() {
   samples_.count = 0;
 }
 
-// Appends the first `batch` lanes.
+// Appends the states at the first `batch` times.
 void Sampler::file(const Lanes& times_s, int batch) {
-  // Eight at once are no others than those asked for next.
+  // A batch of eight fills all lanes, so it is evaluated directly into the samples.
   const bool is_whole = batch == Lanes::count;
   propagator_.dense(times_s, is_whole ? samples_.y.data() : y_.data());
   if (!derivatives_.empty()) {
@@ -69,8 +69,8 @@ void Sampler::file(const Lanes& times_s, int batch) {
   }
 }
 
-// Times within one step share one evaluation of the polynomial; the lanes are then filed singly,
-// because a batch may span several short steps.
+// Times within one step share one evaluation of the polynomial. The lanes are then copied one by
+// one, because eight samples may come from several short steps.
 void Sampler::take(bool including_end) {
   const double end_s = propagator_.step_end_s();
   const auto inside = [&](double t_s) { return including_end ? t_s <= end_s : t_s < end_s; };

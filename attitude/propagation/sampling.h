@@ -9,31 +9,33 @@
 
 namespace photorque {
 
-// Up to eight states on their way to a user, in lanes; lanes from `count` on repeat the last.
+// Up to eight states in lanes. Lanes from `count` on repeat the last state.
 struct Samples {
   size_t first = 0;  // index of lane 0 among the times asked for
   int count = 0;
   Lanes time_s = 0.0;
   std::array<ZeroOrderHold, Lanes::count> held = {};
-  std::vector<Lanes> y;  // Dynamics::size()
+  std::vector<Lanes> y;  // Dynamics::size() components
   std::vector<Lanes>
       derivatives;  // of y, as Propagator::dense_derivatives; empty without variables
 
-  // Stores or restores samples of `components` components at some of `times` times, without
-  // derivatives.
+  // Stores or restores samples without derivatives: states of `components` components at some of
+  // `times` times.
   void keep(Snapshot& snapshot, size_t components, size_t times);
 };
 
-// Calls `sink` with the states at time_s(0), time_s(1), …, time_s(count − 1), which must not fall.
-// Uses the same memory however many there are. At a jump the values after it are given.
+// Calls `sink` with the states at time_s(0), time_s(1), …, time_s(count − 1), which must be
+// non-decreasing. The memory used is independent of their number. At a jump the sample has the
+// values after it.
 class Sampler {
  public:
   Sampler(const Propagator& propagator, size_t count, std::function<double(size_t)> time_s,
           std::function<void(const Samples&)> sink);
 
-  // Call after every step: takes the samples within it, without its end.
+  // Call after every step: takes the samples within the step, except at its end.
   void follow();
-  // When the run has ended: its end too. Returns the number of times reached.
+  // Call after the run has ended: takes the samples at its end too. Returns the number of times
+  // reached.
   size_t finish();
 
   // Stores or restores a sampler without derivatives, after a step.
@@ -53,8 +55,8 @@ class Sampler {
   size_t next_ = 0;
 };
 
-// Samples the whole run. `after_step` is called after every step, before its states are handed out.
-// Returns the number of times reached before the run ended.
+// Samples the whole run. `after_step` is called after every step, before `sink` receives its
+// states. Returns the number of times reached before the run ended.
 size_t sample(Propagator& propagator, size_t count, const std::function<double(size_t)>& time_s,
               const std::function<void(const Samples&)>& sink,
               const std::function<void()>& after_step = {});

@@ -67,7 +67,8 @@ Sensitivity::Sensitivity(const Dynamics& dynamics, std::vector<Variable> variabl
       const std::array<double, 4> components = {dq.w(), dq.x(), dq.y(), dq.z()};
       for (size_t c = 0; c < 4; ++c) start_[c * count + v] = components[c];
     } else {
-      // Behind the attitude the tangent has one component less than the state.
+      // The attitude has three tangent components and four state components, so the indices of all
+      // later components differ by one.
       start_[static_cast<size_t>(initial + 1) * count + v] = 1.0;
     }
     if (initial >= 3 && initial < 6) seed_bound_states(v, initial - 3);
@@ -101,7 +102,8 @@ void Sensitivity::seed_bound_states(size_t v, int axis) {
   }
 }
 
-// Derivatives of the same states with respect to the parameters of their axis.
+// Derivatives of extra states that start at rest relative to the body, with respect to the
+// parameters of their axis.
 void Sensitivity::seed_states_of_axis(size_t v, const Vec3& rate_body_rad_s) {
   const Variable& variable = variables_[v];
   const Disturbance& disturbance = dynamics_.model().disturbances[variable.disturbance];
@@ -114,8 +116,8 @@ void Sensitivity::seed_states_of_axis(size_t v, const Vec3& rate_body_rad_s) {
 
 void Sensitivity::make_blocks() {
   state_blocks_ = state_blocks(dynamics_);
-  // Parameters of early stages make every disturbance depend on them, and those of instruments
-  // change nothing but readings: each kind has separate blocks.
+  // Parameters of early stages affect every disturbance, and those of instruments affect only
+  // readings. Each group has separate blocks.
   const auto kind = [&](const Variable& v) {
     const Stage stage = dynamics_.model().disturbances[v.disturbance].stage;
     return stage < Stage::torque ? 0 : stage == Stage::torque ? 1 : 2;
@@ -138,7 +140,7 @@ void Sensitivity::make_blocks() {
   }
 }
 
-// Their own parameters alone change offsets, in the same way all the time.
+// Offsets depend only on the parameters of the instruments, and these derivatives are constant.
 void Sensitivity::read_offsets() {
   const size_t count = variables_.size();
   offset_slopes_.assign(Dynamics::reading_count * count, 0.0);
@@ -193,7 +195,7 @@ bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, 
   return is_resolved(step);
 }
 
-// A first guess of the increments: the polynomials of the step before, continued.
+// First guess of the increments: the extrapolated polynomials of the previous step.
 void Sensitivity::predict() {
   if (!has_polynomial_) {
     std::fill(increments_.begin(), increments_.end(), Lanes(0.0));
@@ -208,7 +210,7 @@ void Sensitivity::predict() {
   }
 }
 
-// By rows, which settle() goes through one after the other.
+// Sorts by rows, the order in which settle() reads the entries.
 void Sensitivity::sort_jacobian() {
   std::sort(room_.jacobian.begin(), room_.jacobian.end(),
             [](const RateDerivative& a, const RateDerivative& b) {
@@ -216,9 +218,9 @@ void Sensitivity::sort_jacobian() {
             });
 }
 
-// Solves for the variables from moving_[first] on, `group_size` of them, by Gauss–Seidel iteration:
-// every component uses the newest stages of the others. Few variables at a time stay in the cache
-// and need no more iterations than the slowest of them.
+// Solves for `group_size` variables from moving_[first] on by Gauss–Seidel iteration: every
+// component uses the newest stages of the others. A small group fits into the cache and needs only
+// the iterations of its slowest variable.
 bool Sensitivity::settle(size_t first, double tolerance) {
   struct Column {
     double start;
@@ -239,9 +241,9 @@ bool Sensitivity::settle(size_t first, double tolerance) {
     }
   }
   const Lanes weighted_h_s = h_s_ * Lanes(gauss::weights);
-  // Linear, and of the same contraction as the stages, which have settled: mostly it will, however
-  // the mixed units of the components swell the first changes. Not where a swing of no amplitude
-  // yet let the stages settle in a step too long for it.
+  // The system is linear with the same contraction rate as the stages, which have converged, so the
+  // iteration normally converges. Mixed units may make the first changes grow. The iteration fails
+  // if a mode without amplitude let the stages converge in a step that is too long for it.
   constexpr int max_stalled_changes = 25;
   Settling settling(tolerance, 1e-13, max_stalled_changes);
   for (int iteration = 1; iteration <= max_sweeps; ++iteration) {
@@ -263,7 +265,8 @@ bool Sensitivity::settle(size_t first, double tolerance) {
         size[k] = larger_magnitude(size[k], to.stage);
       }
     }
-    // The derivatives by different variables have different units: each is its own scale.
+    // Derivatives with respect to different variables have different units, so each has a separate
+    // scale.
     double change = 0.0;
     for (size_t k = 0; k < group_size; ++k) {
       const double of_size = std::max(largest(size[k]), next_to_nothing * largest_[variable[k]]);
@@ -283,7 +286,7 @@ bool Sensitivity::settle(size_t first, double tolerance) {
   return false;
 }
 
-// z = h b (s + J (start + μ z)), in one solution instead of an iteration that would not settle.
+// Solves z = h b (s + J (start + μ z)) directly, because an iteration would not converge.
 void Sensitivity::solve_at_once(const CollocationStep& step) {
   const size_t count = variables_.size();
   increments_ = source_;
@@ -297,8 +300,8 @@ void Sensitivity::solve_at_once(const CollocationStep& step) {
   StageSystem(step.start().size(), h_s_, room_.jacobian).solve(increments_, count);
 }
 
-// Whether the step is short enough for the derivatives: judged by the last Legendre term of their
-// polynomials, relative to each derivative's largest size in units of the scales.
+// Whether the step is short enough for the derivatives. The criterion is the last Legendre term of
+// their polynomials, relative to the largest value of each derivative in units of the scales.
 bool Sensitivity::is_resolved(const CollocationStep& step) const {
   constexpr double tolerance = 1e-3;
   const size_t count = variables_.size(), n = step.start().size();
@@ -364,7 +367,7 @@ void Sensitivity::readings(const Lanes& time_s, const std::array<ZeroOrderHold, 
       for (size_t v = 0; v < count; ++v) readings[r * count + v] += partials[i] * from[v];
     }
   }
-  // Disturbances that move masses or exert torques reach the instruments through the state alone.
+  // Parameters of masses and torques affect the readings only through the state.
   const auto reaches_instruments = [&](int variable) {
     if (variable < 0) return false;
     const size_t d = variables_[static_cast<size_t>(variable)].disturbance;

@@ -1,9 +1,9 @@
 // The exact derivatives of a collocation solution with respect to the initial state and the
 // parameters of disturbances.
 //
-// The linear system that the collocation equations become when they are differentiated is solved on
-// the same stages: what comes out is the derivative of the computed trajectory itself, not a second
-// approximation. The partial derivatives of the right-hand side come from DualLanes, once per step.
+// Differentiating the collocation equations gives a linear system, which is solved on the same
+// stages. The result is the exact derivative of the computed trajectory. DualLanes gives the
+// partial derivatives of the right-hand side, once per step.
 #pragma once
 
 #include <vector>
@@ -13,9 +13,9 @@
 
 namespace photorque {
 
-// Something to differentiate with respect to.
+// A quantity with respect to which the trajectory is differentiated.
 struct Variable {
-  // Component of the initial state, in the order of Tangent below; −1: a parameter.
+  // Component of the initial state, in the order of tangent() below; −1: a parameter.
   int initial = -1;
   // Parameter `parameter` of disturbance `disturbance` of the model.
   size_t disturbance = 0;
@@ -25,8 +25,9 @@ struct Variable {
   static Variable of(size_t disturbance, int parameter) { return {-1, disturbance, parameter}; }
 };
 
-// Derivatives of a state as seen by people: the rotation vector of the attitude's change in body
-// axes [rad] (3), rate (3), charge (1), extra states. `change` holds the changes of the components.
+// Derivative of a state in tangent coordinates: the rotation vector of the attitude's change in
+// body axes [rad] (3), rate (3), charge (1), extra states. `change` is the derivative of the
+// components of `y`.
 std::vector<double> tangent(std::span<const double> y, std::span<const double> change);
 
 class Sensitivity {
@@ -38,16 +39,18 @@ class Sensitivity {
   const std::vector<Variable>& variables() const { return variables_; }
 
   // Differentiates an attempted step, to `tolerance` of each derivative's size. False when the
-  // iteration does not settle: the step is too long for the derivatives.
+  // iteration does not converge or the step is too long to resolve the derivatives.
   bool solve(const CollocationStep& step, const ZeroOrderHold& held, double tolerance);
+  // Moves the start to the end of the attempted step.
   void accept();
+  // Starts the next step without the previous polynomial, after a jump of the right-hand side.
   void restart() { has_polynomial_ = false; }
   // Adds `change` (a derivative of the state) to the derivatives by variable `v`.
   void add(size_t v, std::span<const double> change);
 
-  // Derivatives at fractions of the step: component c by variable v at [c · variables + v].
+  // Derivatives at fractions of the step: component c, variable v at [c · variables + v].
   void dense(const Lanes& fraction, Lanes* derivatives) const;
-  // At the start of the step, laid out likewise.
+  // Derivatives at the start of the step, in the same layout.
   const std::vector<double>& start() const { return start_; }
 
   // Derivatives of the instruments' readings (Dynamics::reading_derivatives) at given states, from
@@ -74,8 +77,8 @@ class Sensitivity {
   std::vector<double> start_;
   std::vector<Lanes> increments_, accepted_increments_;  // as in CollocationStep
   // For each variable, the largest component at the start of any step, and the largest in units of
-  // the scales. Derivatives that have decayed far below these, as of a platform at rest with dry
-  // friction, need no full precision.
+  // the scales. Derivatives that have decayed far below these need no full precision; an example is
+  // a platform that dry friction has stopped.
   std::vector<double> largest_, largest_scaled_;
   static constexpr double next_to_nothing = 1e-10;
   double h_s_ = 0.0, accepted_h_s_ = 0.0;
@@ -88,8 +91,9 @@ class Sensitivity {
   void solve_at_once(const CollocationStep& step);
   bool is_resolved(const CollocationStep& step) const;
   std::vector<size_t> moving_;  // variables on which the motion depends
-  // Where readings are the platform's own rate and attitude and offsets (Dynamics::offsets): what
-  // the variables change of the offsets, laid out as readings() has it.
+  // Derivatives of the instruments' offsets with respect to the variables, in the layout of
+  // readings(). Used where a reading is the platform's rate or attitude plus an offset
+  // (Dynamics::offsets).
   std::vector<double> offset_slopes_;
   RateWorkspace room_;         // its `jacobian` is that of the step
   std::vector<Lanes> source_;  // ∂(dy_c/dt)/∂(variable)

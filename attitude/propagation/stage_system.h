@@ -1,8 +1,8 @@
 // The collocation equations of one step, differentiated: a linear system for changes of the stages.
 //
-// Two uses. Newton's method finds the stages where fixed-point iteration cannot (a platform that
-// sticks: its rate follows the torque within milliseconds, for minutes), and the derivatives of
-// such a step solve the same system.
+// There are two uses. Newton's method finds the stages where fixed-point iteration does not
+// converge. An example is a platform that sticks: its rate follows the torque within milliseconds,
+// for minutes. The derivatives of such a step solve the same system.
 //
 //   z_ci − h b_i Σ_k ∂f_c/∂y_k(Y_i) Σ_j μ_ij z_kj = r_ci,     c, k components; i, j stages
 //
@@ -29,30 +29,32 @@ struct RateDerivative {
 // The components of the state in blocks for Dynamics::derivatives.
 std::vector<Dynamics::Block> state_blocks(const Dynamics& dynamics);
 
-// Room for derivatives of the rates, kept from one step to the next.
+// Workspace for the derivatives of the rates, reused from step to step.
 struct RateWorkspace {
   Dynamics::Workspace evaluation;
   std::vector<Lanes> partials;
   std::vector<RateDerivative> jacobian;
 };
 
-// Derivatives that are not zero at every stage; stored in `room`.
+// Derivatives of the rates at the eight stages, without those that are zero at all of them. The
+// result is stored in `room`.
 const std::vector<RateDerivative>& rate_derivatives(const Dynamics& dynamics,
                                                     std::span<const Dynamics::Block> blocks,
                                                     const Lanes& times_s, const ZeroOrderHold& held,
                                                     const Lanes* stages, RateWorkspace& room);
 
-// Upper limit for the rate of change of small deviations [1/s]: the largest row sum of |∂f/∂y| with
-// each component in units of its scale. Fixed-point iteration with eight stages contracts by about
-// a tenth of (step length · this).
+// Upper bound on the rate of change of small deviations [1/s]: the largest row sum of |∂f/∂y| with
+// each component in units of its scale. One fixed-point iteration with eight stages multiplies the
+// error by about a tenth of (step length · this value).
 double stiffness_1_s(std::span<const RateDerivative> jacobian, std::span<const double> scales);
 
 class StageSystem {
  public:
-  // `components`: of the state. `h_s`: length of the step.
+  // `components`: number of components of the state. `h_s`: length of the step [s].
   StageSystem(size_t components, double h_s, std::span<const RateDerivative> jacobian);
 
-  // Solves for `count` right-hand sides in place; component c of number v at x[c · count + v].
+  // Solves for `count` right-hand sides in place; component c of right-hand side v is x[c · count +
+  // v].
   void solve(std::span<Lanes> x, size_t count) const;
 
  private:
@@ -60,17 +62,16 @@ class StageSystem {
   Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
 };
 
-// When a fixed-point iteration ends: converged as far as asked or as rounding allows, or failed.
-
-// Judges the size of one change after the other. Changes may rise for an iteration or two even
-// where the iteration converges, so one rise decides nothing.
+// Decides when an iteration ends: it has converged to the required accuracy or to rounding, or it
+// has failed. judge() receives the size of one change after the other. Changes may rise once or
+// twice even if the iteration converges, so a single rise is no failure.
 class Settling {
  public:
   enum class Verdict { go_on, settled, failed };
 
-  // The remaining error after a change shall be below `settled`; when changes below `rounding` stop
-  // falling, rounding is all that is left. After `max_stalled_changes` changes in a row without a
-  // new smallest one the iteration has failed.
+  // The iteration has converged when the estimated remaining error is below `settled`, or when
+  // changes below `rounding` stop falling. It has failed after `max_stalled_changes` changes in a
+  // row without a new minimum.
   Settling(double settled, double rounding, int max_stalled_changes = 6)
       : settled_(settled), rounding_(rounding), max_stalled_changes_(max_stalled_changes) {}
 
@@ -93,7 +94,7 @@ class Settling {
   int max_stalled_changes_;
   double previous_ = std::numeric_limits<double>::infinity();
   double best_ = std::numeric_limits<double>::infinity();
-  double before_ = 1.0;  // the contraction before
+  double before_ = 1.0;  // contraction factor of the previous change
   int rises_ = 0;
 };
 

@@ -46,7 +46,7 @@ constexpr const char* fixed_names[fixed] = {"t_s",
                                             "battery_current_A",
                                             "array_power_W"};
 
-// About 1600 points, the number of columns of a picture.
+// At most about 1600 points, the number of pixel columns of a plot.
 Plot::Curve curve(const std::string& label, const std::vector<double>& x,
                   const std::vector<double>& y) {
   constexpr size_t most = 1600;
@@ -59,8 +59,8 @@ Plot::Curve curve(const std::string& label, const std::vector<double>& x,
   return c;
 }
 
-// The largest of every interval, for a logarithmic axis: a swing through zero shows its amplitude.
-// Values below `least` leave a gap.
+// Largest value of each of up to 240 intervals, for a logarithmic axis: an oscillation through zero
+// shows its amplitude. Intervals below `least` are gaps.
 Plot::Curve envelope(const std::string& label, const std::vector<double>& x,
                      const std::vector<double>& size, double least) {
   constexpr size_t most = 240;
@@ -89,7 +89,7 @@ std::vector<double> magnitudes(const std::vector<double>& x, const std::vector<d
   return all;
 }
 
-// 350°, 10° becomes 350°, 370°: a curve without jumps.
+// Angles without jumps of 360°: 350°, 10° becomes 350°, 370°.
 std::vector<double> unwrapped_deg(std::vector<double> angle_deg) {
   for (size_t i = 1; i < angle_deg.size(); ++i) {
     angle_deg[i] += 360.0 * std::round((angle_deg[i - 1] - angle_deg[i]) / 360.0);
@@ -97,10 +97,10 @@ std::vector<double> unwrapped_deg(std::vector<double> angle_deg) {
   return angle_deg;
 }
 
-// Largest distance of the body from its initial position.
+// Largest tilt and range of yaw during a run.
 struct Excursion {
   double largest_tilt_rad = 0.0, largest_tilt_at_s = 0.0;
-  double yaw_rad = 0.0;  // from the least to the largest, whole turns counted
+  double yaw_rad = 0.0;  // largest minus least, with whole turns counted
 };
 Excursion excursion_of(const std::vector<PlatformState>& states) {
   Excursion found;
@@ -120,8 +120,8 @@ Excursion excursion_of(const std::vector<PlatformState>& states) {
   return found;
 }
 
-// Stacked bars: means over each 120th of the run, in percent of the sum of all,
-// the strongest at the bottom.
+// Stacked bars: mean fraction of each kind in each 120th of the run, in percent of the sum of all
+// kinds, with the largest at the bottom. Kinds after the fifth are summed.
 std::vector<Plot::Curve> stacked_fractions(const std::vector<double>& t,
                                            const std::vector<std::string>& labels,
                                            const std::vector<std::vector<double>>& sizes) {
@@ -159,7 +159,7 @@ std::vector<Plot::Curve> stacked_fractions(const std::vector<double>& t,
     curve.bars = true;
     curves.push_back(std::move(curve));
   }
-  // The tallest first: each covers the lower part of the one before.
+  // The highest curve comes first, because each curve covers the lower part of the one before.
   std::ranges::reverse(curves);
   return curves;
 }
@@ -173,7 +173,7 @@ Quantity exact(const std::string& name, double value) {
 TimeHistory::TimeHistory(const Dynamics& dynamics) {
   for (const char* name : fixed_names) columns_.push_back({name});
   const auto& disturbances = dynamics.model().disturbances;
-  // The second of a kind gets a number.
+  // The second disturbance of a kind gets the suffix _2, the third _3.
   std::vector<std::string> labels;
   for (const Disturbance& d : disturbances) {
     const auto same = std::count_if(
@@ -250,7 +250,7 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
     plot.curves = std::move(curves);
     product.plots.push_back(std::move(plot));
   };
-  // In long runs, oscillating curves are bands that hide each other: every axis has its own panel.
+  // Oscillating curves of long runs would hide each other, so every axis has a separate panel.
   const auto add_vector_plot = [&](const std::string& name, const std::string& title,
                                    const std::string& unit, size_t x) {
     add_plot(name, title, "x [" + unit + "]", {curve("", t, values(x))});

@@ -1,4 +1,4 @@
-// The truth of a run as a table, plots and headline figures.
+// True states, torques and power of a run as a table, plots and headline figures.
 #pragma once
 
 #include <string>
@@ -13,13 +13,13 @@ class TimeHistory {
  public:
   explicit TimeHistory(const Dynamics& dynamics);
 
-  // One row: lane `lane` of `now` belongs to `state`.
+  // Adds a row: `state`, with the values in lane `lane` of `now`.
   void add(const PlatformState& state, const Dynamics::Instants& now, int lane);
 
-  // Tables "time_history" and "events"; plots "tilt", "yaw", "rates", "charge" and "power"
-  // (where there are any), "torques" (largest sizes of all) and one for each disturbance. Curves
-  // are thinned to a few thousand points that keep every extreme. The largest tilt is that of all
-  // the states of the run, of which a row here may stand for many.
+  // Tables "time_history" and "events". Plots "tilt", "yaw", "rates", "charge" and "array_power"
+  // (if they are not zero), "torque_fractions" and "torques" (magnitudes of all torques), and one
+  // for each disturbance. Curves are thinned to about 1600 points that keep every extreme. The
+  // largest tilt is taken from all `states` of the run, not only from the rows of this history.
   Product product(const std::vector<PlatformState>& states, const std::vector<Event>& events,
                   const Propagator::Statistics& statistics) const;
 

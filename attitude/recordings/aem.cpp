@@ -15,7 +15,7 @@ namespace {
 
 using Segment = AttitudeEphemeris::Segment;
 
-// Keywords of a segment's metadata in the order of the book.
+// Keywords of the metadata of a segment, in the order of the book.
 struct Keyword {
   const char* name;
   std::string Segment::*member;
@@ -150,7 +150,7 @@ class AemReader {
     return false;
   }
 
-  // Types that are not read as attitudes have at least lines of one length.
+  // For types that are not read as attitudes, all rows must have the length of the first.
   static size_t expected_length(const Segment& segment, size_t first) {
     const AttitudeType* type = type_of(segment);
     return type != nullptr ? type->numbers : first;
@@ -164,8 +164,8 @@ InputError wrong(const std::string& key, const std::string& found, const std::st
   return {{}, key, found, expected};
 }
 
-// Rotations about the axes of `sequence` ("321" or "ZYX") in turn, each about the axes as the ones
-// before left them.
+// Successive rotations about the axes of `sequence` ("321" or "ZYX"), each about an axis of the
+// frame that the previous rotations rotated.
 Quat from_euler(const std::string& sequence, const std::vector<double>& angles_deg) {
   Quat q = Quat::Identity();
   if (sequence.size() != 3) throw wrong("EULER_ROT_SEQ", sequence, "three axes, as 321");
@@ -245,7 +245,8 @@ std::vector<AemAttitude> aem_attitudes(const AttitudeEphemeris& aem,
         const Quat& q = samples[i].a_from_b;
         AemAttitude attitude{epoch->seconds_since(*begin), is_from_lab ? Quat(q.conjugate()) : q,
                              samples[i].rate_rad_s, segment.rows[i].line};
-        // The body is A: it turns against B, and B's axes are the lab's.
+        // A is the body. Its rate is minus that of the lab B, converted from the axes of B to those
+        // of A.
         if (is_from_lab && attitude.rate_body_rad_s) {
           attitude.rate_body_rad_s = -(q * *attitude.rate_body_rad_s);
         }

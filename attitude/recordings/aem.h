@@ -1,5 +1,5 @@
-// CCSDS attitude ephemeris messages (AEM). A message that is written back says the same in every
-// digit.
+// CCSDS attitude ephemeris messages (AEM). A message that is read and written again is equal in
+// every digit.
 #pragma once
 
 #include <filesystem>
@@ -13,11 +13,13 @@
 namespace photorque {
 
 // An attitude ephemeris message, version 1 or 2. Source: CCSDS 504.0-B-1 (2008) and 504.0-B-2
-// (2024), section 4. Version 2 has neither ATTITUDE_DIR nor QUATERNION_TYPE: from A to B, scalar
-// last. Of types with derivatives the attitude is read, of ANGVEL the rate too. An attitude
-// from frame A to frame B as a quaternion is the Hamilton quaternion that rotates vectors of B into
-// A: with A the lab and B the body, that is lab_from_body. Checked against the two GMAT files that
-// hold the same attitude as quaternions and as Euler angles.
+// (2024), section 4. Version 2 has neither ATTITUDE_DIR nor QUATERNION_TYPE: the attitude is from A
+// to B, with the scalar last. For types with derivatives only the attitude is read; for ANGVEL the
+// rate is read too.
+//
+// The quaternion of an attitude from frame A to frame B is the Hamilton quaternion that rotates
+// vectors of B into A. With A the lab and B the body, this is lab_from_body. Checked with two GMAT
+// files that contain one attitude as quaternions and as Euler angles.
 
 struct AttitudeEphemeris {
   struct Row {
@@ -32,8 +34,8 @@ struct AttitudeEphemeris {
     std::string time_system = "UTC";
     std::string start_time, stop_time;
     std::string useable_start_time, useable_stop_time;  // empty: not given
-    std::string attitude_type = "QUATERNION";           // or others of the books
-    std::string quaternion_type;                        // FIRST or LAST: where the scalar is
+    std::string attitude_type = "QUATERNION";           // or another type of the books
+    std::string quaternion_type;                        // FIRST or LAST: position of the scalar
     std::string euler_rot_seq;                          // "321" or "ZYX": axes in order of rotation
     std::string rate_frame, angvel_frame;               // of rates: version 1, version 2
     std::string interpolation_method, interpolation_degree;
@@ -46,8 +48,8 @@ struct AttitudeEphemeris {
       // Rate of B with respect to A, in axes of B; only with ANGVEL.
       std::optional<Vec3> rate_rad_s = {};
     };
-    // The rows as attitudes. InputError when the type is another, an epoch is no calendar time, or
-    // a quaternion is not of unit norm to 1 %.
+    // The rows as attitudes. InputError for an unknown type, an epoch that is no calendar time, or
+    // a quaternion whose norm differs from one by more than 1 %.
     std::vector<Sample> attitudes() const;
   };
   std::string version = "1.0";
@@ -56,30 +58,29 @@ struct AttitudeEphemeris {
   std::vector<Segment> segments;
 };
 
-// Whether a frame is one of the body or of what is fixed to it.
+// Whether a frame is that of the body or of a part of it.
 bool is_body_frame(const std::string& frame);
 
-// The attitude of the body of a message over the time since its first row.
+// The attitude of the body of a message as a function of the time since its first row.
 struct AemAttitude {
   double time_s;
-  Quat lab_from_body;  // the lab is the frame that is no body's (REF_FRAME_A where both are alike)
+  Quat lab_from_body;  // lab: the frame that is not a body frame; A if both or none are
   std::optional<Vec3> rate_body_rad_s;
   int line;  // in the file
 };
-// The rows of all segments in their order. InputError as of read_aem() and Segment::attitudes(),
-// and for segments of several objects.
+// The rows of all segments in their order. InputError as read_aem() and Segment::attitudes(), and
+// for segments of several objects.
 std::vector<AemAttitude> aem_attitudes(const std::filesystem::path& path);
 std::vector<AemAttitude> aem_attitudes(const AttitudeEphemeris& aem,
                                        const std::filesystem::path& path);
 
-// InputError for files that are no AEM, lack a keyword that the book requires, or hold rows of the
-// wrong length.
+// InputError for a file that is no AEM, lacks a required keyword, or has a row of the wrong length.
 AttitudeEphemeris read_aem(const std::filesystem::path& path);
 KvnItem to_kvn(const AttitudeEphemeris& aem);
 void write_aem(const std::filesystem::path& path, const AttitudeEphemeris& aem);
 
-// One segment of quaternions, scalar last, from a propagated platform: `epoch` is the calendar time
-// of t = 0. InputError when it is none.
+// One segment of quaternions, scalar last, from a propagated platform. `epoch` is the calendar time
+// of t = 0; InputError if it is no calendar time.
 AttitudeEphemeris make_aem(const std::vector<PlatformState>& states, const std::string& epoch,
                            const std::string& object_name, const std::string& creation_date);
 

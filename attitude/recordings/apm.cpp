@@ -43,7 +43,7 @@ class ApmReader {
     return {{path_.string(), at.line}, key, found, expected};
   }
 
-  // A block of that name; in version 1 the message itself, if it has the keyword.
+  // A block of that name. In version 1 the message itself, if it has the keyword.
   const KvnItem* block(const char* name, const char* keyword) const {
     for (const KvnItem& item : message_.items) {
       if (item.kind == KvnItem::Kind::block && item.key == name) return &item;
@@ -110,7 +110,7 @@ class ApmReader {
     return {is_from_body, lab.value};
   }
 
-  // The attitude for a rotation from A to B, or back.
+  // The attitude from a rotation from A to B or from B to A.
   static Quat lab_from_body(const Quat& a_from_b, const Frames& between) {
     return between.is_from_body ? a_from_b.conjugate() : a_from_b;
   }
@@ -141,7 +141,7 @@ class ApmReader {
     return lab_from_body(is_backwards(in, {"Q_DIR"}) ? q.conjugate() : q, between);
   }
 
-  // Axes of the rotations in turn, each about the axes as the ones before left them.
+  // Axes of the successive rotations, each in the frame that the previous rotations rotated.
   struct Euler {
     std::array<Vec3, 3> axes;
     std::array<double, 3> angles_rad;
@@ -175,7 +175,7 @@ class ApmReader {
       if (!euler.is_version_1) {
         angle = &required(in, {of_version_2[i]});
       } else {
-        // An axis that comes again has its second angle further down.
+        // If an axis occurs twice, its second angle is further down.
         const char* name = of_version_1[static_cast<size_t>(places[i])];
         int skip = i == 2 && places[2] == places[0] ? 1 : 0;
         for (const KvnItem& item : in.items) {

@@ -27,8 +27,8 @@ double middle_of(Iterator first, Iterator last) {
   return *middle;
 }
 
-// Standard deviation of white noise from third differences, whose variance is 20 times its own and
-// which smooth motion hardly enters.
+// Standard deviation of white noise from third differences. Their variance is 20 times that of the
+// noise, and smooth motion hardly contributes.
 double noise_level(const std::vector<double>& x) {
   std::vector<double> size;
   for (size_t i = 3; i < x.size(); ++i) {
@@ -38,8 +38,8 @@ double noise_level(const std::vector<double>& x) {
   return sigma_per_mad * middle_of(size.begin(), size.end()) / std::sqrt(20.0);
 }
 
-// Deviation of a value from the parabola through the three before it (direction −1) or after it
-// (+1): a spike is off from both by the same, a step from one only. NaN near gaps and ends.
+// Deviation of a value from the parabola through the three values before it (direction −1) or after
+// it (+1). A spike deviates equally from both, a step from only one. NaN near gaps and ends.
 double off_parabola(const std::vector<double>& x, size_t i, int direction) {
   const auto at = [&](int steps) {
     const auto j = static_cast<std::ptrdiff_t>(i) + direction * steps;
@@ -49,14 +49,14 @@ double off_parabola(const std::vector<double>& x, size_t i, int direction) {
   return at(0) - 3 * at(1) + 3 * at(2) - at(3);
 }
 
-// Stands out from smooth motion, however fast.
+// Whether a value is a spike in smooth motion of any rate.
 bool stands_out_of_motion(const std::vector<double>& x, size_t i, double noise) {
   constexpr size_t reach = 10;
   constexpr double threshold = 6.0;
   const double before = off_parabola(x, i, -1), after = off_parabola(x, i, +1);
   const double off = before * after > 0.0 ? std::min(std::abs(before), std::abs(after)) : 0.0;
   if (!(off > threshold * std::sqrt(20.0) * noise)) return false;
-  // The deviation of a rough motion from the parabolas; it is no evidence of an outlier.
+  // The deviations of a rough motion from its parabolas are no evidence of outliers.
   std::array<double, 2 * reach + 1> rough{};
   size_t count = 0;
   for (size_t j = i - std::min(i, reach); j < std::min(x.size(), i + reach + 1); ++j) {
@@ -67,7 +67,7 @@ bool stands_out_of_motion(const std::vector<double>& x, size_t i, double noise) 
   return off > threshold * sigma_per_mad * middle_of(rough.begin(), end);
 }
 
-// Stands out from its six neighbours, which hardly move; finds pairs, too.
+// Whether a value is far from its six neighbours while they hardly move. Finds pairs, too.
 bool stands_out_of_rest(const std::vector<double>& x, size_t i, double noise) {
   constexpr size_t reach = 3;
   constexpr double threshold = 12.0;
@@ -86,7 +86,7 @@ bool stands_out_of_rest(const std::vector<double>& x, size_t i, double noise) {
   return off > threshold * sigma_per_mad * middle_of(neighbours.begin(), end);
 }
 
-// Rows whose value stands out; `x` may hold NaN.
+// Rows with outliers; `x` may contain NaN.
 std::vector<size_t> outlying_rows(const std::vector<double>& x) {
   const double noise = noise_level(x);
   std::vector<size_t> rows;
@@ -97,13 +97,13 @@ std::vector<size_t> outlying_rows(const std::vector<double>& x) {
   return rows;
 }
 
-// A sensor that stands still: it is at the end of its range, or repeats what it read last.
+// Constant readings of a sensor at the end of its range, or of one that repeats its last reading.
 struct Stuck {
-  static constexpr size_t least = 5;         // equal readings in a row
+  static constexpr size_t least = 5;         // minimum number of equal successive readings
   std::vector<bool> is_stuck;                // by row
   size_t readings = 0, stuck = 0, ties = 0;  // ties: equal neighbours outside
-  size_t turns = 0, differences = 0;         // of third differences outside: changes of sign
-  double noise = 0.0;                        // outside
+  size_t turns = 0, differences = 0;         // sign changes and number of third differences outside
+  double noise = 0.0;                        // standard deviation outside
   double least_step = std::numeric_limits<double>::infinity();  // between neighbours outside
 
   explicit Stuck(const std::vector<double>& x) : is_stuck(x.size(), false) {
@@ -136,9 +136,9 @@ struct Stuck {
     }
   }
 
-  // White noise, as fine as hardly ever to repeat itself by chance: third differences of it change
-  // their sign three times in four, those of a smooth motion without noise next to never. Rounding
-  // of the numbers makes noise too, but no more than its own steps.
+  // Whether the channel has white noise that is so fine that equal readings are rare. The third
+  // differences of white noise change their sign in three of four cases, those of a smooth motion
+  // almost never. Rounding of the numbers makes noise too, but not more than its steps.
   bool has_fine_noise() const {
     constexpr size_t enough = 50;
     return noise > 2.0 * least_step && differences >= enough && 2 * turns > differences &&
@@ -147,8 +147,8 @@ struct Stuck {
   bool never_moves() const { return readings > 0 && stuck == readings; }
 };
 
-// Rows whose readings are stuck, and their neighbours. Between saturated readings only those occur
-// that the noise shifts into the range of the sensor, so that they are biased.
+// Rows whose readings are stuck, and their neighbours. Readings between saturated ones occur only
+// if the noise moves them into the range of the sensor, so they are biased.
 std::vector<size_t> stuck_rows(const std::vector<double>& x, const Stuck& found) {
   std::vector<size_t> rows;
   for (size_t i = 0; i < x.size(); ++i) {
@@ -183,7 +183,7 @@ void repair_quaternions(Recording& recording) {
       along += now[k] * before[k];
     }
     if (std::isnan(square)) {
-      // Three components without the fourth do not determine an attitude safely.
+      // Three components do not determine the attitude reliably.
       for (Channel* channel : q) channel->values[i] = empty_cell;
       continue;
     }
@@ -219,7 +219,7 @@ void remove_outliers(Recording& recording) {
       std::any_of(stuck.begin(), stuck.end(), [](const Stuck& s) { return s.has_fine_noise(); });
   for (size_t k = 0; k < gyro.size(); ++k) {
     const std::vector<double>& x = gyro[k]->values;
-    // An axis that the instrument does not have reads 0 throughout.
+    // An axis that the instrument does not have is zero in all rows.
     const bool is_pinned = has_noise && stuck[k].never_moves() && x.front() != 0.0;
     if (!is_pinned && !stuck[k].has_fine_noise()) continue;
     for (const size_t row : stuck_rows(x, stuck[k])) empty(*gyro[k], row);
@@ -227,7 +227,7 @@ void remove_outliers(Recording& recording) {
   for (Channel* channel : gyro) {
     for (const size_t row : outlying_rows(channel->values)) empty(*channel, row);
   }
-  // A quaternion is right or wrong as a whole.
+  // The components of a quaternion are emptied together.
   const std::array<Channel*, 4> q = quaternion_channels(recording);
   if (!complete(q)) return;
   std::vector<size_t> rows;

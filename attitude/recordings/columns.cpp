@@ -99,7 +99,7 @@ constexpr std::array<ChannelTraits, channel_count> all_traits = {{
 double of_attitude(Scalar scalar, const Quat& q) {
   switch (scalar) {
     case Scalar::tilt:
-      // sin(tilt/2)² = x² + y²: exact near zero, where the cosine of the tilt is blind.
+      // sin(tilt/2)² = x² + y²: accurate near zero, where the cosine of the tilt is not.
       return 2.0 * std::atan2(std::hypot(q.x(), q.y()), std::hypot(q.w(), q.z()));
     case Scalar::roll:
       return angles_of_attitude("zyx", q)[0];
@@ -134,7 +134,7 @@ ScalarReading scalar_reading(Scalar scalar, const Quat& lab_from_body,
     return reading;
   }
   reading.value = of_attitude(scalar, lab_from_body);
-  constexpr double step_rad = 1e-5;  // central: good to 1e-10
+  constexpr double step_rad = 1e-5;  // central differences, accurate to 1e-10
   for (int k = 0; k < 3; ++k) {
     const double after = of_attitude(scalar, turn_by(step_rad * Vec3::Unit(k)) * lab_from_body),
                  before = of_attitude(scalar, turn_by(-step_rad * Vec3::Unit(k)) * lab_from_body);
@@ -156,7 +156,7 @@ constexpr const char* schedule_names[] = {
     "command_y_N",   "command_body_x_N", "command_body_y_N",  "wheel_x_rad_s",
     "wheel_y_rad_s", "wheel_z_rad_s",    "battery_current_A", "led_current_A"};
 
-// 0, 1 or 2: x, y or z.
+// Index of the axis: 0, 1 or 2 for x, y or z.
 size_t index_of(const Vec3& axis) {
   Eigen::Index k = 0;
   axis.cwiseAbs().maxCoeff(&k);
@@ -171,7 +171,7 @@ double cell(const Channel* channel, size_t row) {
 
 namespace {
 
-// The columns of a recording in words, and which of them lack no more than a unit.
+// The names of the columns as text, with a hint if one of them lacks only its unit.
 std::string columns_in_words(const Recording& recording) {
   constexpr size_t most = 6;
   std::string names, bare;
@@ -210,7 +210,7 @@ MotionColumns::MotionColumns(const Recording& recording, const Platform& platfor
   }
   const bool one_axis = platform.turns_about_one_axis();
   for (size_t k = 0; k < 3; ++k) {
-    // About one axis alone the other two read nothing of the motion.
+    // For a platform with one axis, the other two axes do not measure the motion.
     if (!one_axis || k == index_of(platform.axis)) gyro_[k] = take(gyro_names[k]);
   }
   const bool any_q = std::any_of(std::begin(quaternion_names), std::end(quaternion_names),
@@ -256,7 +256,7 @@ MotionColumns::MotionColumns(const Recording& recording, const Platform& platfor
                          "diagnose --guess writes");
 }
 
-// A single number beside a whole attitude or three rates contains nothing new.
+// Takes scalars. Those that a complete attitude or three rates already contain are left out.
 void MotionColumns::take_scalars() {
   const auto put = [&](Scalar scalar, const char* column) {
     const Channel*& place = scalars_[static_cast<size_t>(scalar)];

@@ -77,7 +77,7 @@ class Parser {
       fill(inner, depth + 1);
       return inner;
     }
-    // Rows of an OEM follow its metadata without a block; they begin with the year of an epoch.
+    // Rows of an OEM follow its metadata without a block. They start with the year of an epoch.
     const bool is_row = line.front() >= '0' && line.front() <= '9';
     if (block.key.empty() && !is_row) throw error(in_quotes(line), "a keyword = value");
     return located(kvn_data(std::string(line)));
@@ -160,7 +160,7 @@ std::vector<double> kvn_numbers(const std::vector<std::string_view>& words, size
 
 namespace {
 
-// The first line that is not empty and no comment, without a byte-order mark; empty where the file
+// The first line that is neither empty nor a comment, without a byte-order mark; empty if the file
 // cannot be read.
 std::string first_words(const std::filesystem::path& path) {
   constexpr int first_lines = 100;
@@ -172,7 +172,7 @@ std::string first_words(const std::filesystem::path& path) {
       if (!words.empty() && !words.starts_with(comment)) return std::string(words);
     }
   } catch (const InputError&) {
-    // Its reader reports its errors.
+    // The reader of the file reports its errors.
   }
   return "";
 }

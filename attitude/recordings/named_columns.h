@@ -1,4 +1,4 @@
-// The columns that [recording] columns names, and whole texts, for recordings of any kind.
+// Columns that [recording] names, and whole texts, for recordings of all kinds.
 #pragma once
 
 #include <filesystem>
@@ -16,11 +16,12 @@ namespace photorque {
 std::string whole_text(const std::filesystem::path& path,
                        const std::vector<std::string>& header = {});
 
-// A cell of a header as UTF-8: bytes that are none are of Latin-1, as of "Winkel [\xb0]".
+// A cell of a header as UTF-8. If it is not valid UTF-8, its bytes are read as Latin-1, as in
+// "Winkel [\xb0]".
 std::string header_cell_text(std::string_view cell);
 
-// InputError for a column that [recording] names and that all of these sets contain: the names that
-// a recording lacks, a set for each. Misspelt, it would be read over.
+// InputError for a column that [recording] names but no recording has, for example due to a
+// spelling error. `absent_columns`: a set of absent names for each recording.
 void refuse_absent_columns(const Settings& recording,
                            const std::vector<std::set<std::string>>& absent_columns);
 

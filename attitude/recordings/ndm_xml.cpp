@@ -11,8 +11,8 @@
 namespace photorque {
 namespace {
 
-// Elements of a row whose order KVN fixes and XML does not: epoch, scalar last. All others follow
-// in the order of the file.
+// Position of an element in a row. KVN has a fixed order, with the epoch first and the scalar last;
+// XML has not. Other elements follow in the order of the file.
 size_t place_of(const std::string& element) {
   constexpr std::array first = {"EPOCH",  "Q1",     "Q2",     "Q3",     "QC",     "Q1_DOT",
                                 "Q2_DOT", "Q3_DOT", "QC_DOT", "X",      "Y",      "Z",
@@ -20,8 +20,8 @@ size_t place_of(const std::string& element) {
   return static_cast<size_t>(std::ranges::find(first, element) - first.begin());
 }
 
-// Elements of the data of attitude parameters, and the block of KVN that holds the same. Those of
-// the angular velocity and of version 1 are named otherwise.
+// Elements of the data of attitude parameters, and the equivalent blocks of KVN. The names of the
+// angular velocity and of version 1 differ.
 constexpr std::array<std::array<const char*, 2>, 7> parameter_blocks = {
     {{"quaternionState", "QUAT"},
      {"eulerAngleState", "EULER"},
@@ -90,7 +90,7 @@ class XmlMessage {
   void add_assignments(const pugi::xml_node& parent, KvnItem& block) const {
     for (const pugi::xml_node& node : parent.children()) {
       const std::string name = node.name();
-      // Rows have the scalar last, in any file.
+      // Rows have the scalar last in any file, so QUATERNION_TYPE is left out.
       if (node.type() != pugi::node_element || name == "QUATERNION_TYPE") continue;
       KvnItem item = name == "COMMENT" ? kvn_comment(node.child_value())
                                        : kvn_assignment(name, node.child_value());
@@ -99,7 +99,7 @@ class XmlMessage {
     }
   }
 
-  // The elements without elements below `node`, in the order of the file; no comments.
+  // The elements below `node` without child elements, in the order of the file, without comments.
   static std::vector<pugi::xml_node> leaves_of(const pugi::xml_node& node) {
     std::vector<pugi::xml_node> leaves;
     const auto gather = [&leaves](const auto& self, const pugi::xml_node& at, int depth) -> void {
@@ -130,7 +130,7 @@ class XmlMessage {
     }
   }
 
-  // Version 1 names the angles and rates of a rotation in an attribute.
+  // In version 1, an attribute names the angles and rates of a rotation.
   KvnItem assignment_of(const pugi::xml_node& leaf) const {
     std::string name = leaf.name();
     for (const char* attribute : {"angle", "rate"}) {

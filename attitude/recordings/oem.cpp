@@ -15,7 +15,7 @@ namespace {
 
 constexpr double km_m = 1e3;
 constexpr double least_distance_m = 6371.2e3;
-constexpr double beside_s = 60.0;         // that the ends of an ephemeris reach further
+constexpr double beside_s = 60.0;         // permitted extrapolation at the ends of an ephemeris
 constexpr double max_uncertainty = 1e-3;  // of the interpolation, relative to the distance
 constexpr double same_instant_s = 1e-3;
 
@@ -97,7 +97,7 @@ struct OrbitEphemeris::Reader {
     return *time;
   }
 
-  // All segments must have equal frames.
+  // Checks that all segments have equal frames, time systems and objects.
   void read_frame(const KvnItem& meta) {
     const std::string centre = required(meta, "CENTER_NAME");
     if (upper(centre) != "EARTH") {
@@ -172,7 +172,7 @@ struct OrbitEphemeris::Reader {
     return state;
   }
 
-  // The polynomial through `count` states around the interval behind states[i].
+  // The polynomial through `count` states around the interval after states[i].
   static Piece piece_at(const std::vector<State>& states, size_t i, const Method& method,
                         size_t count) {
     count = std::min(count, states.size());
@@ -187,7 +187,7 @@ struct OrbitEphemeris::Reader {
         velocities.push_back(states[k].velocity_m_s);
       }
     }
-    // Divided differences; of a node with itself it is the velocity.
+    // Divided differences. That of a node with itself is the velocity.
     const std::vector<double>& x = piece.nodes_s;
     for (size_t order = 1; order < x.size(); ++order) {
       for (size_t k = x.size(); k-- > order;) {
@@ -199,7 +199,7 @@ struct OrbitEphemeris::Reader {
     return piece;
   }
 
-  // Compares with the polynomial of one state less, or one more where there are few.
+  // Compares with the polynomial of one state less, or of one more for few states.
   void check_accuracy(const std::vector<State>& states, size_t i, const Method& method,
                       const Piece& piece) const {
     const size_t other = method.states > 3 ? method.states - 1 : method.states + 1;
@@ -249,7 +249,7 @@ struct OrbitEphemeris::Reader {
                       " s after the end of the one before",
                   "segments without a gap");
     }
-    // The later segment counts where two overlap.
+    // Where two segments overlap, the later one is used.
     while (!pieces.empty() && pieces.back().from_s >= from_s) pieces.pop_back();
     if (!pieces.empty()) pieces.back().to_s = std::min(pieces.back().to_s, from_s);
     for (size_t i = 0; i + 1 < states.size(); ++i) {
@@ -290,7 +290,7 @@ struct OrbitEphemeris::Reader {
     finish();
   }
 
-  // Times count from the first usable instant.
+  // Converts times to those since the first usable time.
   void finish() {
     const double shift_s = into.pieces_.front().from_s;
     for (Piece& piece : into.pieces_) {

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::string_view old_yaw = "heading_rad", new_yaw = "yaw_rad";
 
-// The contract's channels. A header may name them in another unit of the same kind.
+// The known channels. A header may name them in another unit of the same kind.
 constexpr std::string_view known_channels[] = {
     "t_s",
     "gyro_x_rad_s",
@@ -69,7 +69,7 @@ std::optional<double> to_number(std::string_view cell) {
   return number_in(cell);
 }
 
-// "0,25": a number with a decimal comma.
+// The number "0,25" with a decimal comma.
 std::optional<double> with_decimal_comma(std::string_view cell) {
   const size_t comma = cell.find(',');
   if (comma == std::string_view::npos) return std::nullopt;
@@ -78,13 +78,13 @@ std::optional<double> with_decimal_comma(std::string_view cell) {
   return number_in(with_point);
 }
 
-// One column of the file: the channel it fills and the factor to SI.
+// One column of the file: its channel and the factor to SI.
 struct FileColumn {
   std::string name;
   double to_SI = 1.0;
 };
 
-// Found once: a preamble may have a million cells that could be names.
+// Computed once, because a preamble may have a million cells that could be names.
 const std::vector<KeyUnit>& units_of_known_channels() {
   static const std::vector<KeyUnit> units = [] {
     std::vector<KeyUnit> all;
@@ -139,7 +139,7 @@ class RecordingReader {
     return {{path_.string(), static_cast<int>(lines_.number())}, key, found, expected};
   }
 
-  // An AEM: attitudes, and rates where it has any.
+  // Reads an AEM: attitudes, and rates if it has any.
   void take_attitudes() {
     const std::vector<AemAttitude> attitudes = aem_attitudes(path_);
     for (const auto& [channel, written] : options_.columns) {
@@ -164,7 +164,7 @@ class RecordingReader {
     }
   }
 
-  // False for a row whose time does not rise.
+  // Appends the time of a row; false if it does not increase.
   bool take_time(double time_s, int64_t line) {
     RecordingReport& report = recording_.report;
     if (!recording_.time_s.empty() && time_s <= recording_.time_s.back()) {
@@ -246,8 +246,8 @@ class RecordingReader {
     return true;
   }
 
-  // A motion has a yaw, of body x; its old name is that of the direction of the lean, which a
-  // column beside a yaw is.
+  // The former name of the yaw of body x is "heading". A column of this name is the yaw unless the
+  // file has a yaw too. It is then the direction of the tilt.
   void take_old_names() {
     if (std::ranges::find(columns_, new_yaw, &FileColumn::name) != columns_.end()) return;
     const auto column = std::ranges::find(columns_, old_yaw, &FileColumn::name);
@@ -316,7 +316,7 @@ class RecordingReader {
     return number;
   }
 
-  // A few damaged rows are left out; where most are, something else is wrong with the file.
+  // A few damaged rows are left out. If most rows are damaged, the file is not valid.
   void require_mostly_whole() const {
     const RecordingReport& report = recording_.report;
     if (first_malformed_ && report.malformed_rows > report.rows_kept) throw *first_malformed_;
@@ -325,8 +325,8 @@ class RecordingReader {
     }
   }
 
-  // A place that turns about a pivot: an angle in place of its coordinates. Zero is the vertical on
-  // the side of the readings: in pictures y often points down.
+  // Converts a position that rotates about a pivot to an angle. Zero is the vertical on the side of
+  // the readings, because y often points down in pictures.
   void read_as_angle(const std::array<double, 2>& pivot_m) {
     const auto x_at = std::ranges::find(recording_.channels, "x_m", &Channel::name),
                y_at = std::ranges::find(recording_.channels, "y_m", &Channel::name);
@@ -370,7 +370,7 @@ class RecordingReader {
           std::to_string(report.rows_kept) + " usable rows of " + std::to_string(report.rows_read),
           "at least two");
     }
-    constexpr double longest_s = 1e10;  // 300 years: such a column holds another unit
+    constexpr double longest_s = 1e10;  // 300 years: such a column has another unit
     const double first_s = recording_.time_s.front(), last_s = recording_.time_s.back();
     if (!(last_s - first_s <= longest_s)) {
       throw error("t_s", "times from " + shortest(first_s) + " to " + shortest(last_s) + " s",
@@ -422,7 +422,7 @@ Schedule Recording::schedule() const {
   const std::vector<WheelSpeeds> knots = wheel_speeds(*this);
   size_t next = 0;
   ZeroOrderHold held;
-  // Before its first knot, the speed of a wheel is on the line of its first interval.
+  // Before the first knot, the speed of a wheel is on the line of its first interval.
   if (!knots.empty()) held.wheel = knots.front();
   // An empty cell keeps the previous value.
   const auto update = [](const Channel* channel, size_t row, double& value) {
@@ -448,7 +448,7 @@ Recording read_recording(const std::filesystem::path& path, const RecordingOptio
 
 std::string header_cell_text(std::string_view cell) {
   std::string latin;
-  int following = 0;  // bytes of a character of UTF-8
+  int following = 0;  // remaining bytes of a UTF-8 character
   bool is_utf8 = true;
   for (const char c : cell) {
     const auto byte = static_cast<unsigned char>(c);
@@ -478,7 +478,7 @@ std::string whole_text(const std::filesystem::path& path, const std::vector<std:
 Schedule read_command_file(const std::filesystem::path& path) {
   const Recording recording = read_recording(path);
   const RecordingReport& report = recording.report;
-  // A recording with an attitude may have faults of its clock, and is read as one.
+  // A recording with an attitude may have faults of its clock and is read like a recording.
   const bool has_quaternion = recording.find("q_w") != nullptr;
   if (!has_quaternion && report.backward_times + report.repeated_times > 0) {
     const int64_t line = report.backward_times == 0 ? report.first_repeated_line
@@ -585,7 +585,7 @@ std::vector<WheelSpeeds> wheel_speeds(const Recording& recording) {
         sum += wheel[k]->values[i];
         count += 1.0;
       }
-      // A block without a reading goes on as the one before it.
+      // A block without a reading keeps the speed of the previous one.
       const double before = knots.empty() ? 0.0 : knots.back().speed_rad_s[k];
       knot.speed_rad_s[k] = count > 0.0 ? sum / count : before;
     }

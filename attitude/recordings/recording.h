@@ -1,8 +1,8 @@
 // Recordings: readings of a real or a simulated laboratory.
 //
-// CSV with a header that names channel and unit (also .csv.gz). Real files have a preamble, gaps,
-// repeated and jittered times, outliers and flipped quaternions: the reader repairs what can be
-// repaired, leaves out what cannot, and counts all of it.
+// A CSV with a header that names channels and units (also .csv.gz). Real files have a preamble,
+// gaps, repeated and jittered times, outliers and quaternions with flipped signs. The reader
+// repairs what is possible, leaves out the rest, and counts all of it.
 #pragma once
 
 #include <array>
@@ -26,10 +26,10 @@ inline constexpr double empty_cell = std::numeric_limits<double>::quiet_NaN();
 
 struct Channel {
   std::string name;            // ends in its SI unit: "gyro_x_rad_s"
-  std::vector<double> values;  // one per row; NaN where the cell is empty
+  std::vector<double> values;  // one per row; NaN: empty
 };
 
-// Findings of the reader. Counts are of rows unless said otherwise.
+// Findings of the reader. Counts are numbers of rows unless stated otherwise.
 struct RecordingReport {
   int64_t rows_read = 0;  // data rows in the file
   int64_t rows_kept = 0;
@@ -41,7 +41,7 @@ struct RecordingReport {
   int64_t first_backward_line = 0;
   int64_t first_repeated_line = 0;
   int64_t empty_cells = 0;          // cells
-  int64_t unreadable_cells = 0;     // cells that hold no number: emptied
+  int64_t unreadable_cells = 0;     // cells without a number: emptied
   int64_t outlier_cells = 0;        // cells of measured channels: emptied
   int64_t bad_quaternions = 0;      // of a norm that is not 1 to 1 %: emptied
   int64_t flipped_quaternions = 0;  // sign changes undone
@@ -54,31 +54,31 @@ struct RecordingReport {
   std::map<std::string, int64_t> outliers;  // cells by channel
   bool has_decimal_commas = false;          // "0,25" between other separators, read as 0.25
   bool has_old_yaw = false;                 // a column named heading, read as yaw
-  std::set<std::string> absent_columns;     // that the options name and the file has not
+  std::set<std::string> absent_columns;     // named by the options, not in the file
 
-  // The report in a few lines; only what occurred.
+  // The report in a few lines, with only the findings that occurred.
   std::string text() const;
 };
 
 struct Recording {
-  std::vector<double> time_s;  // rises strictly
+  std::vector<double> time_s;  // strictly increasing
   std::vector<Channel> channels;
   RecordingReport report;
-  // In which roll, pitch and yaw are turned ("zyx": q = Rz(yaw) Ry(pitch) Rx(roll)); empty where
-  // not stated.
+  // Sequence of roll, pitch and yaw ("zyx": q = Rz(yaw) Ry(pitch) Rx(roll)); empty: not stated.
   std::string angle_sequence = {};
 
-  // Null when there is no such channel.
+  // Null if there is no such channel.
   const Channel* find(std::string_view name) const;
   size_t rows() const { return time_s.size(); }
 
-  // The recorded commands and battery current, each held until the next row (zero-order hold).
+  // The recorded commands, battery current and wheel speeds, each held until the next row
+  // (zero-order hold; wheel speeds are piecewise linear).
   Schedule schedule() const;
 };
 
 struct RecordingOptions {
-  // Names in the file by the channel they stand for: {"gyro_x_rad_s", "wx"}. A channel may be named
-  // in another unit of its kind ("gyro_x_deg_s"); it is converted and renamed.
+  // Names in the file by channel: {"gyro_x_rad_s", "wx"}. A channel may have another unit of its
+  // kind ("gyro_x_deg_s"); it is converted and renamed.
   std::map<std::string, std::string> columns = {};
   std::vector<std::string> header = {};  // names of the columns of a file without a header
   // Rows per second of a file without a time. A row's time is its number, or its value in the
@@ -86,41 +86,42 @@ struct RecordingOptions {
   std::optional<double> rate_Hz = {};
   bool remove_outliers = true;
   std::string angle_sequence = {};  // of the recording
-  // A point about which x_m, y_m turns: they are read as one angle from the vertical through it.
+  // A point about which the position x_m, y_m rotates. The positions are then converted to one
+  // angle from the vertical through it.
   std::optional<std::array<double, 2>> pivot_m = {};
-  // Largest number of cells that are kept, times included (8 bytes each).
+  // Maximum number of stored cells, times included (8 bytes each).
   int64_t max_cells = 150'000'000;
 };
 // Reads [recording].
 RecordingOptions read_recording_options(const Settings& settings);
 
-// Throws InputError with file and line when the file cannot be read or decompressed, has no header
-// with t_s, no usable row, more cells than allowed, or mostly falling times.
+// Reads a recording. InputError with file and line if the file cannot be read or decompressed, has
+// no header with t_s, no usable row, more cells than allowed, or mostly decreasing times.
 Recording read_recording(const std::filesystem::path& path, const RecordingOptions& options = {});
 
-// InputError for a column that [recording] names and none of these recordings has: misspelt, it
-// would be read over.
+// InputError for a column that [recording] names but none of these recordings has, for example due
+// to a spelling error.
 void refuse_absent_columns(const Settings& settings, const std::vector<const Recording*>& of);
 
-// Reads a schedule of commands: like a recording, but times that do not rise are an error where
-// the file has no attitude, that is, no clock of an instrument.
+// Reads a schedule of commands from a file in the format of a recording. If it has no attitude,
+// that is, no clock of an instrument, times that do not increase are an InputError.
 Schedule read_command_file(const std::filesystem::path& path);
 
-// Writes the contract's CSV, compressed when the name ends in ".gz"; `preamble` lines are written
-// as comments. Numbers are written so that reading them gives the same bits.
+// Writes a recording as CSV, compressed if the name ends in ".gz". `preamble` lines are written as
+// comments. Reading the numbers again gives bitwise equal values.
 void write_recording(const std::filesystem::path& path, const Recording& recording,
                      const std::vector<std::string>& preamble = {});
 
-// The recorded current of a laboratory's lamps, as a schedule holds it.
-
-// Changes below a hundredth of the largest are noise, of which the mean is held: each change begins
-// a step of the propagation.
+// The recorded current of a laboratory's lamps for a schedule. Changes below a hundredth of the
+// largest current are treated as noise and replaced by their mean, because each change starts a
+// step of the propagation.
 class LampCurrent {
  public:
   // `channel`: `led_current_A`; null if the recording has none.
   explicit LampCurrent(const Channel* channel);
 
-  // Before the first reading as at it. Does nothing where no lamp shines.
+  // Writes the current of row `row` to `held`. Rows before the first reading have its value. No
+  // effect if no lamp is lit.
   void hold(size_t row, ZeroOrderHold& held) const;
 
  private:
@@ -129,13 +130,12 @@ class LampCurrent {
   bool is_lit_ = false;
 };
 
-// The measured speeds of wheels, as a schedule holds them.
-
-// Straight lines between means over neighbouring rows, so many that what lies between is straight,
-// and no more: each begins a step of the propagation. Of `wheel_x_rad_s` …; empty without any.
+// The measured speeds of wheels for a schedule, `wheel_x_rad_s` …: piecewise linear between means
+// over blocks of rows. There are at most 400 blocks, because each starts a step of the propagation.
+// Empty without such channels.
 std::vector<WheelSpeeds> wheel_speeds(const Recording& recording);
 
-// [recording] as it is declared.
+// The keys of [recording].
 Key recording_table();
 
 }  // namespace photorque

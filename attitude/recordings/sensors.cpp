@@ -64,7 +64,7 @@ constexpr ChoiceKey noise_is(
     0, "origin of the noise level");
 }  // namespace sensor_key
 
-// The errors that stand with an instrument as well as in [[disturbance]].
+// The errors of an instrument, which may be stated with it or in [[disturbance]].
 std::vector<Key> errors_of(const std::string& instrument) {
   std::vector<Key> keys;
   for (const DisturbanceKind& kind : disturbance_kinds()) {
@@ -89,7 +89,7 @@ Vec3 gaussian_vector(uint64_t seed, Stream stream, uint64_t index) {
           gaussian(seed, stream, index, 2)};
 }
 
-// The errors of an instrument, each switched on by the key that its kind screens.
+// Reads the errors of an instrument. Each is active if the first key of its kind is given.
 void read_errors(const Settings& settings, const DisturbanceContext& context,
                  const std::string& instrument, std::vector<Disturbance>& errors) {
   for (const DisturbanceKind& kind : disturbance_kinds()) {
@@ -202,7 +202,7 @@ Sensors read_sensors(const Settings& settings, const DisturbanceContext& context
     sensors.power.power_noise_W = s.get(sensor_key::power_noise);
   }
   sensors.noise_is_stated = settings.get(sensor_key::noise_is) == 1;
-  // Instruments of light are read with the light.
+  // Instruments of light are read by the light model; this marks them as read.
   for (const char* of_light : {"irradiance", "array"}) {
     if (settings.has(of_light)) settings.raw(of_light);
   }
@@ -216,10 +216,10 @@ void Recorder::put(const std::string& name, double value) {
   recording_.channels[column_++].values.push_back(value);
 }
 
-// A reading is due in the first row, and in every row that a multiple of the period falls in.
+// A reading is due in the first row, and in every row that contains a multiple of the period.
 bool Recorder::is_due(double rate_Hz, double time_s) const {
   if (rate_Hz == 0.0 || recording_.time_s.empty()) return true;
-  // Rows at the instrument's own rate must not miss a reading by rounding.
+  // Tolerance: with equal rates of rows and instrument, no reading may be missed by rounding.
   constexpr double slack = 1e-6;
   const double before = std::floor(recording_.time_s.back() * rate_Hz + slack);
   return std::floor(time_s * rate_Hz + slack) > before;
@@ -244,7 +244,7 @@ void Recorder::add_camera(const Truth& truth) {
     }
   }
   if (std::isfinite(seen.w())) {
-    // Trackers report one half of the sphere.
+    // Trackers report the quaternion with a positive scalar.
     if (seen.w() < 0.0) seen.coeffs() = -seen.coeffs();
   }
   put("q_w", seen.w());
@@ -281,7 +281,8 @@ void Recorder::add_place(const Truth& truth) {
   put("y_m", read(1));
   put("command_x_N", truth.command_lab_N.x());
   put("command_y_N", truth.command_lab_N.y());
-  // A velocity is written where its noise is stated: an instrument for places does not read it.
+  // A velocity is recorded only if its noise is stated, because a position instrument does not
+  // measure it.
   if (noise.noise_m_s > 0.0) {
     put("velocity_x_m_s", read(2));
     put("velocity_y_m_s", read(3));

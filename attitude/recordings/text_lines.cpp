@@ -14,8 +14,7 @@ namespace {
 
 constexpr size_t chunk = 1 << 16;
 constexpr size_t max_line_length = 1 << 20;
-constexpr std::string_view byte_order_mark =
-    "\xef\xbb\xbf";  // with which some programs begin UTF-8
+constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";  // some programs start UTF-8 with it
 
 }  // namespace
 
@@ -72,7 +71,7 @@ bool TextLines::fill() {
   const int got = gzread(file_->handle, buffer_.data() + had, chunk);
   int error = Z_OK;
   const char* message = gzerror(file_->handle, &error);
-  // Z_BUF_ERROR at the end means that a compressed file was cut off.
+  // Z_BUF_ERROR at the end means that a compressed file is truncated.
   if (got < 0 || error == Z_BUF_ERROR || error == Z_DATA_ERROR) {
     throw InputError({path_.string(), static_cast<int>(number_ + 1)}, "",
                      std::string("damaged compressed data (") + message + ")", "a whole file");

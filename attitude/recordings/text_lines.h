@@ -1,4 +1,4 @@
-// Lines of a text file that may be compressed and need not fit into memory.
+// Lines of a text file, which may be compressed and larger than the memory.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ class TextLines {
   // the file. The view is valid until the next call. InputError when the file is damaged or a
   // line is longer than a megabyte.
   bool next(std::string_view& line);
-  // 1-based number of the line that next() gave last.
+  // 1-based number of the line that next() returned last.
   int64_t number() const { return number_; }
 
  private:

@@ -14,10 +14,10 @@
 namespace photorque {
 namespace {
 
-// The paper's resolution of the centre of mass, section II.A.1.
+// The resolution of the centre of mass in the paper, section II.A.1.
 constexpr double published_resolution_m = 1.79e-7;
 
-// Index of the model's static unbalance; adds one of zero offset when there is none.
+// Index of the model's static unbalance. Adds one with zero offset if there is none.
 size_t unbalance_of(AttitudeModel& model) {
   for (size_t d = 0; d < model.disturbances.size(); ++d) {
     if (model.disturbances[d].kind == "static_unbalance") return d;
@@ -27,7 +27,7 @@ size_t unbalance_of(AttitudeModel& model) {
   return model.disturbances.size() - 1;
 }
 
-// The offset freely, and within their stated uncertainty all parameters that have one.
+// Free parameters: the offset without a prior, and all parameters with a stated uncertainty.
 Hypothesis hypothesis_of(const BalanceRun& run, const AttitudeModel& model, size_t unbalance,
                          const std::vector<Observation>& seen) {
   Hypothesis h = nominal_hypothesis({model, run.sensors}, seen);
@@ -36,7 +36,7 @@ Hypothesis hypothesis_of(const BalanceRun& run, const AttitudeModel& model, size
   return h;
 }
 
-// Windows that grow: a start that is far off is repaired before a long run can diverge from it.
+// Growing windows: a poor start is improved before a long run can diverge from it.
 FitSettings convergent_settings() {
   FitSettings settings;
   settings.windows = {0.02, 0.07, 0.25, 1.0};
@@ -61,7 +61,7 @@ void add_camera_residuals(const std::vector<Observation>& segments, BalanceResul
   }
 }
 
-// The recording between gaps, each segment with its own initial state.
+// The segments of the recording between gaps, each with a separate initial state.
 std::vector<Observation> segments_of(const BalanceRun& run) {
   std::vector<Observation> all =
       observe_segments(run.recording, "recording", run.model.platform, run.recording.rows()).all;
@@ -99,7 +99,7 @@ Vec3 distance_of_parts_m(const BalanceRun& run, const Fit& whole, size_t unbalan
   return has_any ? largest_m : Vec3::Constant(INFINITY);
 }
 
-// The fit again with its residual counted as noise.
+// A second fit, in which the residual of the first counts as noise.
 Fit fit_with_discrepancy(const Fit& fitted, std::vector<Observation> segments) {
   const NoiseLevels noise = with_discrepancy(residuals_of(fitted, segments), segments,
                                              segments.front().noise, Remainder::correlated);
@@ -107,8 +107,8 @@ Fit fit_with_discrepancy(const Fit& fitted, std::vector<Observation> segments) {
   return fit(fitted.best, segments, convergent_settings());
 }
 
-// Attitude and rate of the rows that have both; the rate from the gyro or from attitudes half an
-// interval before and after.
+// Attitude and rate of the rows that have both. The rate is that of the gyro, or the mean rate
+// between attitudes half an interval before and after.
 struct Row {
   double time_s;
   Quat lab_from_body;
@@ -148,7 +148,7 @@ class Rows {
   }
 
  private:
-  static constexpr double fastest_rad_s = 1e6;  // no platform holds together
+  static constexpr double fastest_rad_s = 1e6;  // no platform withstands this
 
   double value(size_t channel, size_t row) const { return channels_[channel]->values[row]; }
   Quat attitude(size_t row) const {
@@ -184,7 +184,7 @@ Vec3 offset_from_momentum_m(const Platform& platform, const Vec3& gravity_lab_m_
                             const Recording& recording, double interval_s) {
   const std::vector<Row> rows = Rows(recording).all(interval_s);
   const Mat3& inertia = platform.inertia_kg_m2;
-  // Unknowns: offset and a drag coefficient, so that drag is not taken for unbalance.
+  // Unknowns: the offset and a drag coefficient, so that drag is not attributed to the offset.
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();
   Eigen::Vector4d right = Eigen::Vector4d::Zero();
   int intervals = 0;
@@ -223,7 +223,7 @@ Vec3 offset_from_momentum_m(const Platform& platform, const Vec3& gravity_lab_m_
                          " intervals without a gap",
                      "at least three");
   }
-  // Along gravity the offset has no torque: a platform that stays level leaves it at zero.
+  // An offset along gravity has no torque. For a platform that stays level, its estimate is zero.
   const double smallest = 1e-12 * matrix.topLeftCorner<3, 3>().trace();
   matrix.diagonal().array() += smallest;
   const Eigen::Vector4d solution = matrix.ldlt().solve(right);
@@ -343,7 +343,7 @@ Product balance_product(const BalanceRun& run, const BalanceResult& result) {
   plot.name = "balance_residuals";
   plot.title = "Camera minus fitted trajectory, about lab axes";
   plot.x_label = "time [s]";
-  // More points would only cover each other.
+  // More points would hide each other.
   constexpr size_t max_points = 2000;
   const size_t rows = result.residual_time_s.size();
   const size_t every = rows / max_points + 1;

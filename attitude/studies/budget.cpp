@@ -61,8 +61,8 @@ constexpr TableKey budget("budget", "the state at which torques are compared");
 
 constexpr double minute_s = 60.0, hour_s = 3600.0, day_s = 86400.0;
 
-// The traits that the kind's file states; a disturbance made otherwise has neither figure nor
-// exception.
+// The traits in the file of the kind. A disturbance without a kind has neither a figure nor a
+// reason against ranking.
 BudgetTraits traits_of(const std::string& kind) {
   const DisturbanceKind* known = find_kind(kind);
   return known == nullptr ? BudgetTraits{} : known->budget;
@@ -135,13 +135,13 @@ std::vector<BearingDatasheet> read_catalogue(const Settings& settings) {
   return catalogue;
 }
 
-// Torques within a second.
+// Torques of one disturbance within a second.
 struct Acting {
   Vec3 largest_body_N_m = Vec3::Zero();
   Vec3 mean_body_N_m = Vec3::Zero();
 };
 
-// The command and all disturbances' torques at an instant, by disturbance, and their sum.
+// The torques of all disturbances at an instant, and the resulting acceleration.
 struct Snapshot {
   std::vector<Vec3> torques_body_N_m;
   Vec3 angular_acceleration_rad_s2;
@@ -159,7 +159,7 @@ Snapshot snapshot(const Dynamics& dynamics, const PlatformState& state) {
 }
 
 // A disturbance that changes the conditions of others (gravity, field, command, inertia) exerts no
-// torque. Its effect on theirs is I times the acceleration with it less that without it.
+// torque. Its effect is I times the difference of the accelerations with it and without it.
 Vec3 torque_by_conditions_body_N_m(const AttitudeModel& model, size_t d, const Snapshot& with,
                                    const PlatformState& state) {
   if (!model.disturbances[d].states.empty()) return Vec3::Zero();
@@ -170,10 +170,10 @@ Vec3 torque_by_conditions_body_N_m(const AttitudeModel& model, size_t d, const S
          (with.angular_acceleration_rad_s2 - rest.angular_acceleration_rad_s2);
 }
 
-// Every disturbance within the second that begins with `state`, attitude and rate held: what shakes
-// shows its amplitude, and what is steady is as it is.
+// The torques of all disturbances within the second after `state`, at constant attitude and rate. A
+// vibration has its amplitude, a steady torque its value.
 std::vector<Acting> acting_within_a_second(const AttitudeModel& model, const PlatformState& state) {
-  // A prime number: no whole frequency but its multiples falls between the instants.
+  // A prime number, so that only multiples of it are aliased among whole frequencies.
   constexpr int instants = 101;
   const Dynamics dynamics(model);
   std::vector<Acting> all(model.disturbances.size());
@@ -183,7 +183,7 @@ std::vector<Acting> acting_within_a_second(const AttitudeModel& model, const Pla
     Snapshot now = snapshot(dynamics, then);
     for (size_t d = 0; d < all.size(); ++d) {
       Vec3& torque_N_m = now.torques_body_N_m[d];
-      // Conditions that change within a second are none of ours.
+      // A condition is evaluated once: its changes within a second are not considered.
       if (model.disturbances[d].stage == Stage::conditions) {
         if (i > 0) continue;
         torque_N_m = torque_by_conditions_body_N_m(model, d, now, then);
@@ -205,7 +205,7 @@ std::vector<Acting> acting_within_a_second(const AttitudeModel& model, const Pla
   return all;
 }
 
-// Read again beside the disturbances made of them, which keep a coefficient alone.
+// Reads the parts a second time, because a disturbance contains only their coefficient.
 std::vector<AirPart> read_own_air_parts(const Settings& root) {
   std::vector<AirPart> all;
   if (!root.has("disturbance")) return all;
@@ -286,7 +286,7 @@ Plot tilt_plot(const Budget& budget) {
   for (int i = 0; i <= steps; ++i) {
     const double tilt_rad = limit_rad * i / steps;
     const Quat attitude = lab_from_body(tilt_rad, heading_rad);
-    // Appendages turn with the body at every tilt.
+    // Appendages rotate with the body at every tilt.
     PlatformState state = dynamics.initial_state(attitude.conjugate() * rate_lab_rad_s);
     state.lab_from_body = attitude;
     state.time_s = budget.state.time_s;

@@ -6,8 +6,7 @@ namespace photorque {
 
 namespace {
 
-// Copper, annealed: Young's modulus, density, resistivity at 20 °C (ASM Handbook vol. 2; IEC
-// 60028).
+// Annealed copper: Young's modulus, density, resistivity at 20 °C (ASM Handbook vol. 2; IEC 60028).
 constexpr double copper_modulus_Pa = 1.17e11;
 constexpr double copper_poisson = 0.34;
 constexpr double copper_density_kg_m3 = 8960.0;
@@ -28,7 +27,8 @@ double insulation_area_m2(const PowerCable& cable) {
   return outer - copper_area_m2(cable);
 }
 
-// Second moments of one wire: of its strands, each about its own axis, and of the tube around them.
+// Second moments of area of one wire: of its strands, each about its axis, and of the tube of
+// insulation.
 double strands_m4(const PowerCable& cable) {
   return cable.strands * pi / 64.0 * fourth(cable.strand_diameter_m);
 }

@@ -40,7 +40,7 @@ bool on_axis(const FromFilament& seen, double radius_m) {
 
 constexpr double scale_T_m_A = vacuum_permeability_N_A2 / (2.0 * pi);
 
-// A point of a circle, and the derivative of the point by the angle (a tangent of length radius).
+// A point of a circle, and its derivative with respect to the angle (a tangent of length radius).
 struct OnCircle {
   Vec3 point_m, tangent_m;  // d point / d angle
 };

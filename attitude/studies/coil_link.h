@@ -9,18 +9,18 @@
 
 namespace photorque {
 
-// Circular current filaments anywhere in space: field, mutual inductance, force and torque, by
-// complete elliptic integrals on one circle and quadrature round the other.
+// Circular current filaments anywhere in space: field, mutual inductance, force and torque.
+// Complete elliptic integrals are used for one circle and a quadrature for the other.
 //
 // Source of the field and the vector potential: W. R. Smythe, Static and Dynamic Electricity, 3rd
-// ed. (1968), sec. 7.10. The mutual inductance is the circulation of the potential, the one
-// integral of S. Babic and others, "Mutual inductance calculation between circular filaments
+// ed. (1968), sec. 7.10. The mutual inductance is the circulation of the potential. It is the
+// single integral of S. Babic and others, "Mutual inductance calculation between circular filaments
 // arbitrarily positioned in space: alternative to Grover's formula", IEEE Trans. Magn. 46 (2010)
-// 3591; coaxial circles have Maxwell's closed form (Treatise, art. 701). Thin wires in vacuum.
+// 3591. Coaxial circles have Maxwell's closed form (Treatise, art. 701). Thin wires in vacuum.
 
 struct CircularFilament {
   Vec3 centre_m = Vec3::Zero();
-  Vec3 normal = Vec3::UnitZ();  // unit; the current goes round it by the right hand
+  Vec3 normal = Vec3::UnitZ();  // unit; the current circulates by the right-hand rule
   double radius_m = 1.0;        // > 0
 };
 
@@ -59,7 +59,7 @@ double sphere_eddy_loss_W(double radius_m, double conductivity_S_m, double angul
 
 // Two resonant coils: inductances, maximum link efficiency, currents.
 
-// A flat spiral of stranded wire, its turns as circles evenly between two radii.
+// A flat spiral of stranded wire; its turns are circles at equal distances between two radii.
 struct SpiralCoil {
   double inner_radius_m = 0.05;
   double outer_radius_m = 0.06;
@@ -76,9 +76,9 @@ std::vector<CircularFilament> turns_of(const SpiralCoil& coil, const Vec3& centr
                                        const Vec3& normal);
 
 // Inductance of the coil: the mutual inductances of all pairs of turns and the self-inductance of
-// each turn, μ₀ r (ln(8 r/a) − 7/4) for a wire of radius a with its current spread over the section
-// (J. C. Maxwell, Treatise, art. 704; E. B. Rosa and F. W. Grover, Bull. Bur. Stand. 8 (1912) 1,
-// eq. 58). Strands fill half of the section.
+// each turn, μ₀ r (ln(8 r/a) − 7/4), for a wire of radius a with a uniform current density (J. C.
+// Maxwell, Treatise, art. 704; E. B. Rosa and F. W. Grover, Bull. Bur. Stand. 8 (1912) 1, eq. 58).
+// Strands fill half of the cross-section.
 double self_inductance_H(const SpiralCoil& coil);
 double resistance_ohm(const SpiralCoil& coil);
 

@@ -18,8 +18,8 @@ double aperture_transmission(const MicrowaveBeam& beam, double tilt_rad) {
   return -std::expm1(-tau2);
 }
 
-// The image turns the pair into sin(π/2 cos θ) in both planes; along the dipole its own pattern
-// stands before it.
+// With its image, the element has the factor sin(π/2 cos θ) in both planes. In the plane along the
+// dipole, the pattern of the dipole is another factor.
 double dipole_pattern_h(double tilt_rad) {
   const double pair = std::sin(0.5 * pi * std::cos(tilt_rad));
   return std::cos(tilt_rad) > 0.0 ? pair * pair : 0.0;
@@ -36,8 +36,9 @@ double element_capture(double pattern, double tilt_rad) {
   return cosine > 0.0 ? std::min(1.0, pattern / cosine) : 0.0;
 }
 
-// Absorbed power transfers its momentum, reflected power twice the part along the normal. Only the
-// force across the arm turns: of the first P/c sin θ, of the second nothing.
+// Absorbed power transfers its momentum; reflected power transfers twice the component along the
+// normal. Only a force perpendicular to the arm has a torque: P/c sin θ for absorbed power, zero
+// for reflected power.
 BeamPressure beam_pressure(double taken_W, double mirrored_W, double tilt_rad, double height_m) {
   const double cosine = std::cos(tilt_rad);
   BeamPressure pressure;

@@ -17,7 +17,7 @@ namespace photorque {
 
 namespace {
 
-// Figures that the paper gives.
+// Values that the paper states.
 constexpr double platform_mass_kg = 7.0;
 constexpr double one_rpm_rad_s = 2.0 * pi / 60.0;
 constexpr double limit_tilt_rad = 30.0 * degree_rad;
@@ -54,7 +54,7 @@ double disc_torque_as_published(const std::vector<AirPart>& plates) {
   return sum;
 }
 
-// Rate at which this much torque is reached [rpm].
+// Rate [rpm] at which the parts have this torque.
 double rate_for_torque_rpm(const std::vector<AirPart>& parts, double wanted_N_m) {
   const auto too_slow = [&](double rate_rad_s) {
     return torque_N_m(parts, rate_rad_s) < wanted_N_m;
@@ -67,15 +67,15 @@ std::vector<AirPart> joined(std::vector<AirPart> a, const std::vector<AirPart>& 
   return a;
 }
 
-// Year at which IGRF's dipole was as strong as the paper's [decimal year].
+// Decimal year at which the dipole of IGRF was as strong as the paper's.
 double year_of_dipole(double field_T) {
   const auto stronger = [&](double year) {
     return GeomagneticModel(year).dipole_equatorial_field_T() > field_T;
   };
-  return bisect(1900.0, 2025.0, stronger).low;  // it falls throughout
+  return bisect(1900.0, 2025.0, stronger).low;  // the field decreases during the whole interval
 }
 
-// The cylinders laid down as in eq. 22 has them, from the axis outwards.
+// The cylinders in the position of eq. 22: horizontal, from the axis outwards.
 std::vector<AirPart> cylinders_from_axis(std::vector<AirPart> rails) {
   for (AirPart& rail : rails) {
     rail.shape = AirShape::radial_cylinder;
@@ -150,7 +150,7 @@ void add_fields(std::vector<PaperFigure>& all, const PaperInputs& in) {
                  GeomagneticModel(2025.0).dipole_equatorial_field_T(), nan,
                  "IGRF-14's dipole of 2025; it was the paper's in " +
                      std::to_string(std::lround(year_of_dipole(dipole_equatorial_field_T)))});
-  // A black sheet in a wider vertical beam: force P cos θ / c, its line h sin θ beside the centre.
+  // Black sheet in a wider vertical beam: force P cos θ/c at the distance h sin θ from the centre.
   const double torque_N_m = in.light_on_cells_W * std::cos(limit_tilt_rad) / speed_of_light_m_s *
                             in.array_height_m * std::sin(limit_tilt_rad);
   all.push_back({"radiation_torque_at_30_deg_N_m", "II.C.2", 1.127e-9, torque_N_m,
@@ -255,8 +255,8 @@ PaperAirParts paper_air_parts(const PaperInputs& in) {
                  face("vertical masses", 0.045, 0.045, 0.193, in.box_drag_coefficient),
                  face("batteries", 0.040, 0.012, 0.105, in.box_drag_coefficient),
                  face("avionics", 0.050, 0.030, 0.148, in.box_drag_coefficient),
-                 // A rib of 0.2025 m beside the axis meets the air with its own distribution of
-                 // speeds; the distance is the one with the same third moment.
+                 // Different parts of a rib of 0.2025 m have different speeds. This distance from
+                 // the axis gives the third moment of the rib.
                  face("stiffeners", 0.2025, 0.020, 0.0758, in.rib_drag_coefficient)};
   return parts;
 }
@@ -266,7 +266,7 @@ UnloadedDrag unloaded_drag(const PaperInputs& in) {
   const double ambient_Pa = air.pressure_Pa;
   const SphericalSocket socket{in.ball_radius_m, in.socket_half_angle_rad, in.rated_gap_m,
                                in.recess_half_angle_rad};
-  // The holes that leave k_p of the supply pressure behind them at the rated gap.
+  // The hole area with which the inlet pressure is k_p times the supply pressure at the rated gap.
   const auto feed_of = [&](double log_hole_area) {
     return OrificeFeed{ambient_Pa + in.supply_gauge_Pa, std::exp(log_hole_area)};
   };
@@ -335,7 +335,7 @@ std::vector<PaperSensitivity> paper_sensitivities(const PaperInputs& inputs) {
     const std::vector<PaperFigure> after = paper_figures(moved);
     for (size_t i = 0; i < figures.size(); ++i) {
       const double exponent = std::log(after[i].ours / figures[i].ours) / std::log1p(grow);
-      if (!(std::abs(exponent) > 1e-3)) continue;  // also where ours is not known
+      if (!(std::abs(exponent) > 1e-3)) continue;  // also if the figure is not known
       const double value = inputs.*assumed.member;
       const double factor = std::pow(figures[i].published / figures[i].ours, 1.0 / exponent);
       all.push_back({figures[i].quantity, assumed.name, value, exponent,
@@ -349,8 +349,8 @@ std::vector<PaperSensitivity> paper_sensitivities(const PaperInputs& inputs) {
 
 namespace {
 
-// Figure 5: both torques by tilt, as the trigonometric parts of eq. 2 and 3 over their largest
-// value up to 90 deg.
+// Figure 5: both torques as functions of tilt. They are the trigonometric factors of eq. 2 and 3
+// relative to their largest values up to 90 deg.
 Plot elastic_plot() {
   const DumbbellArms arms{Vec3::UnitX(), 1.0, 1.0, 0.0, 1.0};
   const CounterbalanceBeams beams{1.0, 1.0, 1.0, 1};

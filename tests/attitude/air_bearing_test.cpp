@@ -12,7 +12,8 @@ namespace {
 
 constexpr double bar = 1e5;
 
-// Sums over small patches of a cap: 2-D midpoint rule, its own geometry.
+// Sums over small patches of a cap by the 2-D midpoint rule, with geometry independent of the
+// tested code.
 struct CapSums {
   double vertical_force_N = 0.0;
   Mat3 drag_N_m_s = Mat3::Zero();
@@ -59,7 +60,8 @@ TEST(AirBearing, LoadIsTheProjectedGaugePressureSummedOverTheSocket) {
   }
 }
 
-// A recess of nearly the whole socket is a piston: pressure times the socket's opening.
+// With a recess of nearly the whole socket, the load is the gauge pressure times the area of the
+// opening.
 TEST(AirBearing, AllRecessCarriesLikeAPiston) {
   const SphericalSocket socket{0.03, 0.7, 5e-6, 0.7 - 1e-7};
   const double opening_m2 = pi * std::pow(0.03 * std::sin(0.7), 2);
@@ -82,9 +84,9 @@ TEST(AirBearing, PublishedLoadIsTwiceTheProjectedGaugeLoad) {
   EXPECT_NEAR(ratio(90.0), 2.7, 0.05);
 }
 
-// A published Fluent study of a socket of 80 mm diameter at 1 bar gauge with one central and
-// twelve outer holes: 279 N (T. Ahmet, Numerical analysis of a low-cost spherical air bearing for
-// CubeSat ADCS testing). One hole and a linear fall must carry less, and more than half of that.
+// A published Fluent study of a socket of 80 mm diameter at 1 bar gauge with one central and twelve
+// outer holes: 279 N (T. Ahmet, Numerical analysis of a low-cost spherical air bearing for CubeSat
+// ADCS testing). One hole with a linear pressure drop must carry less, but at least 80 % of that.
 TEST(AirBearing, CarriesTheOrderOfAPublishedSimulation) {
   const SphericalSocket hemisphere{0.04, pi / 2, 100e-6};
   const double load_N = load_capacity_N(hemisphere, 2.01325 * bar, 1.01325 * bar);
@@ -122,7 +124,7 @@ TEST(AirBearing, WholeSphereDragsAsConcentricSpheresDo) {
   EXPECT_NEAR(drag.axial_N_m_s / drag.transverse_N_m_s, 1.0, 1e-12);
   const double inner3 = std::pow(R, 3), outer3 = std::pow(R + h, 3);
   const double exact = 8 * pi * mu * inner3 * outer3 / (outer3 - inner3);
-  // The film is taken as plane; the shells' curvature adds this factor, 1 + 2 h/R + …
+  // The model assumes a plane film; the curvature of the shells gives this factor, 1 + 2 h/R + …
   const double curvature = 3.0 * h * outer3 / (R * (outer3 - inner3));
   EXPECT_NEAR(drag.axial_N_m_s * curvature / exact, 1.0, 1e-12);
 }

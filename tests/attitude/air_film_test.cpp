@@ -26,8 +26,8 @@ TEST(OrificeFilm, ThinFilmTakesTheWholeSupplyAndThickFilmNone) {
   EXPECT_NEAR(orifice_fed_film(socket, feed, room).inlet_Pa / ambient_Pa, 1.0, 1e-2);
 }
 
-// A wide film leaves the hole choked: 0.0404 Cd A p / √T for air (White, eq. 9.46c), whatever
-// lies downstream.
+// With a wide film the flow through the hole is choked: 0.0404 Cd A p / √T for air (White, eq.
+// 9.46c), independent of the pressure downstream.
 TEST(OrificeFilm, WideFilmIsFedByChokedFlow) {
   SphericalSocket socket = fed_socket();
   socket.gap_m = 3e-4;
@@ -47,8 +47,8 @@ TEST(OrificeFilm, GapUnderLoadInvertsTheLoad) {
   }
 }
 
-// The stiffness at the rated load, continued as a spring, opens the gap far less than the film
-// opens: this is why a catalogue's stiffness cannot be used to unload a bearing.
+// The film opens much more than a spring with the stiffness at the rated load. The stiffness in a
+// catalogue therefore does not predict the gap of an unloaded bearing.
 TEST(OrificeFilm, UnloadedFilmIsThickerThanTheSpringPredicts) {
   const double rated_N = 250.0, unloaded_N = 10.0;
   const double rated_m = gap_under_load_m(fed_socket(), feed, room, rated_N);

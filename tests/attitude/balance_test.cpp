@@ -24,14 +24,14 @@ std::vector<MovingMass> masses() {
   return eight_masses(mass);
 }
 
-// A battery that gives 30 W and takes the centre of mass with it.
+// The model with a load of 30 W, whose battery displaces the centre of mass.
 AttitudeModel draining(const AttitudeModel& model) {
   const AttitudeModel loaded = with(model, "power_balance", {{"load_W", node(30.0)}});
   return with(loaded, "battery_discharge", {{"shift_m_per_Ah", numbers({1e-5, 0, 0})}});
 }
 
-// Ten minutes of an unbalanced tabletop with drag and a biased gyro, as the contract's sensors see
-// it, and the nominal model of it: no unbalance, drag and bias within their uncertainty.
+// Ten minutes of an unbalanced tabletop with drag and a biased gyro, measured by the contract's
+// sensors, and its nominal model: no unbalance; drag and bias within their uncertainty.
 BalanceRun unbalanced(bool with_gyro, uint64_t seed, bool drains = false) {
   const SettingsNode offset = numbers({true_offset_m[0], true_offset_m[1], true_offset_m[2]});
   PropagationRun truth;
@@ -81,8 +81,8 @@ TEST(Balance, FindsTheOffsetWithinItsErrors) {
   }
 }
 
-// The recorded current of the battery is the whole current: counted twice with what the model would
-// draw, the shift of a third of an ampere hour would be off by 3e-6 m.
+// The recorded current of the battery is the total current. If the model added its load to it, the
+// shift by a third of an ampere hour would be wrong by 3e-6 m.
 TEST(Balance, TheMeasuredCurrentCountsOnce) {
   const BalanceRun run = unbalanced(true, 6, true);
   ASSERT_NE(run.recording.find("battery_current_A"), nullptr);
@@ -93,8 +93,9 @@ TEST(Balance, ACameraAloneSuffices) {
   expect_offset(balance(unbalanced(false, 4)));
 }
 
-// A dipole that the experiment lacks biases the fit: the offset is wrong, with a warning. The
-// errors come near to holding the truth; by noise alone it would be fifty of them away.
+// A dipole that is missing in the model biases the fit: the offset is wrong, with a warning. The
+// standard errors are increased by the misfit, so that the true offset is within 8 of them; without
+// the increase it would be 50 away.
 TEST(Balance, AMissingEffectIsReportedAndIncreasesTheErrors) {
   BalanceRun run = unbalanced(true, 7);
   EXPECT_FALSE(balance(run).exceeds_noise());
@@ -116,8 +117,8 @@ TEST(Balance, AMissingEffectIsReportedAndIncreasesTheErrors) {
   expect_offset(result, 8.0);
 }
 
-// Three hours without a reading do not determine the motion: both segments have their own initial
-// states.
+// The motion is not predictable over three hours without readings, so both segments have separate
+// initial states.
 TEST(Balance, AGapCutsTheRecording) {
   BalanceRun run = unbalanced(true, 8);
   const size_t half = run.recording.rows() / 2;
@@ -126,7 +127,7 @@ TEST(Balance, AGapCutsTheRecording) {
   run.recording.report.gaps = {{run.recording.time_s[half - 1], run.recording.time_s[half]}};
   std::erase_if(run.recording.channels,
                 [](const Channel& c) { return c.name.starts_with("command"); });
-  // The commands of the first segment are over before it is used.
+  // The first segment has readings only after the end of its commands.
   for (size_t i = 0; i < half; ++i) {
     if (run.recording.time_s[i] > 115.0) continue;
     for (Channel& c : run.recording.channels) c.values[i] = NAN;
@@ -145,8 +146,8 @@ TEST(Balance, MomentumGivesAStartWithoutOne) {
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(offset_m[k], true_offset_m[k], 1e-6);
 }
 
-// After the masses have moved, half a step of each axis may be left: the paper's 1.79e-7 m is such
-// a half step.
+// After the masses moved, an offset of up to half a step may remain on each axis. The paper's
+// 1.79e-7 m is such a half step.
 TEST(Balance, LeavesNoMoreThanTheStepsMust) {
   const BalanceRun run = unbalanced(true, 6);
   const BalanceResult result = balance(run);
@@ -184,7 +185,7 @@ TEST(Balance, AttitudesOfNoLengthAreNone) {
               testing::HasSubstr("found 0 rows with an attitude and a rate"));
 }
 
-// Standard errors are correct: over many recordings the estimates scatter by them.
+// The estimates of many recordings scatter by their standard errors.
 TEST(Balance, StandardErrorsAreTheScatterOfTheEstimates) {
   constexpr int runs = 24;
   double squares = 0.0;

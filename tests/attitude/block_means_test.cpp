@@ -1,6 +1,6 @@
-// Means over blocks of readings compared with a model's predictions, for motions that turn far
-// within a block. The readings are noiseless and the model is the true one: the remaining error is
-// that of comparing a mean with instants.
+// Means over blocks of readings compared with the predictions of a model, for bodies that rotate
+// far within a block. The readings have no noise and the model is exact, so the remaining error is
+// that of predicting a mean from a few instants.
 #include <gtest/gtest.h>
 
 #include "attitude/observation/prediction.h"
@@ -11,7 +11,7 @@
 namespace photorque {
 namespace {
 
-// A free body that tumbles by 3.6 rad/s, read without noise.
+// A free body that tumbles at 3.6 rad/s, measured without noise.
 struct Tumbling {
   PropagationRun run;
   Recording recording;
@@ -29,7 +29,7 @@ struct Tumbling {
     recording = propagate(run).recording;
   }
 
-  // In blocks, with a noise at which an error of a milliarcsecond counts.
+  // Observation in blocks. Its noise is so small that an error of a milliarcsecond matters.
   Observation observed(size_t blocks) const {
     Observation seen = observe(recording, "tumbling", run.model.platform, blocks);
     seen.noise.camera_rad = Vec3::Constant(1e-3 * arcsecond_rad);
@@ -40,7 +40,7 @@ struct Tumbling {
 
 struct Largest {
   double attitude_arcsec = 0.0, gyro_rad_s = 0.0;
-  size_t attitudes = 0, rates = 0;  // that were compared
+  size_t attitudes = 0, rates = 0;  // numbers of compared values
 };
 
 Largest largest_of(const Tumbling& body, const Observation& seen, PlatformState start) {
@@ -64,8 +64,8 @@ Largest largest_of(const Tumbling& body, const Observation& seen, PlatformState 
   return largest;
 }
 
-// Blocks of a tenth of a second, over which the body turns by 0.36 rad. The reading at the middle
-// of a block differs from the mean by up to 3e-3 rad/s and 300 arcsec.
+// Blocks of a tenth of a second, within which the body rotates by 0.36 rad. The reading at the
+// middle of a block differs from the mean by up to 3e-3 rad/s and 300 arcsec.
 TEST(BlockMeans, OfABodyThatTumblesArePredictedAsMeans) {
   const Tumbling body(160.0);
   const Observation seen = body.observed(200);
@@ -80,7 +80,8 @@ TEST(BlockMeans, OfABodyThatTumblesArePredictedAsMeans) {
   EXPECT_GT(middle.gyro_rad_s, 1e-3);
 }
 
-// Two instants leave a larger error than three, and one a far larger one.
+// With more noise, fewer instants per block are predicted. Two have a larger error than three, and
+// one has a much larger error.
 TEST(BlockMeans, AreLookedAtNoMoreOftenThanTheirNoiseIsWorth) {
   const Tumbling body(160.0);
   Observation seen = body.observed(200);
@@ -95,8 +96,8 @@ TEST(BlockMeans, AreLookedAtNoMoreOftenThanTheirNoiseIsWorth) {
   EXPECT_GT(largest_of(body, seen, body.run.initial).attitude_arcsec, 50.0);  // one
 }
 
-// A camera that sees every fourth instant: its attitudes stand closer
-// together in a block than the gyro's rates.
+// A camera with an attitude at every fourth instant: within a block its attitudes span a shorter
+// time than the gyro's rates.
 TEST(BlockMeans, OfACameraSlowerThanTheGyro) {
   Tumbling body(160.0);
   for (Channel& channel : body.recording.channels) {
@@ -111,8 +112,8 @@ TEST(BlockMeans, OfACameraSlowerThanTheGyro) {
   EXPECT_LT(left.gyro_rad_s, 5e-5);
 }
 
-// A part begins with a mean over times before its motion starts. What that block is at its middle
-// comes from its neighbours.
+// The first block of a part is a mean over times before the motion of the part starts. Its value at
+// the middle of the block is interpolated from its neighbours.
 TEST(BlockMeans, FirstBlocksOfPartsAreReadings) {
   const Tumbling body(160.0);
   const Observation seen = body.observed(400), part = seen.part(100, 200);

@@ -53,8 +53,9 @@ TEST(PaperFigures, EquatorialFieldIsThatOfThe1940s) {
   EXPECT_THAT(figure("dipole_equatorial_field_T").why, testing::HasSubstr("194"));
 }
 
-// The paper: a gap that opens like a spring halves the ratio of drags from 19.63 to about 9. A like
-// bearing opens by the same factor; its film opens further, which the spring does not show.
+// The paper: a gap that opens like a spring reduces the ratio of drags from 19.63 to about 9. A
+// similar bearing opens by the same factor. Its film opens further, which the model of a spring
+// does not include.
 TEST(PaperFigures, SpringOpensTheGapAsInThePaperAndTheFilmOpensItFurther) {
   const UnloadedDrag drag = unloaded_drag();
   EXPECT_NEAR(drag.ratio_spring, 19.63 / 9.0, 0.25);
@@ -62,8 +63,7 @@ TEST(PaperFigures, SpringOpensTheGapAsInThePaperAndTheFilmOpensItFurther) {
   EXPECT_GT(drag.rated_load_N, 100.0);
 }
 
-// Light is traced elsewhere: the given figures are returned beside the paper's figures, and nothing
-// else.
+// The figures of light are not computed here: the given values are returned.
 TEST(PaperFigures, OfLightAreThoseGiven) {
   EXPECT_TRUE(std::isnan(figure("array_power_W").ours));
   PaperInputs inputs;
@@ -94,7 +94,8 @@ TEST(PaperFigures, EveryFigureStatesTheReasonOfItsDifference) {
   }
 }
 
-// Powers that the equations show: torque of a disc ∝ R⁴, of a face ∝ size⁵, of a lever ∝ itself.
+// Exponents in the equations: torque of a disc ∝ R⁴, of a face ∝ size⁵, of a lever arm ∝ its
+// length.
 TEST(PaperSensitivities, AreTheExponentsOfTheEquations) {
   std::map<std::string, PaperSensitivity> by_name;
   for (const PaperSensitivity& s : paper_sensitivities())
@@ -103,7 +104,7 @@ TEST(PaperSensitivities, AreTheExponentsOfTheEquations) {
   EXPECT_NEAR(by_name.at("lumped_drag_at_1_rpm_N_m by platform_scale").exponent, 4.0, 1e-3);
   EXPECT_NEAR(by_name.at("cylinder_drag_at_1_rpm_N_m by platform_scale").exponent, 5.0, 1e-3);
   EXPECT_NEAR(by_name.at("radiation_torque_at_30_deg_N_m by array_height_m").exponent, 1.0, 1e-6);
-  // The input that gives the paper's figure, put back, gives it.
+  // The input value that should give the paper's figure gives it.
   const PaperSensitivity scale = by_name.at("lumped_drag_at_1_rpm_N_m by platform_scale");
   PaperInputs inputs;
   inputs.platform_scale = scale.value_for_published;
@@ -114,7 +115,7 @@ TEST(PaperSensitivities, AreTheExponentsOfTheEquations) {
   }
 }
 
-// A catalogue made from the equations themselves, with known errors put in.
+// A catalogue computed from the equations, with known errors added.
 TEST(BearingComparison, FindsTheErrorsPutIn) {
   const SphericalSocket socket{0.03, pi / 4, 5e-6};
   const double inlet_Pa = 5e5, load_N = load_capacity_N(socket, inlet_Pa, 1e5);
@@ -181,8 +182,8 @@ SettingsNode with_disturbances(SettingsNode root, const std::vector<SettingsNode
   return root;
 }
 
-// m r a of the floor's acceleration along x, whose sine is zero at the state's time; it swings
-// about nothing.
+// The torque is m r a for an acceleration of the floor along x, although the sine is zero at the
+// time of the state. The oscillation does not accumulate an angle.
 TEST(Budget, VibrationCountsWithItsAmplitude) {
   const SettingsNode floor = table({{"kind", node("floor_vibration")},
                                     {"acceleration_m_s2", numbers({2e-3, 0, 0})},
@@ -193,8 +194,8 @@ TEST(Budget, VibrationCountsWithItsAmplitude) {
   EXPECT_LT(vibration.angle_after_minute_rad, 1e-10);
 }
 
-// Gravity that leans by α about x: m r × (g' − g). A product of inertia δ_xz under a spin ω about
-// z: −ω × δI ω, along y.
+// Gravity that is tilted by α about x: m r × (g' − g). A product of inertia δ_xz with a spin ω
+// about z: −ω × δI ω, along y.
 TEST(Budget, ChangesOfConditionsCountByTheirEffect) {
   const double tilt_rad = 1e-3, delta_kg_m2 = 2e-3, rate_rad_s = 2 * pi / 60;
   const SettingsNode gravity =
@@ -214,7 +215,7 @@ TEST(Budget, ChangesOfConditionsCountByTheirEffect) {
               delta_kg_m2 * rate_rad_s * rate_rad_s, 1e-12);
 }
 
-// An appendage that turns with the body as part of it pulls at nothing.
+// An appendage without deflection that rotates with the body has no torque.
 TEST(Budget, AnUnbentAppendageIsNoTorque) {
   const SettingsNode wing = table({{"kind", node("flexible_mode")},
                                    {"axis", numbers({1, 0, 0})},
@@ -263,7 +264,7 @@ TEST(Budget, ProductHoldsTheTablesAndPlots) {
   }
   EXPECT_EQ(table_named(product, "paper_figures").columns[0].texts.size(), paper_figures().size());
   ASSERT_EQ(product.plots.size(), 2u);
-  EXPECT_EQ(product.plots[0].curves.size(), 4u);  // the battery is full: nothing to draw
+  EXPECT_EQ(product.plots[0].curves.size(), 4u);  // the battery is full, so its torque has no curve
 }
 
 // A disc of 0.2 m at 1 rpm: R²ω/ν = 278, far below its transition at 2.8e5.
@@ -306,7 +307,7 @@ TEST(Budget, RefusesChargesThatCannotBeMeant) {
   EXPECT_NO_THROW(read_budget(settings_of(experiment({{"charge_drawn_Ah", node(2.4)}}))));
 }
 
-// A power of the lean that overflows beyond a degree, times the axis of a body that stands upright.
+// The power (40 deg/1 deg)^200 overflows.
 TEST(Budget, RefusesATorqueThatIsNoNumber) {
   const SettingsNode law = table({{"kind", node("empirical_torque")},
                                   {"axes", list({node("lean")})},

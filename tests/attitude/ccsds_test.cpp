@@ -20,8 +20,8 @@ std::filesystem::path shared_message(const std::string& name) {
   return outside::third_party("ccsds") / name;
 }
 
-// The words of a message, numbers by their value: what it says, whatever its spacing. Written apart
-// from the reader under test.
+// The words of a message, numbers by value, so that the spacing does not matter. Independent of the
+// reader under test.
 std::vector<std::string> statements(const std::filesystem::path& path) {
   std::ifstream file(path);
   std::vector<std::string> words;
@@ -95,7 +95,7 @@ TEST(Aem, QuaternionAndEulerFilesHoldTheSameAttitude) {
   EXPECT_EQ(compared, 122);
 }
 
-// The first epoch of those files, as published.
+// The first attitude of these files, as published.
 TEST(Aem, EulerSequenceAgreesWithThePublishedQuaternion) {
   const std::string euler =
       replaced(replaced(replaced(replaced(small_aem, "QUATERNION\n", "EULER_ANGLE\n"),
@@ -110,8 +110,9 @@ TEST(Aem, EulerSequenceAgreesWithThePublishedQuaternion) {
   EXPECT_LT(q.angularDistance(published), 1e-14);
 }
 
-// One attitude in two notations, from the example of CCSDS 504.0-B-2 with the spacecraft MMS: it
-// turns about its z axis by 18.29 deg/s, that is by 182.9 deg in the ten seconds between the rows.
+// One attitude in two notations, from the example of CCSDS 504.0-B-2 with the spacecraft MMS. It
+// rotates about its z axis at 18.29 deg/s, that is by 182.9 deg in the ten seconds between the
+// rows.
 TEST(Aem, Version2HasQuaternionsAndEulerAnglesWithRates) {
   const auto message = [](const std::string& type, const std::string& rows) {
     return "CCSDS_AEM_VERS = 2.0\nCREATION_DATE = 2023-02-14T12:00:00\nORIGINATOR = GSFC\n"
@@ -140,7 +141,7 @@ TEST(Aem, Version2HasQuaternionsAndEulerAnglesWithRates) {
   }
   EXPECT_NEAR(by_angles[1].time_s, 10.0, 1e-6);
   ASSERT_TRUE(by_angles[0].rate_body_rad_s);
-  // Over the ten seconds by the printed rate; it nutates by half a degree.
+  // Rotated for ten seconds at the printed rate. The nutation is half a degree.
   const Quat turned =
       by_angles[0].lab_from_body *
       Quat(Eigen::AngleAxisd(10.0 * by_angles[0].rate_body_rad_s->z(), Vec3::UnitZ()));
@@ -148,7 +149,7 @@ TEST(Aem, Version2HasQuaternionsAndEulerAnglesWithRates) {
   const Recording recording = read_recording(quaternions);
   ASSERT_NE(recording.find("gyro_z_rad_s"), nullptr);
   EXPECT_DOUBLE_EQ(recording.find("gyro_z_rad_s")->values[0], 18.288407 * degree_rad);
-  // The rate in the axes of the other frame is the one that the attitude turns into the body's.
+  // A rate in the axes of the other frame is rotated to body axes by the attitude.
   const auto inertial = new_file(replaced(
       message("EULER_ANGLE/ANGVEL\nEULER_ROT_SEQ = ZXZ", "2023-054T00:00:09.150001 0 90 0 1 2 3\n"),
       "ANGVEL_FRAME = SC_BODY_1", "ANGVEL_FRAME = EME2000"));
@@ -230,7 +231,7 @@ TEST(Aem, WrongMessagesAreRefused) {
   EXPECT_THROW(read_aem(long_quaternion).segments.front().attitudes(), InputError);
 }
 
-// A name and a value, and a block, among the rows: a row of no words was looked into.
+// A name with a value or a block among the rows is refused, also if the value is empty.
 TEST(Aem, DataThatAreNoRowsAreRefused) {
   const std::string before =
       "CCSDS_AEM_VERS = 1.0\nCREATION_DATE = 2020-01-01T00:00:00\nORIGINATOR = TEST\nMETA_START\n"
@@ -245,7 +246,6 @@ TEST(Aem, DataThatAreNoRowsAreRefused) {
   }
 }
 
-// Day of the year 60 of a leap year is 29 February.
 // A body that spins about z at 0.1 rad/s: q_z = sin(0.05 t). Rows with the scalar last or first,
 // from the lab to the body or back, in one segment or in two that share an instant.
 TEST(Aem, IsReadAsARecording) {
@@ -291,6 +291,7 @@ TEST(CalendarTimes, CountDaysAsTheCalendarDoes) {
   EXPECT_EQ(at("1970-01-01T00:00:00").day, 0);
   EXPECT_EQ(at("2000-03-01T00:00:00").day - at("2000-02-28T00:00:00").day, 2);
   EXPECT_EQ(at("1900-03-01T00:00:00").day - at("1900-02-28T00:00:00").day, 1);
+  // Day 60 of a leap year is 29 February.
   EXPECT_EQ(at("2024-060T06:30:00.25").seconds_since(at("2024-02-29T00:00:00Z")), 23400.25);
   EXPECT_EQ(epoch_text(at("1999-12-31T23:59:59.9999996")), "2000-01-01T00:00:00.000000");
   EXPECT_EQ(epoch_text(at("2016-12-31T23:59:59").after(2.5)), "2017-01-01T00:00:01.500000");

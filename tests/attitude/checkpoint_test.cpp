@@ -1,4 +1,4 @@
-// Runs that are broken off and gone on with are those that were not, to the last bit.
+// Runs that are interrupted and continued are equal to uninterrupted runs, bit for bit.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -15,7 +15,7 @@ PropagationRun run_of(const std::string& toml) {
       Settings(std::make_shared<const SettingsNode>(parse_toml(toml, "run.toml"))));
 }
 
-// Instruments that look back, walk and pause; commands; a cable; an appendage with extra states.
+// Sensors with latency, drift and pauses; commands; a cable; an appendage with extra states.
 const std::string pendulum = R"([platform]
 topology = "tabletop"
 mass_kg = 8.0
@@ -59,7 +59,7 @@ battery_current_A = 0.5
 time_s = 30.03
 battery_current_A = -0.1
 )";
-// A platform that slows down and sticks: Newton's method takes over.
+// A platform that slows down and sticks, which Newton's method integrates.
 const std::string sticking = R"([platform]
 topology = "tabletop"
 mass_kg = 8.0
@@ -92,7 +92,8 @@ longest_step_s = 0.31
 initial_velocity_m_s = [0.3, 0.4]
 )";
 
-// A history of 150 rows of 601, whose last is the run's; figures are of the whole run.
+// The history has at most 150 of 601 rows and ends with the last. The figures are those of the
+// whole run.
 TEST(Propagation, AShortHistoryEndsWithTheRun) {
   const PropagationRun run = run_of(pendulum);
   const PropagationResult result = propagate(run);
@@ -105,7 +106,7 @@ TEST(Propagation, AShortHistoryEndsWithTheRun) {
     largest_rad = std::max(largest_rad, tilt_rad(state));
   }
   const std::vector<double>& kept_deg = result.product.tables.front().column("tilt_deg").values;
-  EXPECT_LT(*std::ranges::max_element(kept_deg), largest_rad / degree_rad);  // or shows nothing
+  EXPECT_LT(*std::ranges::max_element(kept_deg), largest_rad / degree_rad);  // not trivial
   for (const Quantity& q : result.product.quantities) {
     if (q.name == "final_time_s") {
       EXPECT_EQ(q.estimate.value, 60.0);
@@ -116,7 +117,8 @@ TEST(Propagation, AShortHistoryEndsWithTheRun) {
   }
 }
 
-// As a run that is killed again and again, every time after the given number of steps.
+// The result of a run that is stopped and continued again and again after the given number of
+// steps.
 PropagationResult in_pieces(const PropagationRun& run, int steps, int& pieces) {
   std::string state;
   for (pieces = 1;; ++pieces) {

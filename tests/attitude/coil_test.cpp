@@ -19,7 +19,7 @@ TEST(CurrentLoop, AreaOfAPolygonDoesNotDependOnTheOrigin) {
   EXPECT_LT((polygon_area_m2(there) - Vec3(0, 0, 0.06)).norm(), 1e-13);
 }
 
-// Eq. 27 for a thin wire is ½ I ∮ r × dl; summed here along many short pieces.
+// Eq. 27 for a thin wire is ½ I ∮ r × dl, summed here over many short pieces.
 TEST(CurrentLoop, DipoleIsTheMomentOfItsCurrent) {
   const double current_A = 0.7;
   Vec3 moment = Vec3::Zero();
@@ -47,8 +47,8 @@ TEST(CurrentLoop, SettingsTakeAreasOrCorners) {
   EXPECT_THROW(read_current_loops({two}), InputError);
 }
 
-// Kepler: the field comes back after one period only for a non-rotating Earth; over the poles of a
-// polar orbit its size is twice that at the equator, and its extremes are those of IGRF.
+// The period follows from Kepler's law. On a polar orbit the field over the poles is about twice
+// that over the equator.
 TEST(OrbitField, HasTheSizeOfTheFieldAtThatHeight) {
   const CircularOrbit polar{.radius_m = 6871.2e3, .inclination_rad = pi / 2};
   const double period_s = 2 * pi * std::sqrt(std::pow(6871.2e3, 3) / earth_gravitation_m3_s2);
@@ -64,7 +64,7 @@ TEST(OrbitField, HasTheSizeOfTheFieldAtThatHeight) {
   EXPECT_GT(most / least, 1.7);
 }
 
-// Starting over the equator at the zero meridian, east, north and down are y, z and −x.
+// At the start, over the equator at the zero meridian, east, north and down are y, z and −x.
 TEST(OrbitField, AxesAreInertial) {
   const CircularOrbit orbit{.radius_m = 6871.2e3, .inclination_rad = 0.9};
   const Vec3 ned_T =

@@ -1,4 +1,4 @@
-// A platform with chosen disturbances, and its effects.
+// A platform with chosen disturbances, and their effects.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ inline Disturbance make(const AttitudeModel& model, const std::string& kind,
   return disturbance;
 }
 
-// The model with this one disturbance more.
+// The model with one more disturbance.
 inline AttitudeModel with(AttitudeModel model, const std::string& kind,
                           const std::vector<std::pair<std::string, SettingsNode>>& entries) {
   model.disturbances.push_back(make(model, kind, entries));
@@ -96,8 +96,8 @@ inline PlatformState propagated(const AttitudeModel& model, const PlatformState&
   return propagate(dynamics, start, times_s, options).states.back();
 }
 
-// A torque linear in the direction of light (body axes), and a table of it over the sphere, written
-// to a file: its path.
+// A torque that is linear in the direction of light (body axes). sphere_table() writes a table of
+// it over the sphere to a file and returns the path.
 inline Vec3 sphere_table_torque_N_m(const Vec3& light_body) {
   Mat3 of_direction;
   of_direction << 1e-6, 2e-6, -1e-6, 0.5e-6, -3e-6, 2e-6, 4e-6, 1e-6, 0.2e-6;

@@ -14,8 +14,8 @@ TEST(Disturbances, UnknownKindIsOneClearLine) {
               testing::HasSubstr("bearing_drag"));
 }
 
-// A disturbance that sets the field, the rotation of the laboratory or the battery's current for
-// all others may be used once.
+// A disturbance that sets the field, the rotation of the laboratory or the battery current for all
+// others may be used only once.
 TEST(Disturbances, ThatSetTheSameForAllAreRefusedTwice) {
   const SettingsNode cage = table({{"kind", node("helmholtz_cage")},
                                    {"field_lab_T", numbers({1e-5, 0, 0})}}),

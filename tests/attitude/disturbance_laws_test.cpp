@@ -1,5 +1,5 @@
-// Laws that hold for every registered disturbance: a new kind is tested automatically, or the first
-// test here fails without an example of it.
+// Laws that hold for all registered disturbances. A new kind is tested automatically; the first
+// test fails if the kind has no example here.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -123,7 +123,8 @@ std::vector<std::string> kind_names() {
   return names;
 }
 
-// The model that a kind is tried in: an offset for those that need one, the field, a command.
+// The model in which a kind is tested: with an offset for kinds that need one, the field and a
+// command.
 AttitudeModel model_with(const std::string& kind) {
   AttitudeModel model = bench_model();
   model.schedule.append(0.0, {.command_body_N_m = {1e-4, -2e-4, 3e-4},
@@ -224,7 +225,8 @@ void expect_slope(const std::vector<double>& derivative, const std::vector<doubl
   double size = 0.0;
   for (const double d : derivative) size = std::max(size, std::abs(d));
   for (size_t c = 0; c < derivative.size(); ++c) {
-    // Differences are good to the square of the step and to rounding over the step.
+    // The error of a difference is of second order in the step, plus the rounding error divided by
+    // the step.
     EXPECT_NEAR(derivative[c], (above[c] - below[c]) / (2 * step), 2e-6 * size + 1e-9)
         << what << ", component " << c;
   }
@@ -243,7 +245,7 @@ void expect_parameter_slopes(const AttitudeModel& model, size_t d, const Platfor
   const std::vector<double> y = to_vector(state);
   const std::vector<Parameter>& parameters = model.disturbances[d].parameters;
   for (size_t p = 0; p < parameters.size(); ++p) {
-    if (parameters[p].key == "time_s") continue;  // an instant of a jump
+    if (parameters[p].key == "time_s") continue;  // the instant of a jump
     const double step = step_of(parameters, parameters[p]);
     const auto moved = [&](double by) {
       AttitudeModel other = model;
@@ -270,8 +272,8 @@ void expect_state_slopes(const AttitudeModel& model, const PlatformState& state)
   }
 }
 
-// Derivatives that the laws compute exactly against central differences, by every component of the
-// state and by every parameter except instants of jumps.
+// Derivatives that the laws compute exactly, compared with central differences by all components of
+// the state and all parameters except instants of jumps.
 TEST_P(EveryDisturbance, DerivativesAgreeWithCentralDifferences) {
   const AttitudeModel model = model_with(GetParam());
   std::mt19937_64 engine(11);
@@ -280,8 +282,8 @@ TEST_P(EveryDisturbance, DerivativesAgreeWithCentralDifferences) {
   expect_parameter_slopes(model, model.disturbances.size() - 1, state);
 }
 
-// Derivatives with all of them acting: one disturbance's torque may depend on what another did to
-// the field, the centre of mass or the inertia.
+// Derivatives with all disturbances at once: the torque of one may depend on changes of the field,
+// the centre of mass or the inertia by another.
 TEST(Disturbances, DerivativesAgreeWhenAllActTogether) {
   AttitudeModel model = bench_model();
   model.schedule.append(0.0, {.command_body_N_m = {1e-4, -2e-4, 3e-4},
@@ -300,8 +302,8 @@ TEST(Disturbances, DerivativesAgreeWhenAllActTogether) {
   }
 }
 
-// Turning the whole laboratory about the vertical, with its field and the Earth's axis, changes
-// nothing, for all without a horizontal direction.
+// A rotation of the whole laboratory about the vertical, with its field and the Earth's axis, has
+// no effect, for all kinds without a horizontal direction.
 std::vector<std::string> kinds_without_heading() {
   static const std::map<std::string, std::string> headed = {
       {"tether", "pulls to zero attitude"},
@@ -336,7 +338,7 @@ TEST_P(EveryKindWithoutHeading, DoesNotDependOnNorth) {
   }
 }
 
-// A body at rest takes no power, a brake takes some: T·ω ≤ 0 for every drag.
+// Every drag: T·ω < 0 in motion and T = 0 at rest.
 class EveryDrag : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Kind, EveryDrag,
                          testing::Values("bearing_drag", "dry_friction", "air_friction",
@@ -354,8 +356,8 @@ TEST_P(EveryDrag, TakesPowerInMotionAndIsNothingAtRest) {
   }
 }
 
-// Torques that derive from a potential: T·ω is minus its rate of change, with the potential written
-// down apart from the law. A rotor's torque does no work at all: its potential is zero.
+// Torques with a potential: T·ω is minus the rate of change of the potential, which is written here
+// independently of the law. The torque of a rotor does no work: its potential is zero.
 class EveryPotential : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Kind, EveryPotential,
                          testing::Values("static_unbalance", "magnetic_dipole", "gravity_gradient",

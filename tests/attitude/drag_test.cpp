@@ -1,4 +1,4 @@
-// Everything that brakes: spin-downs about the vertical against their closed forms.
+// Drag torques: spin-downs about the vertical compared with their closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,8 +36,8 @@ TEST(BearingDrag, SocketAxisIsTheLabVertical) {
   EXPECT_LT((lab_torque({0.2, 0, 0}) - Vec3(-6e-6, 0, 0)).norm(), 1e-18);
 }
 
-// The film's drag from geometry, at the rated gap, at a spring's gap and at the balance of the
-// film.
+// The drag of the film from the geometry, with the rated gap, the gap of a spring and the gap at
+// which supply and film balance.
 TEST(BearingDrag, TakesItsFilmFromTheSocket) {
   const AttitudeModel base = bench_model();
   const double weight_N = 7.0 * standard_gravity_m_s2;
@@ -46,7 +46,7 @@ TEST(BearingDrag, TakesItsFilmFromTheSocket) {
     socket.emplace_back("half_angle_deg", node(45));
     return make(base, "bearing_drag", {{"socket", table(socket)}}).parameters[0].value;
   };
-  // 2πμR⁴/h (2/3 − cos a + cos³a/3), as in the textbooks.
+  // The textbook form: 2πμR⁴/h (2/3 − cos a + cos³a/3).
   const double c = std::cos(pi / 4);
   const double at_5um =
       2 * pi * 1.813e-5 * std::pow(0.0317, 4) / 5e-6 * (2.0 / 3 - c + c * c * c / 3);
@@ -62,7 +62,7 @@ TEST(BearingDrag, TakesItsFilmFromTheSocket) {
   const double fed = axial({{"recess_half_angle_deg", node(6)},
                             {"supply_bar", node(6.5)},
                             {"hole_area_mm2", node(0.02)}});
-  EXPECT_NEAR(fed / at_5um, 5e-6 / gap_m, 0.01);  // the recess shears nothing: a little less
+  EXPECT_NEAR(fed / at_5um, 5e-6 / gap_m, 0.01);  // the recess has no shear: slightly less
   EXPECT_NEAR(axial({{"recess_half_angle_deg", node(6)},
                      {"supply_Pa", node(6.5e5)},
                      {"hole_area_m2", node(2e-8)}}) /
@@ -116,7 +116,7 @@ TEST(AirDrag, SumsThePartsOfThePlatform) {
               1.0, 1e-12);
 }
 
-// Power lost is k |ω × B|²: k B² ω² across the field, none along it.
+// The power lost is k |ω × B|²: k B² ω² for a rotation perpendicular to the field, zero along it.
 TEST(EddyDamping, BrakesOnlyAcrossTheField) {
   const AttitudeModel model =
       with(bench_model(), "eddy_damping", {{"coefficient_N_m_s_per_T2", node(40)}});

@@ -1,4 +1,4 @@
-// Torques without a law: every form against its formula, and the errors of its keys.
+// Empirical torques: every form compared with its formula, and the errors of its keys.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ void expect_near(const Vec3& found, const Vec3& expected) {
       << found.transpose() << " against " << expected.transpose();
 }
 
-// Yaw 0.7 rad, then leaning by 0.2 rad about body x: body z leans to the right of the nose.
+// A yaw of 0.7 rad, then a tilt of 0.2 rad about body x: body z tilts to the right of body x.
 const Quat attitude = turned(0.7, Vec3::UnitZ()) * turned(0.2, Vec3::UnitX());
 const Vec3 vertical = attitude.conjugate() * Vec3::UnitZ();
 
@@ -47,7 +47,7 @@ TEST(EmpiricalTorque, HarmonicsOfTheYaw) {
           vertical);
 }
 
-// A positive torque along the lean axis brings body z back to the vertical.
+// A positive torque about the tilt axis returns body z to the vertical.
 TEST(EmpiricalTorque, PowerOfTheTiltRights) {
   const Vec3 found = torque({{"axes", words({"lean", "vertical"})},
                              {"tilt_exponent", node(2.5)},
@@ -64,7 +64,7 @@ TEST(EmpiricalTorque, WholePowersOfTheRateBrake) {
                              {"rate_powers", numbers({1, 3})},
                              {"coefficients_N_m", numbers({2e-6, -1e-6})}},
                             attitude, rate);
-  EXPECT_LT((found + size * rate / 0.13).norm(), 1e-7 * size);  // the direction fades below 1e-5
+  EXPECT_LT((found + size * rate / 0.13).norm(), 1e-7 * size);  // smoothed below 1e-5 rad/s
 }
 
 TEST(EmpiricalTorque, PowerOfTheRateByAxis) {
@@ -103,7 +103,7 @@ TEST(EmpiricalTorque, PeriodsAndCosinesInTime) {
 }
 
 TEST(EmpiricalTorque, CrossTalkAndPowersOfTheCommand) {
-  // The torque of a command of 1 N m: fractions of the command.
+  // With a reference of 1 N m, the coefficients are fractions of the command.
   expect_near(torque({{"axes", words({"cross_talk"})},
                       {"command_powers", numbers({1})},
                       {"command_reference_N_m", node(1.0)},
@@ -124,12 +124,12 @@ TEST(EmpiricalTorque, ChargeIsHeldBeyondItsRange) {
                            {"charge_range_Ah", numbers({0.0, 1.0})},
                            {"coefficients_N_m", numbers({1e-6, 0, 0})}};
   expect_near(torque(entries, attitude, Vec3::Zero(), 0.0, 1800.0), Vec3(0.25e-6, 0, 0));
-  // A twentieth of the range beyond its end, however far.
+  // Beyond its range the variable changes by at most a twentieth of the range.
   expect_near(torque(entries, attitude, Vec3::Zero(), 0.0, 36000.0), Vec3(0.525e-6, 0, 0));
   expect_near(torque(entries, attitude, Vec3::Zero(), 0.0, -36000.0), Vec3(-0.025e-6, 0, 0));
 }
 
-// Two functions: every term of the first with every term of the second.
+// Two functions: each term of the first is multiplied by each term of the second.
 TEST(EmpiricalTorque, DragThatDependsOnTheYaw) {
   const Vec3 rate(0.03, -0.04, 0.12);
   const Vec3 found = torque({{"axes", words({"rate"})},
@@ -142,7 +142,7 @@ TEST(EmpiricalTorque, DragThatDependsOnTheYaw) {
   EXPECT_LT((found + size * rate / 0.13).norm(), 1e-7 * std::abs(size));
 }
 
-// A parabola through knots at any distance is kept; values count at their knots, slopes run on.
+// The table reproduces a parabola and its slope exactly, for knots at any distances.
 TEST(EmpiricalTorque, TableKeepsParabolas) {
   const std::vector<double> knots = {0.0, 1.0, 1.5, 4.0, 6.0, 6.5};
   const auto parabola = [](double x) { return 1.0 - 2.0 * x + 0.5 * x * x; };
@@ -167,14 +167,15 @@ TEST(EmpiricalTorque, TableInTime) {
                            {"time_knots_s", numbers({0, 10, 20, 40, 80})},
                            {"coefficients_N_m", numbers({1e-6, 2e-6, 1e-6, 5e-6, 3e-6})}};
   expect_near(torque(entries, attitude, Vec3::Zero(), 40.0), 5e-6 * vertical);
-  // Half-way between 10 and 20, by the slopes of the parabolas through 0, 10, 20 and 10, 20, 40.
+  // Half-way between the knots 10 and 20, with the slopes of the parabolas through 0, 10, 20 and
+  // 10, 20, 40.
   const double left = 0.0, right = (-1e-6 / 10 * 20 + 4e-6 / 20 * 10) / 30;
   expect_near(torque(entries, attitude, Vec3::Zero(), 15.0),
               (1.5e-6 + 10.0 * (left - right) / 8.0) * vertical);
 }
 
-// Through one cubic each: I ω is the sum of integrals that Simpson's rule has exactly, and far
-// fewer steps do than across the knots (126 here).
+// Each step contains only one cubic. I ω is the sum of integrals for which Simpson's rule is exact.
+// Steps across the knots would be many more (126 here).
 TEST(EmpiricalTorque, StepsEndAtTheKnotsOfATableInTime) {
   const std::vector<double> knots_s = {0, 10, 20, 30, 40, 50, 60};
   const std::vector<double> torques_N_m = {0, 2e-5, -3e-5, 4e-5, 1e-5, -5e-5, 2e-5};
@@ -204,7 +205,7 @@ TEST(EmpiricalTorque, StepsEndAtTheKnotsOfATableInTime) {
   EXPECT_LE(motion.statistics.steps, 30);
 }
 
-// Written shapes are read back unchanged.
+// Shapes that are written and read back are unchanged.
 TEST(EmpiricalTorque, ShapesAreWrittenAsTheyAreRead) {
   const std::vector<Entries> all = {
       {{"axes", words({"vertical", "lab"})}, {"yaw_orders", numbers({1, 3})}},

@@ -25,7 +25,7 @@ Trajectory propagate_model(const AttitudeModel& model, double end_s,
   return propagate(dynamics, dynamics.initial_state(), times_s, {}, {}, events);
 }
 
-// From rest under a constant torque the tilt is ½ τ t²/I.
+// From rest under a constant torque τ the tilt is ½ τ t²/I.
 TEST(TiltStop, IsReachedAtTheTimeOfTheParabolaAndEndsTheRun) {
   const double tilt_rad = 0.5, inertia = 0.12, torque = 3e-5;
   const double expected_s = std::sqrt(2 * tilt_rad * inertia / torque);
@@ -34,7 +34,7 @@ TEST(TiltStop, IsReachedAtTheTimeOfTheParabolaAndEndsTheRun) {
   ASSERT_EQ(t.events.size(), 1u);
   EXPECT_EQ(t.events[0].name, "tilt_stop");
   EXPECT_NEAR(t.events[0].time_s, expected_s, 1e-9);
-  // Its 51st state is that at the stop, to rounding.
+  // The 51st output time equals the time of the stop up to rounding, so there are 50 or 51 states.
   EXPECT_LE(t.states.back().time_s, t.events[0].time_s);
   EXPECT_GE(t.states.size(), 50u);
 }
@@ -50,7 +50,7 @@ TEST(Events, ThatDoNotEndTheRunAreAllFound) {
   AttitudeModel model = commanded(1.0, Vec3::Zero());
   const Dynamics dynamics(model);
   PlatformState state = dynamics.initial_state({0, 0, 0.1});
-  // Body x turns in the plane: its y component is sin(0.1 t).
+  // Body x rotates in the horizontal plane: its y component is sin(0.1 t).
   const EventFunction crossing{"crossing", false, false, [](const Lanes&, const Lanes* y) {
                                  return 2.0 * (y[1] * y[2] + y[0] * y[3]) - 0.3;
                                }};
@@ -68,7 +68,8 @@ TEST(Events, ThatDoNotEndTheRunAreAllFound) {
   }
 }
 
-// Torques that jump at times no binary number holds: the rate is the sum of torque times duration.
+// Torques that jump at times without an exact binary representation: the rate is the integral of
+// the torque divided by the inertia.
 TEST(Commands, AreHitExactly) {
   AttitudeModel model = commanded(0.1, Vec3::Zero());
   double rate = 0.0, angle = 0.0, t = 0.0;
@@ -119,14 +120,14 @@ struct GrowingRate final : TorqueLaw<GrowingRate> {
   }
 };
 
-// ω' = ω² goes to infinity at t = 1/ω₀.
-// 10 s at 1e9 rad/s: more steps than anybody would wait for.
+// 10 s at 1e9 rad/s would need far too many steps.
 TEST(Propagation, ReportsEarlyThatAMotionIsTooFastForItsDuration) {
   const Dynamics dynamics(commanded(1.0, Vec3::Zero()));
   const PlatformState spinning = dynamics.initial_state({1e9, 3e8, 0.0});
   EXPECT_THROW(propagate(dynamics, spinning, std::vector<double>{10.0}), NumericalError);
 }
 
+// ω' = ω² becomes infinite at t = 1/ω₀.
 TEST(Propagation, ReportsTheEndOfTheSolution) {
   AttitudeModel model = commanded(1.0, Vec3::Zero());
   model.disturbances = {make_disturbance<GrowingRate>({})};
@@ -147,7 +148,7 @@ TEST(Propagation, RefusesStatesThatAreNone) {
   EXPECT_THROW(propagate(dynamics, state, std::vector<double>{1.0}), InputError);
 }
 
-// Fractions of a disc: two unit discs a radius apart share 2π/3 − √3/2.
+// Fractions of a disc: two unit discs whose centres are one radius apart share 2π/3 − √3/2.
 TEST(Eclipse, UncoveredShareMatchesClosedForms) {
   EXPECT_EQ(uncovered_fraction(1.0, 2.0, 3.0), 1.0);
   EXPECT_EQ(uncovered_fraction(1.0, 2.0, 0.9), 0.0);
@@ -158,7 +159,7 @@ TEST(Eclipse, UncoveredShareMatchesClosedForms) {
 }
 
 // Tudat's case of a partial eclipse, computed exactly (shared reference attitude.md, section 4),
-// and its annular one with flat discs.
+// and its annular eclipse with flat discs.
 TEST(Eclipse, SunlitFractionMatchesTheReferenceCases) {
   const Vec3 satellite_m = (6378.137e3 + 1e3) * Vec3(0.018, 1, 0).normalized();
   EXPECT_NEAR(sunlit_fraction(satellite_m, {-149598000e3, 0, 0}, 6378.137e3, 6.96e8),
@@ -166,8 +167,8 @@ TEST(Eclipse, SunlitFractionMatchesTheReferenceCases) {
   EXPECT_NEAR(sunlit_fraction({2, 0, 0}, {-1, 0, 0}, 1.0, 2.0), 0.485156027651699, 1e-12);
 }
 
-// With the Sun in the plane of a circular orbit the light goes and comes on half an orbit's turn
-// less the angles at which the Sun's centre stands on the horizon: 2 asin(R/r) of shadow.
+// With the Sun in the plane of a circular orbit, the shadow covers an angle of 2 asin(R/r), centred
+// opposite to the Sun. The events are at half light, when the Sun's centre is on the horizon.
 TEST(Eclipse, LastsAsLongAsTheShadowIsWide) {
   AttitudeModel model = commanded(1.0, Vec3::Zero());
   model = with(model, "orbit",

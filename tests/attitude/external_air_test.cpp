@@ -20,7 +20,7 @@ double torque_N_m(const AirPart& part, double rate_rad_s) {
   return air_coefficients(part, air).torque_N_m(rate_rad_s);
 }
 
-// Schlichting and White tabulate the disc wetted on both faces: C_M = 3.87/√Re on ½ρω²R⁵.
+// The value of Schlichting and White for a disc wetted on both faces: C_M = 3.87/√Re on ½ρω²R⁵.
 TEST(ExternalAir, DiscHasTheTabulatedMomentCoefficient) {
   const double R = 0.25, rate = 3.0;
   const double reynolds = rate * R * R / air.kinematic_viscosity_m2_s();
@@ -51,7 +51,7 @@ TEST(ExternalAir, OneFaceOfADiscHasHalfTheTorque) {
   EXPECT_DOUBLE_EQ(torque_N_m(one_face, 1.0), 0.5 * torque_N_m(disc(0.25), 1.0));
 }
 
-// The torque by summing Blasius' local wall stress 0.332 ρ v²/√Re_x over both faces.
+// The torque as the sum of Blasius' local wall stress 0.332 ρ v²/√Re_x over both faces.
 TEST(ExternalAir, SweptPlateSumsTheLocalWallStress) {
   const AirPart plate{
       .shape = AirShape::swept_plate, .length_m = 0.2, .inner_m = 0.1, .outer_m = 0.4};
@@ -61,7 +61,7 @@ TEST(ExternalAir, SweptPlateSumsTheLocalWallStress) {
   for (int i = 0; i < across; ++i) {
     const double r = 0.1 + 0.3 * (i + 0.5) / across, v = rate * r;
     for (int j = 0; j < along; ++j) {
-      // x = l u² keeps the square-root singularity at the leading edge harmless.
+      // The substitution x = l u² removes the square-root singularity at the leading edge.
       const double u = (j + 0.5) / along, x = 0.2 * u * u, dx = 0.4 * u / along;
       const double stress_Pa = 0.332 * air.density_kg_m3 * v * v / std::sqrt(v * x / nu);
       sum_N_m += 2 * stress_Pa * dx * (0.3 / across) * r;
@@ -91,7 +91,7 @@ TEST(ExternalAir, SphereHasTheQuotedMomentCoefficients) {
   EXPECT_NEAR(torque_N_m(ball, rate) / quoted, 1.0, 1e-12);
 }
 
-// Eq. 22 against the sum of slices, each with drag ½ ρ c_d 2R dx (ω x)² at its own arm.
+// Eq. 22 compared with the sum of slices, each with drag ½ ρ c_d 2R dx (ω x)² at its arm.
 TEST(ExternalAir, RadialCylinderIsTheSumOfItsSlices) {
   const AirPart cylinder{.shape = AirShape::radial_cylinder,
                          .radius_m = 0.02,
@@ -107,7 +107,7 @@ TEST(ExternalAir, RadialCylinderIsTheSumOfItsSlices) {
   EXPECT_NEAR(torque_N_m(cylinder, 1.0) / sum_N_m, 1.0, 1e-6);
 }
 
-// Far from the axis it does not matter which way a short cylinder points, or whether it is a face.
+// Far from the axis, neither the orientation of a short cylinder nor its shape matters.
 TEST(ExternalAir, BluntPartsAgreeFarFromTheAxis) {
   const AirPart radial{.shape = AirShape::radial_cylinder,
                        .radius_m = 0.01,
@@ -127,7 +127,7 @@ TEST(ExternalAir, BluntPartsAgreeFarFromTheAxis) {
   EXPECT_DOUBLE_EQ(torque_N_m(face, 1.0), torque_N_m(upright, 1.0));
 }
 
-// The printed form carries a stray viscosity: it is off by √ρ.
+// The printed equation contains a misprinted viscosity: the ratio is √ρ.
 TEST(ExternalAir, PublishedFormDiffersByTheMisprintedViscosity) {
   const double ratio = disc_torque_as_published(disc(0.3), air, 1.0) / torque_N_m(disc(0.3), 1.0);
   EXPECT_NEAR(ratio, std::sqrt(air.density_kg_m3), 5e-3);  // 1.94 for π·0.6159 = 1.935

@@ -1,4 +1,4 @@
-// Torques of fields: magnetic, gravity's gradient, the Earth's rotation, light.
+// Torques of fields: magnetic field, gravity gradient, rotation of the Earth, light.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -72,9 +72,8 @@ TEST(HelmholtzCage, PlaysAFile) {
   EXPECT_LT((torque - Vec3(0, 0, -1.5e-6)).norm(), 1e-18);
 }
 
-// A table over the sphere that is linear in the light's direction: then the planet's parts act as
-// their sum, which for an evenly glowing planet is M (R/r)² straight up from it, whatever the
-// attitude.
+// With a table that is linear in the direction of the light, the parts of the planet act as their
+// sum. For a uniformly glowing planet this is M (R/r)² from straight below, at any attitude.
 TEST(PlanetLight, AnEvenlyGlowingPlanetActsAsOneLightFromBelow) {
   const std::string path = sphere_table();
   const AttitudeModel in_orbit =
@@ -95,7 +94,7 @@ TEST(PlanetLight, AnEvenlyGlowingPlanetActsAsOneLightFromBelow) {
   const PlatformState state = state_of(in_orbit, attitude, Vec3::Zero(), 900.0);
   const Vec3 found = torque_body_N_m(planet("scale", 1.0), state);
   EXPECT_LT((found - expected).norm(), 1e-4 * expected.norm());
-  // Twice the table's light is half the torque.
+  // With a table for twice the light, the torque is half.
   const Vec3 half = torque_body_N_m(planet("table_irradiance_W_m2", 2722.0), state);
   EXPECT_LT((half - 0.5 * found).norm(), 1e-12 * found.norm());
 }
@@ -141,7 +140,7 @@ TEST(GravityGradient, OnTheGround) {
               0.05e-7);
 }
 
-// A body at rest among the stars turns once a sidereal day for the lab, however it is shaped.
+// A body at rest relative to the stars rotates once per sidereal day in the lab, for any inertia.
 TEST(EarthRotation, BodyAtRestAmongTheStarsTurnsBackward) {
   const AttitudeModel model = with(bench_model(), "earth_rotation", {});
   const Vec3 earth = model.environment.earth_rate_lab_rad_s;
@@ -153,8 +152,8 @@ TEST(EarthRotation, BodyAtRestAmongTheStarsTurnsBackward) {
   EXPECT_LT(end.lab_from_body.angularDistance(expected), 1e-9);
 }
 
-// Any free motion in the lab, seen from the stars, keeps its angular momentum. A gyrocompass: with
-// a rotor on board it is the sum of both momenta that is kept.
+// Every free motion conserves the angular momentum in inertial axes. With a rotor on board, as in a
+// gyrocompass, the sum of both momenta is conserved.
 TEST(EarthRotation, KeepsMomentumAmongTheStars) {
   const AttitudeModel plain = bench_model();
   const AttitudeModel rotor =
@@ -218,7 +217,7 @@ TEST_F(LightTable, TorqueFollowsTheTableAtAnyAttitude) {
   for (const Quat& q : {turned(0.3, {1, 2, 0}), turned(0.9, {-2, 1, 0.4}), turned(2.0, {0.1, 0, 1}),
                         Quat::Identity()}) {
     const Vec3 expected = 1.5 * closed_form(q.conjugate() * Vec3::UnitZ());
-    // Interpolation over 10 deg of a torque of 1e-7 N m.
+    // The table interpolates a torque of 1e-7 N m over 10 deg.
     EXPECT_LT((torque_body_N_m(model, state_of(model, q)) - expected).norm(), 1e-11);
   }
 }

@@ -22,7 +22,7 @@ Sensors instruments(double camera_rad, double gyro_rad_s, double drift) {
   return sensors;
 }
 
-// A platform at rest that is read without noise: every `camera_every`th row has an attitude.
+// Readings of a platform at rest without noise: every `camera_every`th row has an attitude.
 Readings at_rest(double interval_s, size_t rows, size_t camera_every, bool has_gyro) {
   Readings readings;
   readings.rows = rows;
@@ -46,9 +46,9 @@ AttitudeModel free_body() {
   return model;
 }
 
-// A gyro that drives between attitudes once a second: the steady state of R. Farrenkopf, J. Guid.
-// Control 1 (1978) 282, as F. Markley, J. Crassidis, Fundamentals of Spacecraft Attitude
-// Determination and Control (2014), sec. 6.2.5, print it: with S_u = σ_u T^1.5/σ_n, S_v = σ_v
+// A filter that a gyro drives, with an attitude once a second: the steady state of R. Farrenkopf,
+// J. Guid. Control 1 (1978) 282, as printed in F. Markley, J. Crassidis, Fundamentals of Spacecraft
+// Attitude Determination and Control (2014), sec. 6.2.5. With S_u = σ_u T^1.5/σ_n, S_v = σ_v
 // T^0.5/σ_n, γ² = 1 + S_v²/4 + S_u²/48 and ζ = γ + S_u/4 + √(2γS_u + S_v² + S_u²/3)/2, the error is
 // σ_n √(1 − 1/ζ²) after an attitude and σ_n √(ζ² − 1) before it.
 TEST(GyroDrivenFilter, ReachesFarrenkopfsSteadyState) {
@@ -69,14 +69,15 @@ TEST(GyroDrivenFilter, ReachesFarrenkopfsSteadyState) {
   for (int axis = 0; axis < 3; ++axis) {
     const double after = std::sqrt(e.filtered[30000].covariance(axis, axis));
     const double before = std::sqrt(e.filtered[29999].covariance(axis, axis));
-    // A reading of the gyro stands for its interval of a hundredth of the time between attitudes.
+    // Each reading of the gyro represents an interval of a hundredth of the time between attitudes.
     EXPECT_NEAR(after / (n * std::sqrt(1.0 - 1.0 / (zeta * zeta))), 1.0, 5e-3);
     EXPECT_NEAR(before / (n * std::sqrt(zeta * zeta - 1.0)), 1.0, 1e-2);
   }
 }
 
-// A rate that walks, seen by a camera alone: the discrete Riccati equation of angle and rate,
-// solved by SciPy 1.10 (scipy.linalg.solve_discrete_are) for T = 0.1 s, 3e-4 rad/s/√s, 6e-5 rad.
+// A random walk of the rate, measured by a camera alone: the discrete Riccati equation of angle and
+// rate, solved by SciPy 1.10 (scipy.linalg.solve_discrete_are) for T = 0.1 s, 3e-4 rad/s/√s, 6e-5
+// rad.
 TEST(WalkingRateFilter, ReachesTheSteadyStateOfTheRiccatiEquation) {
   FilterSettings settings;
   settings.motion = Motion::rate_walks;
@@ -93,7 +94,7 @@ TEST(WalkingRateFilter, ReachesTheSteadyStateOfTheRiccatiEquation) {
   }
 }
 
-// Steps of a tenth of a radian: 100 s at 1 rad/s are a thousand, a year is 3e8.
+// Steps of a tenth of a radian: 100 s at 1 rad/s need a thousand, a year needs 3e8.
 TEST(WalkingRateFilter, GivesUpWhereTheMotionIsTooFastForTheGap) {
   FilterSettings settings;
   settings.motion = Motion::rate_walks;
@@ -107,8 +108,9 @@ TEST(WalkingRateFilter, GivesUpWhereTheMotionIsTooFastForTheGap) {
   EXPECT_THROW(model.advance(state, 3.2e7, no_gyro), NumericalError);
 }
 
-// The smoother against all readings at once: angle and rate of one axis at N instants as one
-// Gaussian, whose information is that of the start, of every step and of every reading.
+// The smoother compared with an estimate from all readings at once: angle and rate of one axis at N
+// instants are one Gaussian, whose information is the sum of that of the start, all steps and all
+// readings.
 TEST(Smoother, EqualsTheJointEstimate) {
   constexpr int count = 12;
   const double h = 0.05, q = 3e-4 * 3e-4, n = 6e-5, rate_sigma = 2e-3, wide = 0.05;
@@ -168,7 +170,7 @@ FilterState somewhere(const MotionModel& model) {
   return state;
 }
 
-// The transition of the error state against differences of the motion itself.
+// The transition of the error state compared with differences of the motion.
 TEST(MotionOfAFilter, HasTheTransitionOfItsMean) {
   const Sensors sensors = instruments(6e-5, 2e-4, 0.0);
   for (const Motion motion : {Motion::disturbances, Motion::rate_walks, Motion::gyro_drives}) {
@@ -197,7 +199,7 @@ TEST(MotionOfAFilter, HasTheTransitionOfItsMean) {
   }
 }
 
-// Rows of a run with the noise, drawn parameters and all, and the study that estimates them.
+// A run with noise and drawn parameters, which study_of() estimates.
 PropagationRun drawn_run() {
   PropagationRun run;
   run.model = disturbed_body();
@@ -219,8 +221,8 @@ EstimateStudy study_of(const PropagationRun& run, int runs) {
   return study;
 }
 
-// Over 200 runs the mean of e P⁻¹ e is 6 ± √(12/200): within the 95 % band at the rows that are
-// looked at, four standard errors as the outer limit, and the innovations likewise.
+// The mean of e P⁻¹ e over 200 runs is 6 ± √(12/200). The tested rows must be within four standard
+// errors and most rows within the 95 % band. The same holds for the innovations.
 TEST(Consistency, OfTheFilterOver200Runs) {
   const PropagationRun run = drawn_run();
   const EstimateStudy study = study_of(run, 200);
@@ -236,11 +238,11 @@ TEST(Consistency, OfTheFilterOver200Runs) {
   for (const InnovationSum* sum : {&result.ensemble.attitude(), &result.ensemble.gyro()}) {
     EXPECT_NEAR(sum->per_number(), 1.0, 4.0 * std::sqrt(2.0 / sum->numbers));
   }
-  // Better than the filter everywhere but at the end, where both are one.
+  // The smoother is better than the filter except at the end, where both are equal.
   EXPECT_LT(result.worst_gain, 1.0);
 }
 
-// The mutant: a filter that takes the instruments for a quarter better than they are.
+// A deliberately wrong filter, which assumes 25 % less noise than the sensors have.
 TEST(Consistency, IsLostWithTheWrongNoise) {
   const PropagationRun run = drawn_run();
   EstimateStudy study = study_of(run, 60);
@@ -252,7 +254,7 @@ TEST(Consistency, IsLostWithTheWrongNoise) {
   EXPECT_GT(camera.per_number(), 1.0 + 10.0 * std::sqrt(2.0 / camera.numbers));
 }
 
-// The smoother's covariance is never above the filter's, in any direction.
+// The smoother's covariance is not above the filter's in any direction.
 TEST(Smoother, IsNowhereLessCertainThanTheFilter) {
   const PropagationRun run = drawn_run();
   const SimulatedRun simulated = simulate_run(run, 3);
@@ -272,8 +274,8 @@ TEST(Smoother, IsNowhereLessCertainThanTheFilter) {
   }
 }
 
-// Half a minute without attitudes: the filter's error grows there, the smoother's less, and both
-// are what they were after it.
+// 20 s without attitudes: the filter's error grows during the gap, that of the smoother less. After
+// the gap both are as before.
 TEST(Estimates, BridgeGaps) {
   PropagationRun run = drawn_run();
   run.duration_s = 60.0;
@@ -296,8 +298,8 @@ TEST(Estimates, BridgeGaps) {
   EXPECT_LT(errors.rms_attitude_rad, 5.0 * e.smoothed[120].attitude_sigma_rad());
 }
 
-// An encoder instead of a camera, on a level table: its steps of 20 arcsec hold the heading, which
-// the gyro alone loses by its bias.
+// An encoder instead of a camera, on a level table: its steps of 20 arcsec determine the yaw, which
+// the gyro alone loses because of its bias.
 TEST(Estimates, TakeTheHeadingOfAnEncoder) {
   PropagationRun run = drawn_run();
   std::erase_if(run.model.disturbances,
@@ -324,14 +326,14 @@ TEST(Estimates, TakeTheHeadingOfAnEncoder) {
   EXPECT_GT(heading_error_rad(false), 200 * arcsecond_rad);
 }
 
-// Turning about all three axes the scale of the gyro is found; about an axis that does not turn it
-// is not, and the estimate reports it.
+// The scale of the gyro is estimated for axes with rotation. For an axis without rotation it is
+// not, and the estimate reports this.
 TEST(Estimates, FindTheScaleOfAGyroThatTurns) {
   PropagationRun run;
   run.model.platform.inertia_kg_m2 = 0.1 * Mat3::Identity();
   run.model = with(run.model, "gyro_scale", {{"scale", numbers({0, 0, 0})}});
   for (Parameter& p : run.model.disturbances.back().parameters) p.sigma = 0.01;
-  // Constant rates separate scale from bias only by the prior of the bias.
+  // With constant rates, only the prior of the bias separates scale from bias.
   run.model = with(run.model, "gyro_bias", {{"bias_rad_s", numbers({0, 0, 0})}});
   for (Parameter& p : run.model.disturbances.back().parameters) p.sigma = 1e-5;
   run.sensors = instruments(1e-4, 2e-4, 0.0);
@@ -344,7 +346,8 @@ TEST(Estimates, FindTheScaleOfAGyroThatTurns) {
   const Estimation& e = result.methods[result.chosen].estimation;
   ASSERT_EQ(e.parameter_names[0], "gyro_scale.scale[0]");
   for (int axis = 0; axis < 3; ++axis) {
-    // As simulate_run() draws them: the seed, its stream, one number each.
+    // The arguments with which simulate_run() draws the parameters: the seed, its stream and an
+    // index.
     const double truth = 0.01 * gaussian(21, 1000, static_cast<uint64_t>(axis), 0);
     EXPECT_LT(std::abs(e.parameters[axis] - truth), 4.0 * e.sigma[axis]);
     EXPECT_LT(e.sigma[axis], axis < 2 ? 0.003 : 0.011);
@@ -356,7 +359,7 @@ TEST(Estimates, FindTheScaleOfAGyroThatTurns) {
               testing::Not(testing::Contains(testing::StartsWith("gyro_scale.scale[0]"))));
 }
 
-// A camera that reports the past: dated back, the filter is as good as with one that does not.
+// With attitudes of a late camera dated back, the filter is as good as without latency.
 TEST(Estimates, DateLateAttitudesBack) {
   PropagationRun run = drawn_run();
   run.model = with(run.model, "attitude_latency", {{"latency_s", node(0.1)}});
@@ -370,13 +373,13 @@ TEST(Estimates, DateLateAttitudesBack) {
     return run_errors(estimate_attitude(own, readings).filtered, simulated.truth, 10)
         .rms_attitude_rad;
   };
-  // It turns at 0.1 rad/s: 0.01 rad in the time that it is late.
+  // The platform rotates at 0.1 rad/s: 0.01 rad during the latency of 0.1 s.
   EXPECT_LT(rms(0.1), 4e-4);
   EXPECT_GT(rms(0.0), 5e-3);
 }
 
-// The 2.5 % and 97.5 % of tables (Abramowitz and Stegun, table 26.8): 3.2470 and 20.4832 for
-// 10, 74.2219 and 129.5612 for 100.
+// The quantiles 2.5 % and 97.5 % of tables (Abramowitz and Stegun, table 26.8): 3.2470 and 20.4832
+// for 10, 74.2219 and 129.5612 for 100 degrees of freedom.
 TEST(Bands, AreThoseOfTables) {
   EXPECT_NEAR(chi2_band_95(10).low / 3.24697, 1.0, 1e-2);
   EXPECT_NEAR(chi2_band_95(10).high / 20.48318, 1.0, 2e-3);

@@ -17,8 +17,8 @@ namespace {
 
 constexpr double nT = 1e-9;
 
-// decimal year, height above the ellipsoid [km], geodetic colatitude and east longitude [deg],
-// then X, Y, Z [nT], as the original Fortran program igrf14syn prints them.
+// Decimal year, height above the ellipsoid [km], geodetic colatitude and east longitude [deg], then
+// X, Y, Z [nT], as printed by the original Fortran program igrf14syn.
 struct GeodeticRow {
   double year, height_km, colatitude_deg, longitude_deg;
   Vec3 north_east_down_nT;
@@ -115,7 +115,7 @@ TEST(Igrf, FieldHasNeitherDivergenceNorCurl) {
   EXPECT_LT((gradient - gradient.transpose()).norm(), 1e-6 * size);
 }
 
-// At the pole the horizontal field is one vector, whatever meridian describes it.
+// At the pole the horizontal field is one vector for all meridians.
 TEST(Igrf, HorizontalFieldAtThePoleIsOneVector) {
   const GeomagneticModel model(2026.0);
   const auto in_polar_plane = [&](double longitude_rad) -> Vec2 {
@@ -144,7 +144,7 @@ TEST(Igrf, RefusesYearsWithoutCoefficients) {
   EXPECT_THROW(GeomagneticModel(std::nan("")), NumericalError);
 }
 
-// The table in the program against the official release, number by number.
+// The table in the program compared with the official release, number by number.
 TEST(Igrf, CommittedCoefficientsAreTheOfficialOnes) {
   const char* const name = "reference/igrf14coeffs.txt";
   PHOTORQUE_NEEDS_THIRD_PARTY(name);
@@ -183,7 +183,7 @@ TEST(Igrf, CommittedCoefficientsAreTheOfficialOnes) {
 // The degree-1 part dominates far away: at 60 Earth radii the full model and its own dipole agree.
 TEST(DipoleField, IsTheFarLimitOfTheFullModel) {
   const double radius_m = 60 * 6371.2e3;
-  // IGRF-14 at 2025.0: dipole moment from g10, g11, h11; the magnetic axis has this colatitude.
+  // IGRF-14 at 2025.0: dipole moment from g11, h11, g10.
   const Vec3 dipole_nT(-1410.3, 4545.5, -29350.0);
   const double equatorial_T = dipole_nT.norm() * nT;
   EXPECT_NEAR(GeomagneticModel(2025.0).dipole_equatorial_field_T(), equatorial_T, 1e-15);
@@ -192,7 +192,7 @@ TEST(DipoleField, IsTheFarLimitOfTheFullModel) {
   const Vec3 up(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
   const double full_T =
       GeomagneticModel(2025.0).north_east_down_T(GeocentricPosition{radius_m, theta, phi}).norm();
-  // A dipole: equatorial field · (R/r)³ √(1 + 3 cos²) of the magnetic colatitude.
+  // Field of a dipole: equatorial field · (R/r)³ √(1 + 3 cos²) of the magnetic colatitude.
   const double cosine = axis.dot(up);
   const double dipole_T = equatorial_T / std::pow(60.0, 3) * std::sqrt(1.0 + 3.0 * cosine * cosine);
   EXPECT_NEAR(full_T / dipole_T, 1.0, 5e-3);

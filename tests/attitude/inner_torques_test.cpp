@@ -27,7 +27,7 @@ TEST(RotorMomentum, GyrostatPrecessesAtTheClosedFormRate) {
 TEST(Tether, TwistsWithThePeriodOfATorsionSpring) {
   const AttitudeModel model =
       with(bench_model(), "tether", {{"stiffness_N_m_per_rad", node(2e-4)}});
-  // About a principal axis the law is linear at any angle below half a turn.
+  // For a rotation about a principal axis, the law is linear at all angles below half a turn.
   const double half_period_s = pi * std::sqrt(0.19 / 2e-4);
   const PlatformState end =
       propagated(model, state_of(model, turned(2.5, Vec3::UnitZ())), half_period_s);
@@ -76,20 +76,20 @@ AttitudeModel flexible(const std::vector<double>& axis, double frequency_Hz, dou
   return with(bench_model(), "flexible_mode", keys);
 }
 
-// Two inertias on a spring, free: ω = ω_n √(I/(I − J)), about the common centre of rotation.
+// Two inertias coupled by a spring, without other torques: ω = ω_n √(I/(I − J)).
 TEST(FlexibleMode, FreeBodySwingsAtTheCoupledFrequency) {
   const double I = 0.19, appendage = 0.05, f = 0.4;
   const AttitudeModel model = flexible({0, 0, 2}, f, 0, appendage);
   PlatformState start = state_of(model, Quat::Identity());
-  start.extra[0] = 0.01;  // let go with the appendage bent
+  start.extra[0] = 0.01;  // released with a deflected appendage
   const double coupled = 2 * pi * f * std::sqrt(I / (I - appendage));
   const PlatformState half = propagated(model, start, pi / coupled);
   EXPECT_NEAR(half.extra[0], -0.01, 1e-10);
-  // Momentum stays zero, so the body has turned by 2 · 0.01 J/I the other way.
+  // The momentum stays zero, so the body rotates by 2 · 0.01 J/I in the opposite direction.
   EXPECT_NEAR(2 * std::asin(half.lab_from_body.z()), 2 * 0.01 * appendage / I, 1e-10);
 }
 
-// φ = φ₀ cos ωt + φ'₀/ω sin ωt, ω as above, on a body that turns at the start.
+// φ = φ₀ cos ωt + φ'₀/ω sin ωt with ω as above, on a body that rotates at the start.
 TEST(FlexibleMode, StartsAsItsKeysState) {
   const double I = 0.19, appendage = 0.05, f = 0.4, rate = 0.02;
   const AttitudeModel model =
@@ -118,7 +118,7 @@ TEST(FlexibleMode, KeepsAngularMomentumAndLosesEnergyToItsDamper) {
            0.5 * 0.03 * angular_frequency * angular_frequency * s.extra[0] * s.extra[0];
   };
   const PlatformState start = state_of(model, Quat::Identity(), {0.3, -0.1, 0.2});
-  EXPECT_NEAR(start.extra[1], axis.dot(Vec3(0.3, -0.1, 0.2)), 1e-16);  // begins unbent and at rest
+  EXPECT_NEAR(start.extra[1], axis.dot(Vec3(0.3, -0.1, 0.2)), 1e-16);  // at rest, no deflection
   const PlatformState middle = propagated(model, start, 20), end = propagated(model, start, 40);
   EXPECT_LT((momentum_lab(end) - momentum_lab(start)).norm(), 1e-11);
   EXPECT_LT(energy(middle), energy(start));
@@ -126,7 +126,7 @@ TEST(FlexibleMode, KeepsAngularMomentumAndLosesEnergyToItsDamper) {
 }
 
 // The equations follow from L = ½ ωᵀ(I + φ J S) ω + J φ' a·ω + ½ J φ'² − ½ J ω_n² φ², whose energy
-// and momentum are constant, whatever S is.
+// and momentum are constant for any S.
 TEST(FlexibleMode, KeepsMomentumAndEnergyWhereItChangesTheInertia) {
   const double J = 0.03, f = 0.5;
   const std::vector<double> slope{0.4, -0.3, -0.1, 0.5, -0.2, 0.6};
@@ -156,7 +156,7 @@ TEST(FlexibleMode, KeepsMomentumAndEnergyWhereItChangesTheInertia) {
   EXPECT_NEAR(energy(end), energy(start), 1e-9);
 }
 
-// Nothing moves, so nothing but the derivatives keeps the steps short enough for a swing.
+// The state is constant, so only the derivatives limit the steps to a fraction of a swing.
 TEST(FlexibleMode, OfAnAppendageAtRestTheDerivativeIsTheSwing) {
   const double I = 0.19, appendage = 0.05, f = 1.3;
   const AttitudeModel model = flexible({0, 0, 1}, f, 0, appendage);
@@ -169,7 +169,8 @@ TEST(FlexibleMode, OfAnAppendageAtRestTheDerivativeIsTheSwing) {
   EXPECT_NEAR(propagated.derivatives[2], 2 * appendage / I, 1e-6);
 }
 
-// With the body at rest about its axis, wherever that points: against differences of whole runs.
+// The appendage starts at rest relative to the body for any axis. Derivatives by the axis, compared
+// with differences of runs.
 TEST(FlexibleMode, BeginsWithTheBodyWhenItsAxisChanges) {
   const Vec3 rate(0.3, -0.1, 0.2);
   const double times_s[] = {7.3};

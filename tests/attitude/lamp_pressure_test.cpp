@@ -1,4 +1,4 @@
-// The lamps' current in the schedule, and the torque that follows it.
+// The current of the lamps in the schedule, and the torque that is proportional to it.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -24,7 +24,7 @@ TEST(LampCurrent, HoldsUntilItChangesByMoreThanItsNoise) {
     EXPECT_DOUBLE_EQ(s.at(t).led_current_A, expected_A[t]) << t;
     EXPECT_EQ(s.at(t).lamps_as_stated, 0.0);
   }
-  // A step of the propagation for every change, no more.
+  // One entry of the schedule for each change.
   EXPECT_EQ(s.time_s.size(), 4u);
 }
 
@@ -33,7 +33,8 @@ TEST(LampCurrent, IsNotKnownWithoutAChannel) {
   EXPECT_EQ(ZeroOrderHold{}.led_current_A, 0.0);
 }
 
-// Half of the current, half of the torque, along lab axes; all of it where the current is unknown.
+// Half the current gives half the torque, along lab axes. An unknown current gives the whole
+// torque.
 TEST(LampPressureLaw, IsProportionalToTheCurrent) {
   const auto torque_body = [](const ZeroOrderHold& held) {
     AttitudeModel model = bench_model();
@@ -41,7 +42,7 @@ TEST(LampPressureLaw, IsProportionalToTheCurrent) {
     model.schedule.append(0.0, held);
     model = with(model, "lamp_pressure",
                  {{"torque_lab_N_m", numbers({1e-5, -2e-5, 3e-5})}, {"led_current_A", node(0.7)}});
-    // A quarter of a turn about the vertical: lab x is the body's −y, lab y its x.
+    // After a quarter turn about the vertical, lab x is the body's −y and lab y its x.
     return torque_body_N_m(model, state_of(model, turned(0.5 * pi, Vec3::UnitZ())));
   };
   const Vec3 half = torque_body({.led_current_A = 0.35, .lamps_as_stated = 0.0}),

@@ -1,4 +1,4 @@
-// Torques of gravity on a centre of mass that is not where it should be.
+// Torques of gravity on a displaced centre of mass.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,9 +14,9 @@
 namespace photorque {
 namespace {
 
-// Free fall about the centre of rotation from a quarter turn's worth of amplitude: the period of a
-// physical pendulum, exact with the complete elliptic integral. m = 29 kg, d = 81 µm, J = 1.3 kg m²
-// is a published testbed: 47.2 s for small swings.
+// Swings of up to 80 deg about the centre of rotation: the exact period of a physical pendulum is a
+// complete elliptic integral. m = 29 kg, d = 81 µm, J = 1.3 kg m² is a published testbed: 47.2 s
+// for small swings.
 TEST(StaticUnbalance, SwingsWithThePeriodOfAPendulum) {
   AttitudeModel model;
   model.platform.mass_kg = 29.0;
@@ -38,14 +38,15 @@ TEST(MassShift, ActsFromItsInstantOn) {
                                    {{"time_s", node(100)}, {"offset_m", numbers({1e-6, 0, 0})}});
   const PlatformState start = state_of(model, Quat::Identity());
   EXPECT_LT(propagated(model, start, 100.0).rate_body_rad_s.norm(), 1e-15);
-  // Then a constant torque m r g about −y … for a moment: θ = ½ α t².
+  // Afterwards, the torque m r g about y is nearly constant for a second: θ = ½ α t².
   const PlatformState later = propagated(model, start, 101.0);
   const double acceleration = 7.0 * g * 1e-6 / 0.12;
   EXPECT_NEAR(later.rate_body_rad_s.y() / acceleration, 1.0, 1e-6);
   EXPECT_NEAR(2 * later.lab_from_body.y() / (0.5 * acceleration), 1.0, 1e-6);
 }
 
-// Eq. 34: the full charge of the paper's battery, rounded lithium; its 2.3e-4 N m at zero tilt.
+// Eq. 34: the full charge of the paper's battery with the rounded lithium gives its 2.3e-4 N m at
+// zero tilt.
 TEST(BatteryDischarge, ReproducesThePaperFromItsCells) {
   const AttitudeModel model =
       with(bench_model(), "battery_discharge",
@@ -56,7 +57,7 @@ TEST(BatteryDischarge, ReproducesThePaperFromItsCells) {
   EXPECT_EQ(torque_body_N_m(model, state_of(model, Quat::Identity())).norm(), 0.0);
 }
 
-// 1 µm per ampere hour, drawn at 2 A for half an hour, is 1 µm.
+// 1 µm per ampere hour at 2 A for half an hour is 1 µm.
 TEST(BatteryDischarge, CountsAmpereHours) {
   AttitudeModel model =
       with(bench_model(), "battery_discharge", {{"shift_m_per_Ah", numbers({0, 1e-6, 0})}});
@@ -65,9 +66,8 @@ TEST(BatteryDischarge, CountsAmpereHours) {
   EXPECT_NEAR(torque_body_N_m(model, after).x(), -7.0 * g * 1e-6, 1e-12);
 }
 
-// Wang, Li and Bao (2006), Acta Aeronautica: between lateral and axial stiffness k_x and k_z the
-// torque is (m g)² (1/k_x − 1/k_z) sin θ cos θ; balanced at zero tilt, (m g)²/k_z sin θ is taken
-// out.
+// Wang, Li and Bao (2006), Acta Aeronautica: with lateral and axial stiffness k_x and k_z the
+// torque is (m g)² (1/k_x − 1/k_z) sin θ cos θ. Balancing at zero tilt adds (m g)²/k_z sin θ.
 TEST(ElasticSag, AnisoelasticTorqueOfALumpedPlatform) {
   const double weight = 7.0 * g, kx = 4e6, kz = 9e6;
   const AttitudeModel model = with(bench_model(), "elastic_sag",
@@ -113,7 +113,7 @@ TEST(ElasticSag, RefusesACouplingThatIsNotSymmetric) {
                InputError);
 }
 
-// The paper's 1.23e-5 N m for one axis at rest; three axes add as vectors.
+// The paper's 1.23e-5 N m is for one axis at rest. Three axes add as vectors.
 TEST(StepperQuantization, ReproducesThePaper) {
   const std::vector<std::pair<std::string, SettingsNode>> usual = {{"moving_mass_kg", node(0.25)},
                                                                    {"lead_m", node(2e-3)}};
@@ -130,12 +130,12 @@ TEST(StepperQuantization, ReproducesThePaper) {
   EXPECT_THROW(make(bench_model(), "stepper_quantization", too_far), InputError);
 }
 
-// A floor that accelerates at a is a lab whose gravity is g − a (equivalence).
+// An acceleration a of the floor has the same effect as a gravity of g − a (equivalence principle).
 TEST(FloorVibration, IsGravityOfAnAcceleratedLab) {
   const Vec3 offset_m(2e-6, -1e-6, -3e-5), acceleration(0.3, -0.2, 0.1);
   const AttitudeModel rigid =
       with(bench_model(), "static_unbalance", {{"offset_m", numbers({2e-6, -1e-6, -3e-5})}});
-  // Frequency zero and a quarter turn of phase: a constant acceleration.
+  // Zero frequency and a phase of a quarter turn: a constant acceleration.
   const AttitudeModel vibrating = with(rigid, "floor_vibration",
                                        {{"acceleration_m_s2", numbers({0.3, -0.2, 0.1})},
                                         {"frequency_Hz", node(0)},

@@ -63,7 +63,7 @@ std::string oem_text(const Path& path, double duration_s, double interval_s,
          options.interpolation + "META_STOP\n\nCOMMENT states\n" + rows;
 }
 
-// Kepler's ellipse, closed form but for the eccentric anomaly.
+// Kepler's ellipse in closed form, except for the iteration of the eccentric anomaly.
 std::array<Vec3, 2> ellipse(double time_s) {
   constexpr double mu = 3.986004418e14, a_m = 8e6, e = 0.15;
   const double n = std::sqrt(mu / (a_m * a_m * a_m)), mean = 0.4 + n * time_s;
@@ -83,9 +83,10 @@ double largest_error_m(const OrbitEphemeris& orbit) {
   return largest;
 }
 
-// States 240 s apart, as those of the ISS that NASA publishes. Hermite's polynomial of degree 7
-// errs by f⁽⁸⁾/8! times the product of the squared distances to the states: with 0.21 rad from one
-// to the next 2e-9 of the distance in the middle and 3e-8, a quarter of a metre, beside the ends.
+// States 240 s apart, like those of the ISS that NASA publishes. The error of Hermite's polynomial
+// of degree 7 is f⁽⁸⁾/8! times the product of the squared distances to the states. With 0.21 rad
+// between states it is 2e-9 of the distance in the middle of the ephemeris and 3e-8, a quarter of a
+// metre, near its ends.
 TEST(OrbitMessage, IsInterpolatedAsItStates) {
   for (const auto& [interpolation, largest_m] :
        std::initializer_list<std::pair<const char*, double>>{
@@ -114,7 +115,7 @@ TEST(OrbitMessage, KvnAndXmlHoldTheSame) {
   }
 }
 
-// Editors of Windows begin files with a byte-order mark and end lines with two characters.
+// Editors on Windows may begin files with a byte-order mark and end lines with two characters.
 TEST(OrbitMessage, MarksOfEditorsAreNoWords) {
   const std::string text = oem_text(ellipse, 2400.0, 60.0);
   std::string edited = "\xef\xbb\xbf";
@@ -123,7 +124,7 @@ TEST(OrbitMessage, MarksOfEditorsAreNoWords) {
   EXPECT_EQ(OrbitEphemeris(marked).at(17.0)[0], OrbitEphemeris(plain).at(17.0)[0]);
 }
 
-// Segments as after a manoeuvre, which no polynomial crosses; covariances in between.
+// Segments as after a manoeuvre, which no polynomial may cross, with covariances between them.
 TEST(OrbitMessage, SegmentsFollowEachOther) {
   const auto turned_back = [](double t_s) {
     const auto [r, v] = ellipse(1200.0 - t_s);
@@ -143,7 +144,7 @@ TEST(OrbitMessage, SegmentsFollowEachOther) {
   EXPECT_THROW(OrbitEphemeris{apart}, InputError);
 }
 
-// A geostationary satellite rests in ITRF, and moves at 3.0747 km/s in inertial axes.
+// A geostationary satellite is at rest in ITRF and moves at 3.0747 km/s in inertial axes.
 TEST(OrbitMessage, FramesThatTurnWithTheEarthBecomeInertial) {
   const auto file = new_file(oem_text(
       [](double) {
@@ -152,7 +153,7 @@ TEST(OrbitMessage, FramesThatTurnWithTheEarthBecomeInertial) {
       7200.0, 120.0, {.frame = "ITRF2014", .start = "2007-10-15T00:00:00"}));
   const OrbitEphemeris orbit(file);
   const auto [begin_m, velocity_m_s] = orbit.at(0.0);
-  // The Earth rotation angle at MJD 54388 by the test of SOFA's iauEra00.
+  // The Earth rotation angle at MJD 54388 from the test of SOFA's iauEra00.
   EXPECT_NEAR(std::atan2(begin_m.y(), begin_m.x()), 0.4022837240028158102, 1e-12);
   EXPECT_NEAR(velocity_m_s.norm(), 3074.66, 0.05);
   const Vec3 hour_m = orbit.at(3600.0)[0];
@@ -179,7 +180,7 @@ TEST(OrbitMessage, TimeSystemsAreConverted) {
   EXPECT_FALSE(to_utc(*parse_epoch("2017-01-01T00:00:35"), "TCB"));
 }
 
-// SOFA's test of iauGmst06, at MJD 53736.
+// Value of SOFA's test of iauGmst06, at MJD 53736.
 TEST(EarthRotation, AgreesWithSofa) {
   EXPECT_NEAR(greenwich_sidereal_time_rad(*parse_epoch("2006-01-01T00:00:00")),
               1.754174971870091203, 1e-8);
@@ -205,10 +206,10 @@ TEST(OrbitMessage, UnsupportedFeaturesAreRejected) {
     EXPECT_THAT(refusal, testing::HasSubstr(word));
     EXPECT_THAT(refusal, testing::HasSubstr(file.string()));
   }
-  // States an hour apart, of a circuit in two: no polynomial of these.
+  // States an hour apart, about two per revolution, are too few for a polynomial.
   const auto sparse = new_file(oem_text(ellipse, 14400.0, 3600.0));
   EXPECT_THROW(OrbitEphemeris{sparse}, InputError);
-  // Metres in place of kilometres.
+  // Numbers that are too small by a factor of 1000, so not in kilometres.
   const auto metres = new_file(oem_text(
       [](double t_s) {
         const auto [r, v] = ellipse(t_s);
@@ -219,7 +220,8 @@ TEST(OrbitMessage, UnsupportedFeaturesAreRejected) {
   EXPECT_THROW(OrbitEphemeris(right).at(1000.0), NumericalError);
 }
 
-// The torque of gravity 3μ/r³ u × J u on the ellipse, an hour after an epoch ten minutes into it.
+// The gravity gradient torque 3μ/r³ u × J u on the ellipse, one hour after an epoch that is ten
+// minutes after the first state.
 TEST(Orbit, OfAnEphemerisHasTheGradientOfItsStates) {
   const auto file = new_file(oem_text(ellipse, 9600.0, 120.0));
   AttitudeModel model = bench_model();
@@ -235,7 +237,7 @@ TEST(Orbit, OfAnEphemerisHasTheGradientOfItsStates) {
   EXPECT_LT((found - expected).norm(), 1e-7 * expected.norm());
 }
 
-// States of a circle give the field and the shadow of the circle.
+// States on a circle give the same field as the circle.
 TEST(Orbit, OfStatesOnACircleIsTheCircle) {
   const CircularOrbit circle{.radius_m = 6871.2e3, .inclination_rad = 0.9, .phase_rad = 0.3};
   const double motion_rad_s = circle.motion_rad_s();
@@ -270,7 +272,8 @@ TEST(Orbit, OfStatesOnACircleIsTheCircle) {
   }
 }
 
-// Behind the Earth no sunlight presses, by the Sun of the environment where the orbit has none.
+// Behind the Earth there is no light pressure. The Sun is that of the environment if the orbit has
+// none.
 TEST(Orbit, TakesTheSunOfTheEnvironment) {
   const auto pressure = [](const Vec3& sun,
                            std::vector<std::pair<std::string, SettingsNode>> orbit) {

@@ -1,4 +1,4 @@
-// Light from a planet against closed forms, and against the same integral done another way.
+// Light from a planet compared with closed forms and with an independent integration.
 #include "attitude/environment/planet_light.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ PlanetSurface even(double albedo, double emissivity) {
   return {{albedo, 0.0, 0.0}, {emissivity, 0.0, 0.0}};
 }
 
-// Each kind of light on a plate of this normal (axes of planet_axes()).
+// Reflected and infrared irradiance of a plate with this normal (axes of planet_axes()).
 PlanetIrradiance on_plate(const std::vector<PlanetPart>& parts, const PlanetSurface& surface,
                           const Vec3& normal, const Mat3& axes, const Vec3& to_sun,
                           double season = 0.0) {
@@ -30,8 +30,8 @@ PlanetIrradiance on_plate(const std::vector<PlanetPart>& parts, const PlanetSurf
   return sum;
 }
 
-// An evenly bright sphere of exitance M gives M (R/r)² cos γ to a plate that sees all of it, γ away
-// from its centre.
+// A uniformly bright sphere of exitance M gives M (R/r)² cos γ to a plate that sees all of it,
+// where γ is the angle between the normal of the plate and the direction to the centre.
 // Source: J. R. Howell, R. Siegel, M. P. Mengüç, A Catalog of Radiation Heat Transfer Configuration
 // Factors, B-12 and B-13.
 TEST(PlanetLight, APlateThatSeesTheWholePlanetHasTheClosedViewFactor) {
@@ -59,7 +59,7 @@ TEST(PlanetLight, AnUprightPlateSeesHalf) {
   EXPECT_NEAR(got.infrared_W_m2 / (1361.0 / 4.0), factor, 1e-4 * factor);
 }
 
-// From far away a Lambert sphere shines as (2/3) a E (R/r)² (sin α + (π − α) cos α)/π at the phase
+// From far away a Lambert sphere gives (2/3) a E (R/r)² (sin α + (π − α) cos α)/π at the phase
 // angle α. Source: H. N. Russell, Astrophysical Journal 43, 173 (1916).
 TEST(PlanetLight, FromFarAwayTheSphereHasItsPhases) {
   const double ratio = 1e-3;
@@ -75,7 +75,7 @@ TEST(PlanetLight, FromFarAwayTheSphereHasItsPhases) {
   }
 }
 
-// The surface itself, thrown with points, by the formula for flat parts: M cos α dA/(π d²).
+// A sum over points on the surface by the formula for flat parts: M cos α dA/(π d²).
 TEST(PlanetLight, AgreesWithPointsThrownOnTheSphere) {
   const double distance_m = earth_m + 550e3;
   const PlanetSurface earth;
@@ -86,7 +86,7 @@ TEST(PlanetLight, AgreesWithPointsThrownOnTheSphere) {
   constexpr size_t count = 4'000'000;
   const double lowest = earth_m / distance_m;  // cosine of the horizon's angle at the centre
   for (size_t i = 0; i < count; ++i) {
-    // A lattice of two irrational steps covers the cap evenly.
+    // A lattice with two irrational steps covers the cap uniformly.
     const double u = std::fmod(0.5 + 0.7548776662466927 * static_cast<double>(i), 1.0);
     const double v = std::fmod(0.5 + 0.5698402909980532 * static_cast<double>(i), 1.0);
     const double c = lowest + (1.0 - lowest) * u, s = std::sqrt(1.0 - c * c);
@@ -110,10 +110,10 @@ TEST(PlanetLight, AgreesWithPointsThrownOnTheSphere) {
     return sum;
   };
   EXPECT_LT((flow(24, 128) - expected).norm(), 2e-4 * expected.norm());
-  EXPECT_LT((flow(4, 12) - expected).norm(), 3e-3 * expected.norm());  // the usual number of parts
+  EXPECT_LT((flow(4, 12) - expected).norm(), 3e-3 * expected.norm());  // the default partition
 }
 
-// 22 December is the northern winter: more snow in the north, less infrared.
+// 22 December is in the northern winter: more snow and less infrared in the north.
 TEST(PlanetLight, SeasonsAreTheNorthernOnes) {
   EXPECT_NEAR(season_cosine(2024.0 + 355.0 / 365.0), 1.0, 1e-9);
   EXPECT_NEAR(season_cosine(2024.0 + 172.5 / 365.0), -1.0, 1e-9);

@@ -1,5 +1,5 @@
-// Ways to bring power aboard: coils, microwaves, eddy currents, cables, against closed forms,
-// Neumann's integral in 30 digits, and published values.
+// Power supplies of a platform: coils, microwaves, eddy currents and cables, compared with closed
+// forms, Neumann's integral to 30 digits and published values.
 #include <cmath>
 
 #include "attitude/studies/cable.h"
@@ -24,7 +24,7 @@ TEST(Elliptic, HasItsKnownValues) {
     const EllipticIntegrals a = complete_elliptic(m, 1.0 - m), b = complete_elliptic(1.0 - m, m);
     EXPECT_NEAR(a.second * b.first + b.second * a.first - a.first * b.first, 0.5 * pi, 1e-13) << m;
   }
-  // The series of both combinations to the second term.
+  // Series of both combinations, to the second term.
   for (const double m : {1e-9, 1e-5, 1e-3}) {
     const EllipticIntegrals small = complete_elliptic(m, 1.0 - m);
     EXPECT_NEAR(small.potential / (pi * m * m / 32.0), 1.0 + 0.75 * m, 2.0 * m * m + 1e-15);
@@ -79,8 +79,9 @@ TEST(Filaments, CoaxialCirclesHaveMaxwellsClosedForm) {
                NumericalError);
 }
 
-// μ₀I/4π (a × b)(|a| + |b|) / (|a||b|(|a||b| + a·b)) over the sides of a closed polygon, a and b
-// from the point to their ends: Biot and Savart's law integrated along straight wires.
+// Field of a closed polygon per ampere: the sum over the sides of μ₀/4π (a × b)(|a| + |b|) /
+// (|a||b|(|a||b| + a·b)), where a and b are the vectors from the point to the ends of a side. This
+// is Biot and Savart's law integrated along straight wires.
 Vec3 polygon_field_T_A(const std::vector<Vec3>& corners_m, const Vec3& at_m) {
   Vec3 sum = Vec3::Zero();
   for (size_t i = 0; i < corners_m.size(); ++i) {
@@ -91,8 +92,8 @@ Vec3 polygon_field_T_A(const std::vector<Vec3>& corners_m, const Vec3& at_m) {
   return vacuum_permeability_N_A2 / (4.0 * pi) * sum;
 }
 
-// On the axis μ₀ R²/(2 (R² + z²)^{3/2}); elsewhere that of a polygon of many sides, whose error
-// falls with the square of their number; and the curl of the potential.
+// On the axis the field is μ₀ R²/(2 (R² + z²)^{3/2}). Elsewhere it is that of a polygon with many
+// sides, whose error decreases with the square of their number, and the curl of the potential.
 TEST(Filaments, FieldIsThatOfTheWire) {
   const CircularFilament loop{{0.01, 0.02, 0.03}, Vec3(2, -1, 2) / 3.0, 0.1};
   for (const double z_m : {0.0, 0.05, -0.3}) {
@@ -130,8 +131,8 @@ TEST(Filaments, FieldIsThatOfTheWire) {
   }
 }
 
-// Force and torque are the derivatives of the mutual inductance by place and turn; action is
-// reaction.
+// Force and torque are the derivatives of the mutual inductance by position and rotation. Action
+// equals reaction.
 TEST(Filaments, ForceAndTorqueAreDerivativesOfTheInductance) {
   const CircularFilament source{Vec3::Zero(), Vec3::UnitZ(), 0.1};
   const CircularFilament target{{0.02, -0.03, 0.06}, Vec3(0.3, 0.1, 0.9).normalized(), 0.07};
@@ -187,17 +188,17 @@ TEST(CoilLink, EfficiencyIsKirchhoffsAndTheBestLoadIsBest) {
   for (const double factor : {0.9, 1.1, 0.5, 2.0}) {
     EXPECT_LT(currents_for(circuit, factor * load_ohm, 25.0).efficiency, best);
   }
-  // At resonance the currents stand a quarter of a period apart.
+  // At resonance the phase between the currents is a quarter of a period.
   EXPECT_NEAR(currents.mean_product_A2, 0.0, 1e-12 * currents.first_A * currents.second_A);
-  // Else by the angle of the loop: cos of it is X/|R₂ + R_L + jX|.
+  // Otherwise the cosine of the phase is X/|R₂ + R_L + jX|.
   circuit.reactance_2_ohm = 0.7;
   const CoilCurrents off = currents_for(circuit, load_ohm, 25.0);
   const double cosine = 0.7 / std::hypot(circuit.resistance_2_ohm + load_ohm, 0.7);
   EXPECT_NEAR(std::abs(off.mean_product_A2), 0.5 * off.first_A * off.second_A * cosine, 1e-10);
 }
 
-// Both limits: an induced current that the field passes through, π σ ω² B² a⁵/15; and one in the
-// skin alone, ½ Rₛ ∮ H_t² with H_t = 3/2 H sin θ, that is 3π a² (B/μ₀)²/(σ δ).
+// Two limits. If the field penetrates the sphere, the loss is π σ ω² B² a⁵/15. If the current flows
+// only in the skin, it is ½ Rₛ ∮ H_t² with H_t = 3/2 H sin θ, that is 3π a² (B/μ₀)²/(σ δ).
 TEST(EddySphere, LosesLightAtItsLimits) {
   constexpr double a_m = 0.03, S_m = 2.5e7, field_T = 1e-3;
   const double slow = 2.0 * pi * 0.1;
@@ -211,7 +212,7 @@ TEST(EddySphere, LosesLightAtItsLimits) {
                   (3.0 * pi * a_m * a_m * field_A_m * field_A_m / (S_m * skin_m)),
               1.0, 3.0 * skin_m / a_m);
   EXPECT_NEAR(sphere_polarisability(a_m, S_m, fast).real(), -1.5, 0.01);
-  // The series for small spheres meets the closed form where it ends.
+  // The series for small spheres agrees with the closed form at its limit of use.
   const double at = 1e-4 / (vacuum_permeability_N_A2 * S_m * a_m * a_m);
   EXPECT_NEAR(sphere_polarisability(a_m, S_m, 0.4999 * at).imag() /
                   sphere_polarisability(a_m, S_m, 0.5001 * at).imag(),
@@ -237,8 +238,8 @@ TEST(Microwave, TransmissionIsFriissFarAwayAndWholeNearby) {
   EXPECT_NEAR(aperture_transmission(beam, pi / 3), -std::expm1(-0.5 * 1.73 * 1.73), 1e-12);
 }
 
-// Straight on 1; along the dipole nothing at grazing; half of the power (Balanis's curves) near 45
-// deg along and 60 deg across.
+// The gain is 1 along the normal and 0 along the dipole at grazing angles. Half of the power
+// (Balanis's curves) is near 45 deg along the dipole and 60 deg across it.
 TEST(Microwave, PatternsAreThoseOfADipoleOverAReflector) {
   EXPECT_NEAR(dipole_pattern_e(0.0), 1.0, 1e-15);
   EXPECT_NEAR(dipole_pattern_h(0.0), 1.0, 1e-15);
@@ -250,8 +251,8 @@ TEST(Microwave, PatternsAreThoseOfADipoleOverAReflector) {
   EXPECT_LT(element_capture(dipole_pattern_e(pi / 6), pi / 6), 0.75);
 }
 
-// All power taken: P/c along the beam, times the arm h sin θ. All mirrored: the force is normal,
-// its arm is none.
+// Absorbed power gives the force P/c along the beam, with the arm h sin θ. Reflected power gives a
+// normal force, which has no arm.
 TEST(Microwave, PressesAsLightDoes) {
   const BeamPressure taken = beam_pressure(30.0, 0.0, 0.5, 0.02);
   EXPECT_NEAR(taken.force_N, 30.0 / 299792458.0, 1e-20);
@@ -259,7 +260,7 @@ TEST(Microwave, PressesAsLightDoes) {
   EXPECT_EQ(beam_pressure(0.0, 30.0, 0.5, 0.02).torque_N_m, 0.0);
 }
 
-// One solid strand that fills its wire: 4 E π d⁴/64 L, and half of 2 G of a round bar.
+// One solid strand that fills its wire: bending 4 E π d⁴/64 L, twisting G π d⁴/32 L.
 TEST(Cable, IsAsStiffAsBarsOfItsMaterials) {
   PowerCable bar;
   bar.length_m = 0.4;
@@ -272,7 +273,7 @@ TEST(Cable, IsAsStiffAsBarsOfItsMaterials) {
   EXPECT_NEAR(cable_mass_kg(bar), 8960.0 * 0.25 * pi * 1e-6 * 0.4, 1e-9);
   bar.wires = 2;
   EXPECT_NEAR(loop_resistance_ohm(bar), 2.0 * 1.7241e-8 * 0.4 / (0.25 * pi * 1e-6), 1e-12);
-  // As many strands of half the diameter as fill the same section are four times less stiff.
+  // Strands of half the diameter that fill the same section are four times less stiff.
   PowerCable fine = bar;
   fine.strands = 4;
   fine.strand_diameter_m = 0.5e-3;

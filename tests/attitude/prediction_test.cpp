@@ -1,4 +1,4 @@
-// Predicted readings of instruments against those that `propagate` records.
+// Predicted readings of instruments compared with those that `propagate` records.
 #include "attitude/observation/prediction.h"
 
 #include <gtest/gtest.h>
@@ -9,10 +9,10 @@
 namespace photorque {
 namespace {
 
-// A pendulum of 0.3 rad/s seen 0.2 s late. The recorder asks for the attitude at the earlier
-// instant; the prediction continues the motion backwards from the present with its acceleration,
-// which leaves a sixth of the third derivative times 0.2³: 2e-6 rad. The rate alone would leave
-// 2e-4 rad, five standard deviations of a camera.
+// A pendulum of 0.3 rad/s that is measured with a latency of 0.2 s. The recorder computes the
+// attitude at the earlier instant. The prediction extrapolates the motion backwards with rate and
+// acceleration, with an error of a sixth of the third derivative times 0.2³: 2e-6 rad. With the
+// rate alone the error would be 2e-4 rad, five standard deviations of a camera.
 TEST(Prediction, OfALateCameraIsThePastAttitude) {
   PropagationRun run;
   run.model =
@@ -31,7 +31,7 @@ TEST(Prediction, OfALateCameraIsThePastAttitude) {
   const auto q = [&](const char* name) -> const std::vector<double>& {
     return recording.find(name)->values;
   };
-  for (size_t i = 3; i < recording.rows(); ++i) {  // before 0.2 s nothing was seen
+  for (size_t i = 3; i < recording.rows(); ++i) {  // the first rows are of times before the start
     seen.time_s.push_back(recording.time_s[i]);
     seen.attitude.emplace_back(q("q_w")[i], q("q_x")[i], q("q_y")[i], q("q_z")[i]);
     seen.attitude_rows.push_back(1.0);
@@ -51,8 +51,9 @@ TEST(Prediction, OfALateCameraIsThePastAttitude) {
   EXPECT_GT(largest_rad, 0.0);
 }
 
-// Rotations of the camera and of the gyro without size change nothing of what is read, but make it
-// depend on the motion, and what changes by offsets is then not known beforehand.
+// A zero misalignment of the gyro does not change the readings, but makes them depend on the
+// motion, so that the effect of offsets is not known in advance. The sums must agree with those of
+// the model without it.
 TEST(Prediction, SlopesOfOffsetsAreThoseOfInstrumentsThatDependOnTheMotion) {
   AttitudeModel plain =
       with(with(bench_model(), "static_unbalance", {{"offset_m", numbers({1e-5, 0, -1.5e-4})}}),

@@ -12,9 +12,9 @@
 namespace photorque {
 namespace {
 
-// Laws for these tests alone, so that the propagator is judged apart from the catalogue.
+// Laws for these tests only, so that they are independent of the disturbance kinds.
 
-// T = m r × g from a start time on; parameters r (3), time.
+// T = m r × g from a start time on; parameters r (3), start time.
 struct Offset final : LawOf<Offset> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
@@ -40,8 +40,8 @@ struct Drag final : TorqueLaw<Drag> {
   }
 };
 
-// A sprung wheel about body x: inertia J, stiffness k; states: its absolute rate and its angle
-// against the body.
+// A wheel on a spring about body x: inertia J, stiffness k; states: its absolute rate and its angle
+// relative to the body.
 struct SprungWheel final : LawOf<SprungWheel> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
@@ -73,8 +73,8 @@ double angle_between_rad(const Quat& a, const Quat& b) {
   return 2.0 * std::atan2(e.vec().norm(), std::abs(e.w()));
 }
 
-// The torque-free body of shared reference attitude.md section 6: computed in quadruple precision
-// by a Taylor method of order 40, its rates confirmed by Jacobi's elliptic functions.
+// The torque-free body of shared reference attitude.md, section 6: computed in quadruple precision
+// by a Taylor method of order 40, rates confirmed by Jacobi's elliptic functions.
 struct Reference {
   double time_s;
   Quat lab_from_body;
@@ -130,8 +130,8 @@ TEST(FreeBody, AgreesWithQuadruplePrecisionForADay) {
       static_cast<double>(trajectory.statistics.iterations) / trajectory.statistics.steps, cpu_s);
 }
 
-// The rounding error of n steps is a random walk: a few units in the last place times √n. A drift
-// of half a unit a step, always to one side, would be a hundred times as much.
+// The rounding error of n steps is a random walk of a few units in the last place times √n. A drift
+// of half a unit per step in one direction would be a hundred times larger.
 TEST(FreeBody, KeepsEnergyAndMomentumToRounding) {
   const Mat3 inertia_kg_m2 = Vec3(500, 200, 300).asDiagonal();
   const Dynamics dynamics(free_body(inertia_kg_m2));
@@ -157,7 +157,7 @@ TEST(FreeBody, KeepsEnergyAndMomentumToRounding) {
   EXPECT_LT(worst_momentum, 8 * rounding);
 }
 
-// A heavy platform hanging below its bearing: period 2 π √(J/(m g d)) times 2 K(sin(θ/2))/π.
+// A heavy platform that hangs below its bearing: period 2 π √(J/(m g d)) times 2 K(sin(θ/2))/π.
 TEST(Pendulum, LargeSwingHasTheEllipticPeriod) {
   AttitudeModel model = free_body(Vec3(1.3, 1.3, 0.5).asDiagonal());
   model.platform.mass_kg = 29.0;
@@ -244,7 +244,7 @@ TEST(Derivatives, MatchDifferencesForEveryParameterAndInitialValue) {
     const double by = 1e-5 * std::max(std::abs(value), 1e-5);
     const auto up = shifted(variables[v], by), down = shifted(variables[v], -by);
     for (size_t i = 0; i < times_s.size(); ++i) {
-      // A difference across the jump itself is not a derivative.
+      // At the jump itself a difference is not a derivative.
       if (times_s[i] == 12.345) continue;
       const Quat turn = exact.states[i].lab_from_body.conjugate() * up[i].lab_from_body;
       const Quat back = exact.states[i].lab_from_body.conjugate() * down[i].lab_from_body;

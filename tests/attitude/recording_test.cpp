@@ -35,7 +35,8 @@ const std::vector<double>& cells_of(const Recording& recording, std::string_view
   return recording.find(name)->values;
 }
 
-// 200 rows 1e15 s apart: nanoseconds, or an error; estimating over them does not end.
+// 200 rows that are 1e15 s apart: the times are in nanoseconds or wrong. An estimate over such a
+// time would not end.
 TEST(Recording, TimesOverCenturiesAreRefused) {
   std::string text = "t_s,gyro_x_rad_s\n";
   for (int i = 0; i < 200; ++i) text += std::to_string(i) + "e15,0.1\n";
@@ -81,14 +82,14 @@ TEST(Recording, RealFilesAreMendedAndEverythingIsCounted) {
       "0.0;1;5\r\n"
       "0.1;;5\r\n"       // an empty cell
       "0.1;2;5\r\n"      // a repeated time
-      "0.2;abc;nan\r\n"  // no number; empty by its word
+      "0.2;abc;nan\r\n"  // no number; "nan" is empty
       "\r\n# another comment\r\n"
       "0.15;3;5\r\n"       // earlier than before
       ";3;5\r\n"           // no time
       "0.3;+1e-3;5;9\r\n"  // a cell too many
       "0.4;4e0;6\r\n"
       "2.0;5;6\r\n"  // after a gap
-      "2.1;6");      // torn off
+      "2.1;6");      // incomplete last row
   EXPECT_THAT(r.time_s, ElementsAre(0.0, 0.1, 0.2, 0.4, 2.0));
   EXPECT_EQ(cells_of(r, "gyro_x_rad_s")[0], 1.0);
   EXPECT_TRUE(std::isnan(cells_of(r, "gyro_x_rad_s")[1]));
@@ -109,7 +110,7 @@ TEST(Recording, RealFilesAreMendedAndEverythingIsCounted) {
   EXPECT_EQ(report.gaps[0].from_s, 0.4);
   EXPECT_EQ(report.gaps[0].to_s, 2.0);
   EXPECT_THAT(report.text(), HasSubstr("1 gaps"));
-  // Counts of rows read, kept and left out add up.
+  // The numbers of rows that were kept and left out add up to that of the rows read.
   EXPECT_EQ(report.rows_read, report.rows_kept + report.repeated_times + report.backward_times +
                                   report.rows_without_time + report.malformed_rows);
 }
@@ -132,7 +133,7 @@ TEST(Recording, OldNameOfTheYawIsReadWithANotice) {
   ASSERT_NE(old.find("yaw_rad"), nullptr);
   EXPECT_DOUBLE_EQ(old.find("yaw_rad")->values[0], pi / 2);
   EXPECT_THAT(old.report.text(), testing::HasSubstr("read as yaw"));
-  // Beside a yaw it is the direction of the lean.
+  // In a file with a yaw, the heading is the direction of the tilt.
   const Recording both = read("t_s,heading_deg,yaw_deg\n0,90,10\n1,91,11\n");
   EXPECT_DOUBLE_EQ(both.find("yaw_rad")->values[0], 10 * degree_rad);
   EXPECT_DOUBLE_EQ(both.find("heading_rad")->values[0], pi / 2);
@@ -163,7 +164,7 @@ TEST(Recording, FlippedAndBadQuaternionsAreMended) {
   }
 }
 
-// Spikes go; noise, steps and fast motion stay.
+// Spikes are removed; noise, steps and fast motion are kept.
 TEST(Recording, OutliersAreFoundAndNothingElse) {
   Noise noise(5, 2e-4);
   std::string text = "t_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s\n";
@@ -187,9 +188,9 @@ TEST(Recording, OutliersAreFoundAndNothingElse) {
   EXPECT_EQ(read(text, keep).report.outlier_cells, 0);
 }
 
-// A gyro that ends at 0.1 rad/s about x, whose z stands there throughout; one that repeats its last
-// reading for 2 s about y. What moves without noise and comes to rest is no fault, nor is an axis
-// that the instrument does not have.
+// The first gyro saturates at 0.1 rad/s about x, reports exactly that about z at all times, and
+// repeats its last reading for 2 s about y. The second gyro has no fault: a motion without noise
+// that comes to rest about y, and zeros about z, as from an axis that it does not have.
 TEST(Recording, ReadingsOfASensorThatStandsStillAreLeftOut) {
   Noise noise(9, 2e-4);
   const std::string header = "t_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s\n";
@@ -237,7 +238,7 @@ TEST(Recording, JitterAndIntervalAreMeasured) {
   for (int i = 0; i < 5000; ++i) text += std::to_string(0.1 * i + jitter()) + ",0\n";
   const RecordingReport report = read(text).report;
   EXPECT_NEAR(report.median_interval_s, 0.1, 2e-4);
-  // The difference of two jittered times.
+  // The jitter of an interval is that of the difference of two times.
   EXPECT_NEAR(report.jitter_s, std::sqrt(2.0) * 1e-3, 6e-5);
 }
 
@@ -285,10 +286,10 @@ TEST(Recording, DecimalCommasAreReadWhereTheyDoNotSeparateCells) {
   EXPECT_TRUE(semicolons.report.has_decimal_commas);
   const Recording blanks = read("t_s  gyro_x_rad_s\n 0,0   1\n 0,1\t0,25\n");
   EXPECT_EQ(cells_of(blanks, "gyro_x_rad_s"), (std::vector<double>{1.0, 0.25}));
-  // With commas between cells too, every row has more of them than the header.
+  // With decimal commas and commas between cells, every row has more cells than the header.
   EXPECT_THAT(complaint("t_s,gyro_x_rad_s\n0,0,1,5\n0,1,2,5\n0,2,2,5\n"),
               HasSubstr(":2: found a row of 4 cells, expected 2, as in the header"));
-  // A cell that only looks like a number is left out like any other.
+  // Cells that are not numbers are left out, also if they contain commas.
   EXPECT_EQ(complaint("t_s;a\n0;1\n1;x,5\n2;1,2,3\n3;2\n"), "");
 }
 
@@ -299,7 +300,7 @@ TEST(Recording, WhereMostRowsAreWrongTheFirstIsNamed) {
               HasSubstr(":4: t_s: found \"noon\", expected a number"));
 }
 
-// Found by reading for it: 1e305 hours were an infinite time.
+// 1e305 h in seconds is infinite.
 TEST(Recording, NumbersThatOverflowInSiUnitsAreLeftOut) {
   const Recording recording = read("t_h,x_m\n0,1\n1,1\n2,1\n1e305,1\n");
   EXPECT_THAT(recording.time_s, ElementsAre(0.0, 3600.0, 7200.0));
@@ -350,7 +351,7 @@ TEST(Recording, RecordingsOfRealHardwareAreRead) {
     for (const auto& entry : std::filesystem::directory_iterator(folder / set)) {
       const Recording recording = read_recording(entry.path());
       EXPECT_GT(recording.report.rows_kept, 30);
-      // A few repeated stamps and glitches at the most.
+      // At most a few repeated times and outliers.
       EXPECT_GT(recording.report.rows_kept, 0.98 * recording.report.rows_read) << entry.path();
       EXPECT_LT(recording.report.outlier_cells, 0.02 * 3 * recording.report.rows_read)
           << entry.path() << recording.report.text();

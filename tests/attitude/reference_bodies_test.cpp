@@ -1,5 +1,5 @@
-// Free and librating bodies that the tests of other programs propagate (shared reference
-// attitude.md, sections 5 and 6).
+// Free and librating bodies from the tests of other programs (shared reference attitude.md,
+// sections 5 and 6).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ AttitudeModel body(const Vec3& moments_kg_m2) {
   return model;
 }
 
-// Basilisk, test_spacecraft: modified Rodrigues parameters after 10 s.
+// Basilisk, test_spacecraft: modified Rodrigues parameters at 10 s.
 TEST(ReferenceBody, AgreesWithBasiliskAfterTenSeconds) {
   const AttitudeModel model = body({500, 200, 300});
   const PlatformState start = state_of(model, Quat::Identity(), {0.5, -0.4, 0.7});
@@ -27,9 +27,9 @@ TEST(ReferenceBody, AgreesWithBasiliskAfterTenSeconds) {
   EXPECT_LT((sigma - Vec3(3.73034285e-01, -2.39564413e-03, 2.08570797e-01)).norm(), 2e-9);
 }
 
-// Orekit, TorqueFreeTest: all orders of the moments, both ways in time. There the direction of the
-// momentum stays to 1.6e-15 rad; how the last digits of some twenty steps fall is not asked for, so
-// that another order of additions passes as well.
+// Orekit, TorqueFreeTest: all orders of the moments, both directions of rotation. The direction of
+// the momentum is constant to 1.6e-15 rad there. The limit here permits other rounding errors of
+// some twenty steps.
 TEST(ReferenceBody, MomentumKeepsItsDirectionForAllOrdersOfTheMoments) {
   std::array<double, 3> moments = {3.0 / 8, 1.0 / 2, 5.0 / 8};
   do {
@@ -46,8 +46,8 @@ TEST(ReferenceBody, MomentumKeepsItsDirectionForAllOrdersOfTheMoments) {
   } while (std::next_permutation(moments.begin(), moments.end()));
 }
 
-// orts: energy and momentum of I = (10, 20, 30) over 100 s; 1e-10 there, by Runge–Kutta. Here only
-// the rounding of about a hundred steps is left.
+// orts: energy and momentum of I = (10, 20, 30) over 100 s, to 1e-10 by Runge–Kutta. Here only the
+// rounding errors of about a hundred steps remain.
 TEST(ReferenceBody, KeepsEnergyAndMomentumOverHundredSeconds) {
   const Vec3 moments_kg_m2(10, 20, 30), rate_rad_s(0.5, 0.3, 0.1);
   const AttitudeModel model = body(moments_kg_m2);
@@ -58,8 +58,8 @@ TEST(ReferenceBody, KeepsEnergyAndMomentumOverHundredSeconds) {
   EXPECT_LT((momentum - moments_kg_m2.cwiseProduct(rate_rad_s)).norm() / momentum.norm(), 5e-14);
 }
 
-// orts: I = (10, 10, 15), rate (0.1, 0, 1). The rate turns about the axis at (I_3 − I_1)/I_1 ω_3 in
-// the body; in the lab the axis turns about the momentum at |L|/I_1.
+// orts: I = (10, 10, 15), rate (0.1, 0, 1). In the body the rate rotates about the axis at (I_3 −
+// I_1)/I_1 ω_3; in the lab the axis rotates about the momentum at |L|/I_1.
 TEST(ReferenceBody, SymmetricTopFollowsItsClosedForm) {
   const Vec3 moments_kg_m2(10, 10, 15);
   const AttitudeModel model = body(moments_kg_m2);
@@ -75,7 +75,7 @@ TEST(ReferenceBody, SymmetricTopFollowsItsClosedForm) {
   }
 }
 
-// Tudat, Phobos: ω² = 3 μ/a³ (I_2 − I_1)/I_3, here about the direction of Mars held still.
+// Tudat, Phobos: ω² = 3 μ/a³ (I_2 − I_1)/I_3, here with a fixed direction of Mars.
 TEST(ReferenceBody, PhobosLibratesAsInTudat) {
   AttitudeModel model = body({0.3615, 0.4265, 0.5024});
   const double gradient_1_s2 = 4.282837e13 / std::pow(9376e3, 3);

@@ -24,7 +24,7 @@ SettingsNode rows(const std::vector<std::vector<double>>& matrix) {
   return list(std::move(all));
 }
 
-// The form of the experiments in the contract.
+// An experiment like those in the contract.
 SettingsNode experiment() {
   return table(
       {{"platform", table({{"topology", node("tabletop")},
@@ -134,7 +134,7 @@ TEST(Experiment, BeginsAsItsBearingsAllow) {
       at(r, "platform", "axis") = node(axis);
       at(r, "propagate", "initial_rate_rad_s") = numbers(rate_rad_s);
       at(r, "propagate", "initial_tilt_deg") = node(tilt_deg);
-      // A lean towards y is a turn about x.
+      // A tilt towards y is a rotation about x.
       at(r, "propagate", "initial_heading_deg") = node(90.0);
     });
   };
@@ -145,7 +145,7 @@ TEST(Experiment, BeginsAsItsBearingsAllow) {
   EXPECT_THAT(about("y", {0, 0.05, 0}, 10.0), HasSubstr("propagate.initial_tilt_deg"));
 }
 
-// Rz(yaw) turns body x; a lean towards the heading turns body z (docs/disturbances.md).
+// Rz(yaw) rotates body x; a tilt towards the heading rotates body z (docs/disturbances.md).
 TEST(Experiment, BeginsAtTheStatedHeadingAndYaw) {
   SettingsNode root = experiment();
   at(root, "propagate", "initial_tilt_deg") = node(20.0);
@@ -170,7 +170,8 @@ TEST(Experiment, BeginsAtTheStatedHeadingAndYaw) {
               HasSubstr("propagate.initial_yaw_deg"));
 }
 
-// 40 bytes of time and quaternion and up to 180 of the rest: a day has at most 10 MB.
+// A row has up to 220 bytes, 40 of them for time and quaternion. A run has at most 45,000 rows,
+// that is 10 MB.
 TEST(Experiment, LongRunsHaveFewerRows) {
   const auto rate = [](double duration_s) {
     SettingsNode root = experiment();
@@ -211,7 +212,7 @@ TEST(Run, GivesHistoryPlotsAndRecording) {
   EXPECT_FALSE(columns.contains("torque_gyro_bias_x_N_m"));
 }
 
-// Drag alone: the spin falls as exp(−c t/I), and so do the torque and the recorded rate.
+// Drag only: the spin, the torque and the recorded rate decrease as exp(−c t/I).
 TEST(Run, SpinDecaysAsItsClosedForm) {
   SettingsNode root = experiment();
   std::get<SettingsNode::Table>(root.value)["disturbance"] =
@@ -243,14 +244,14 @@ TEST(Run, EndsAtTheTiltStop) {
   EXPECT_LT(result.recording.rows(), 30u);
 }
 
-// The load draws what the array does not deliver; the array follows the cosine of the tilt, which
-// swings as the pendulum does. In the mean over a full turn about a level axis nothing is left.
+// The battery supplies the difference between the load and the power of the array, which is
+// proportional to the cosine of the tilt.
 TEST(Power, ChargeIsTheIntegralOfTheBalance) {
   AttitudeModel model;
   model.platform.inertia_kg_m2 = Vec3(0.1, 0.1, 0.1).asDiagonal();
   model.platform.battery_voltage_V = 20.0;
   model = with(model, "power_balance", {{"load_W", node(15.0)}, {"array_power_W", node(30.0)}});
-  // A steady tilting at 0.01 rad/s: ∫ 30 cos(0.01 t) dt = 3000 sin(0.01 t).
+  // A tilt that increases by 0.01 rad/s: ∫ 30 cos(0.01 t) dt = 3000 sin(0.01 t).
   const PlatformState end =
       propagated(model, state_of(model, Quat::Identity(), {0.01, 0, 0}), 100.0);
   EXPECT_NEAR(end.charge_drawn_C, (15.0 * 100.0 - 3000.0 * std::sin(1.0)) / 20.0, 1e-9);
@@ -327,8 +328,9 @@ TEST(Wheels, TurnThePlatformToItsTargetAndKeepTheMomentum) {
   EXPECT_LT((whole_momentum_lab(model, end) - momentum).norm(), 1e-12 * momentum.norm());
 }
 
-// Feedback without an integral stays off by what the wheels' friction takes: at rest the wheel
-// turns on only while the motor gives c ω + τ, and the motor gives 2 k sin(error/2).
+// Feedback without an integral term has a remaining error because of the friction of the wheels.
+// With the platform at rest a wheel turns on only if its motor gives c ω + τ, and the motor gives 2
+// k sin(error/2).
 TEST(Wheels, FrictionLeavesTheErrorThatItsTorqueNeeds) {
   const AttitudeModel model = wheeled({{"viscous_N_m_s", node(1e-6)}, {"dry_N_m", node(2e-6)}});
   const PlatformState start = state_of(model, Quat::Identity(), {0, 0, 0.03});
@@ -340,13 +342,13 @@ TEST(Wheels, FrictionLeavesTheErrorThatItsTorqueNeeds) {
 }
 
 TEST(Wheels, SaturateInTorqueAndRate) {
-  // A large error: the motors saturate.
+  // A large error saturates the motors.
   const AttitudeModel model =
       wheeled({{"target_axis", numbers({0, 0, 1})}, {"target_angle_deg", node(179.0)}});
   const PlatformState start = state_of(model, Quat::Identity());
   EXPECT_NEAR(torque_body_N_m(model, start).norm(), 2e-3, 0.2 * 2e-3);
   EXPECT_LT(torque_body_N_m(model, start).norm(), 2e-3);
-  // A wheel at its largest rate takes no more.
+  // A motor does not drive a wheel beyond its largest rate.
   PlatformState spun = start;
   spun.extra[2] = -520.0;
   EXPECT_LT(std::abs(torque_body_N_m(model, spun).z()), 1e-6);

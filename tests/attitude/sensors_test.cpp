@@ -12,7 +12,7 @@
 namespace photorque {
 namespace {
 
-// A platform that turns at a constant rate about lab z and body z.
+// A platform that rotates at a constant rate about lab z and body z.
 PropagationRun spinning(double rate_rad_s, double duration_s, double rows_per_s) {
   PropagationRun run;
   run.model.platform.inertia_kg_m2 = 0.1 * Mat3::Identity();
@@ -80,7 +80,7 @@ TEST(Camera, NoiseIsAboutLabAxesAndOfTheSizeAsked) {
   }
 }
 
-// Also the past before the start, which is taken to have turned as at the start.
+// Before the start, the platform is assumed to rotate at its initial rate.
 TEST(Camera, WithLatencyReportsThePast) {
   PropagationRun run = spinning(0.2, 20.0, 10.0);
   add_error(run, "attitude_latency", "latency_s", node(0.37));

@@ -1,4 +1,4 @@
-// Time series, floor spectra and wrench tables: numbers made smooth.
+// Time series, floor spectra and wrench tables: interpolation of tabulated values.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -94,7 +94,7 @@ TEST(Vibration, TonesCarryThePowerOfTheSpectrum) {
   Vec3 mean_square = Vec3::Zero();
   for (const VibrationTone& tone : tones) mean_square += 0.5 * tone.amplitude_lab_m_s2.cwiseAbs2();
   EXPECT_LT((mean_square - area).norm(), 1e-12 * area.norm());
-  // And as a signal over 400 s at 200 Hz, the x axis.
+  // Mean square of the signal of the x axis over 400 s at 200 Hz.
   double sum = 0;
   constexpr int samples = 80000;
   for (int i = 0; i < samples; ++i) {
@@ -218,7 +218,7 @@ TEST(WrenchTableFile, ReadsFilesOfTheProgram) {
   EXPECT_THROW(read_wrench_table(hole), InputError);
 }
 
-// 200,000 rows along a diagonal stand for 4e10 pairs of angles, 4 TB of them.
+// 200,000 rows along a diagonal have 4e10 pairs of angles, whose table would need 4 TB.
 TEST(WrenchTableFile, AnglesOfRowsThatAreNotThereTakeNoRoom) {
   std::string text = "azimuth_deg,elevation_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n";
   for (int i = 0; i < 200000; ++i) {
@@ -229,7 +229,7 @@ TEST(WrenchTableFile, AnglesOfRowsThatAreNotThereTakeNoRoom) {
   EXPECT_THROW(read_wrench_table(file), InputError);
 }
 
-// Headings of 0 and 360 deg are one: the surface looked for a neighbour beyond them.
+// Headings of 0 and 360 deg are the same node, so that there is no neighbour for an interpolation.
 TEST(WrenchTableFile, AnglesOfASingleNodeAreRefused) {
   const std::string header = "heading_deg,tilt_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n";
   for (const char* rows : {"0,0,1,2,3\n0,9,1,2,3\n360,0,1,2,3\n360,9,1,2,3\n",

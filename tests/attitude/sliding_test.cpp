@@ -1,4 +1,4 @@
-// A platform that slides on a table: the forces' closed forms.
+// A platform that slides on a table: closed forms of the forces.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,7 +36,7 @@ Place end_of(const std::string& disturbance) {
   return {result.recording.find("x_m")->values.back(), result.recording.find("y_m")->values.back()};
 }
 
-// With a force commanded after one second.
+// The end position of a run with a force that is commanded from one second on.
 Place end_of_commanded(const std::string& command, const std::string& disturbance) {
   const std::string acting = disturbance.empty() ? "" : "[[disturbance]]\n" + disturbance;
   const PropagationResult result =
@@ -51,15 +51,15 @@ TEST(Sliding, FreelyItGoesStraight) {
   EXPECT_EQ(result.recording.find("velocity_x_m_s"), nullptr);
 }
 
-// A force that is commanded in lab axes accelerates evenly from its time on.
+// A force that is commanded in lab axes gives a constant acceleration from its time on.
 TEST(Sliding, ForceCommandedInTheLaboratoryAcceleratesIt) {
   const Place end = end_of_commanded("force_N = [0.4, -0.2]\n", "");
   EXPECT_NEAR(end.x, 0.1 + 0.3 * 5 + 0.5 * 0.4 / 2.0 * 16, 1e-10);
   EXPECT_NEAR(end.y, -0.2 + 0.4 * 5 - 0.5 * 0.2 / 2.0 * 16, 1e-10);
 }
 
-// The acceleration f/m turns with a platform that turns evenly by ω t: two integrations of
-// (cos ω t, sin ω t) from rest at t = 0 give (1 − cos ω t, ω t − sin ω t)/ω².
+// The acceleration f/m rotates with a platform at the constant rate ω: two integrations of (cos ω
+// t, sin ω t) from rest at t = 0 give (1 − cos ω t, ω t − sin ω t)/ω².
 TEST(Sliding, ForceFixedInTheBodyTurnsWithIt) {
   const double turn_rad = 0.5 * 5, a_m_s2 = 0.6 / 2.0;
   const double along = a_m_s2 * (1.0 - std::cos(turn_rad)) / 0.25;
@@ -105,7 +105,7 @@ TEST(Sliding, DragFadesItExponentially) {
   EXPECT_NEAR(end.y, -0.2 + 0.4 * way, 1e-10);
 }
 
-// v = v₀/(1 + k v₀ t/m), so that the way is (m/k) ln(1 + k v₀ t/m).
+// v = v₀/(1 + k v₀ t/m), so that the distance is (m/k) ln(1 + k v₀ t/m).
 TEST(Sliding, AirFadesItByTheSquare) {
   const Place end = end_of("kind = \"sliding_air_drag\"\ncoefficient_kg_m = 0.8\n");
   const double way = std::log(1.0 + 0.4 * 0.5 * 5) / 0.4;
@@ -113,7 +113,7 @@ TEST(Sliding, AirFadesItByTheSquare) {
   EXPECT_NEAR(end.y, -0.2 + 0.8 * way, 1e-9);
 }
 
-// It stops after v₀²/(2 μ g) for any mass, and stays there except for the creep.
+// The platform stops after v₀²/(2 μ g) for any mass and then only creeps.
 TEST(Sliding, DryFrictionStopsIt) {
   const double friction = 0.02, way = 0.25 / (2.0 * friction * g);
   const Place end = end_of("kind = \"sliding_friction\"\ncoefficient = 0.02\n");
@@ -121,7 +121,7 @@ TEST(Sliding, DryFrictionStopsIt) {
   EXPECT_NEAR(end.y, -0.2 + 0.8 * way, 1e-4);
 }
 
-// About its place f/k, with ω² = k/m.
+// An oscillation about f/k, with ω² = k/m.
 TEST(Sliding, ASpringSwingsIt) {
   const Place end =
       end_of("kind = \"sliding_spring\"\nstiffness_N_per_m = 0.5\npull_N = [0.1, 0]\n");
@@ -130,7 +130,7 @@ TEST(Sliding, ASpringSwingsIt) {
   EXPECT_NEAR(end.y, -0.2 * c + 0.4 * s, 1e-9);
 }
 
-// A drag on its turn brakes the turn alone.
+// A drag on the rotation reduces only the rotation.
 TEST(Sliding, TurnsMeanwhile) {
   const PropagationRun run =
       run_of(puck + "initial_rate_rad_s = [0, 0, 0.2]\n[[disturbance]]\nkind = \"bearing_drag\"\n" +

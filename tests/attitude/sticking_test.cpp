@@ -1,6 +1,6 @@
-// Friction that stops a platform and holds it, and a cable that it winds up: laws with layers far
-// thinner than a step, against the closed forms of one degree of freedom (textbook mechanics, e.g.
-// J. P. den Hartog, "Mechanical Vibrations", for friction and spring).
+// Friction that stops and holds a platform, and a cable that winds up: laws with layers far thinner
+// than a step, compared with the closed forms of one degree of freedom (textbook mechanics, e.g. J.
+// P. den Hartog, "Mechanical Vibrations", for friction and spring).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,14 +13,14 @@ namespace {
 
 constexpr double I_kg_m2 = 0.19;  // of the bench platform about z
 
-// Turned about z, between −π and π.
+// Yaw of a rotation about z, between −π and π.
 double yaw_rad(const Quat& q) {
   const double angle = 2.0 * std::atan2(q.z(), q.w());
   return std::remainder(angle, 2.0 * pi);
 }
 
-// A constant torque that is weaker than the friction: the platform slows down evenly, stops, and
-// creeps so fast that the law's friction balances the torque.
+// A constant torque that is weaker than the friction: the platform decelerates uniformly, stops,
+// and creeps at the rate at which the friction law balances the torque.
 struct Held {
   double torque_N_m = 4e-6, friction_N_m = 1e-5, start_rad_s = 0.02, creep_rad_s = 1e-6;
 
@@ -46,17 +46,19 @@ TEST(Sticking, IsCrossedInFewSteps) {
   const double times_s[] = {1e5};
   const Trajectory t =
       propagate(dynamics, state_of(model, Quat::Identity(), {0, 0, held.start_rad_s}), times_s);
-  // The law's smooth layer moves the stop by about creep/rate of the stopping time, some 1e-4 rad.
+  // The smooth layer of the law changes the stopping time by a fraction of about creep/rate, some
+  // 1e-4 rad.
   EXPECT_NEAR(std::remainder(yaw_rad(t.states[0].lab_from_body) - held.angle_rad(1e5), 2 * pi), 0.0,
               1e-5);
   EXPECT_NEAR(t.states[0].rate_body_rad_s.z(), held.creeps_rad_s(), 1e-12);
-  // Steps as short as fixed-point iteration needs while it sticks, I · creep/friction = 0.02 s
-  // times a few, would be a million.
+  // While it sticks, fixed-point iteration would need steps of a few times I · creep/friction =
+  // 0.02 s, a million in all.
   EXPECT_LT(t.statistics.steps, 500);
   EXPECT_GT(t.statistics.stiff, 0);
 }
 
-// ∂angle/∂friction against the closed form and, exactly, against differences of the trajectory.
+// ∂angle/∂friction compared with the closed form and, to more digits, with differences of the
+// trajectory.
 TEST(Sticking, HasExactDerivatives) {
   const Held held;
   const AttitudeModel model = held.model();
@@ -80,14 +82,14 @@ TEST(Sticking, HasExactDerivatives) {
   const double step_N_m = 1e-9;
   const double difference = (angle(step_N_m) - angle(-step_N_m)) / (2.0 * step_N_m);
   EXPECT_NEAR(t.derivatives[2] / difference, 1.0, 1e-5);
-  // θ = ½ I ω²/(τ − T) + …: the creep's part is a hundredth of a per cent.
+  // θ = ½ I ω²/(τ − T) + …, where the creep contributes a hundredth of a per cent.
   const double closed_form =
       -0.5 * held.start_rad_s * held.stops_s() / (held.friction_N_m - held.torque_N_m);
   EXPECT_NEAR(t.derivatives[2] / closed_form, 1.0, 2e-3);
 }
 
-// A wheel at rest whose angle is not used has only derivatives that die away: ω = ω₀ − (τ/I) t
-// until it stops, so ∂ω/∂τ = −t/I before and nothing after.
+// A wheel at rest whose angle is not used has only derivatives that decay: ω = ω₀ − (τ/I) t until
+// it stops, so ∂ω/∂τ = −t/I before the stop and 0 afterwards.
 TEST(Sticking, DerivativesThatDiedAwayCostNoSteps) {
   constexpr double friction_N_m = 1e-3, start_rad_s = 1.0;
   AttitudeModel model = with(bench_model(), "dry_friction", {{"torque_N_m", node(friction_N_m)}});
@@ -103,9 +105,9 @@ TEST(Sticking, DerivativesThatDiedAwayCostNoSteps) {
   EXPECT_LT(t.statistics.steps, 2000);
 }
 
-// Between spring and friction every half swing ends 2 τ/k nearer, at any amplitude. The sign of the
-// friction changes within nanoseconds, anywhere within a step: 40 swings, at the tolerance that a
-// user has by default.
+// With a spring and friction the amplitude decreases by 2 τ/k in each half swing. The friction
+// changes its sign within nanoseconds, anywhere within a step: 40 half swings, at the default
+// tolerance.
 TEST(Sticking, EveryReversalIsSeen) {
   constexpr double k = 2e-4, friction_N_m = 1e-6;
   const AttitudeModel model =
@@ -127,8 +129,8 @@ TEST(Sticking, EveryReversalIsSeen) {
   }
 }
 
-// About one axis the friction is Coulomb's own: the same spring and friction, in which every half
-// swing ends 2 τ/k nearer to zero until an end lies within τ/k, where it stays.
+// About one axis the friction is exactly Coulomb's. With the same spring, the amplitude decreases
+// by 2 τ/k in each half swing until an end is within τ/k, where the platform stays.
 struct OneAxis {
   double k = 2e-4, friction_N_m = 1e-5, start_rad = 0.53;
 
@@ -139,7 +141,7 @@ struct OneAxis {
                 "dry_friction", {{"torque_N_m", node(friction_N_m)}});
   }
   double half_period_s() const { return pi * std::sqrt(I_kg_m2 / k); }
-  // A half swing is a cosine about ±τ/k.
+  // A half swing is a cosine about the centre ±τ/k.
   double angle_rad(double time_s) const {
     double end_rad = start_rad;
     for (double from_s = 0.0;; from_s += half_period_s()) {
@@ -160,7 +162,7 @@ struct OneAxis {
   }
 };
 
-// Five half swings, then it stays.
+// The platform rests after five half swings.
 TEST(Sticking, AboutOneAxisLosesFourTimesFrictionOverStiffnessACycle) {
   const OneAxis swing;
   std::vector<double> times_s;
@@ -174,8 +176,8 @@ TEST(Sticking, AboutOneAxisLosesFourTimesFrictionOverStiffnessACycle) {
   EXPECT_LT(t.statistics.steps, 200);
 }
 
-// Before and after every reversal, and where it has come to stay: by friction and by stiffness,
-// against differences of the closed form.
+// Derivatives by friction and stiffness, before and after every reversal and at rest, compared with
+// differences of the closed form.
 TEST(Sticking, AboutOneAxisDerivativesCrossReversals) {
   const OneAxis swing;
   std::vector<double> times_s;
@@ -200,7 +202,8 @@ TEST(Sticking, AboutOneAxisDerivativesCrossReversals) {
   }
 }
 
-// A cable that is wound up pulls with every turn: an oscillator of three turns' amplitude.
+// The torque of a cable that winds up increases with every turn: an oscillator with an amplitude of
+// three turns.
 TEST(Tether, CountsItsTurns) {
   constexpr double k = 2e-4, amplitude_rad = 6 * pi;
   const double omega_1_s = std::sqrt(k / I_kg_m2);

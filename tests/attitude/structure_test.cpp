@@ -12,8 +12,8 @@
 namespace photorque {
 namespace {
 
-// ∫ y dm of a clamped beam with an end mass, per unit of gravity: bending moment → curvature →
-// slope → deflection, each integrated by the trapezoidal rule.
+// ∫ y dm of a clamped beam with an end mass, per unit of gravity. The bending moment gives the
+// curvature, the slope and the deflection, each integrated by the trapezoidal rule.
 double beam_moment_by_integration(double l, double end_mass, double beam_mass, double EI) {
   constexpr int n = 20000;
   const double dx = l / n;
@@ -51,14 +51,14 @@ TEST(SagCompliance, TabletopIsTheDeflectionOfItsBeams) {
   EXPECT_NEAR(compliance(2, 2), 0.0, 1e-20);
 }
 
-// The displaced masses' moment of weight, mass by mass: the arm tilted by θ bends across its length
-// by its compliance times g cos θ; balanced at θ = 0.
+// The torque of the weights of the displaced masses, mass by mass: the arm tilted by θ bends in the
+// transverse direction by its compliance times g cos θ, and is balanced at θ = 0.
 TEST(SagCompliance, DumbbellTorqueIsTheWeightOfTheDisplacedMass) {
   const DumbbellArms arms{Vec3::UnitX(), 0.6, 2.5, 0.8, 900.0};
   const double moment = 2 * beam_moment_by_integration(0.6, 2.5, 0.8, 900.0);
   for (const double tilt : {0.1, 0.5, 1.2}) {
-    // Across the arm the masses rise by moment·g·(1 − cos θ) from where they balanced; sideways of
-    // the vertical that is times sin θ.
+    // Transverse to the arm, the masses are displaced by moment·g·(1 − cos θ) from their balanced
+    // positions. The horizontal component is this times sin θ.
     const double lever = moment * g * (1 - std::cos(tilt)) * std::sin(tilt);
     EXPECT_NEAR(sag_torque_N_m(arms, tilt, g) / (lever * g), 1.0, 1e-6);
   }
@@ -94,7 +94,7 @@ TEST(Battery, OpposedCellsCancel) {
   EXPECT_EQ(com_shift_m_C(cells, 7.0).norm(), 0.0);
 }
 
-// Section III.B: 25 W over 24 h are 600 Wh, not the 360 Wh printed, which are 15 W.
+// Section III.B: 25 W over 24 h are 600 Wh. The printed 360 Wh correspond to 15 W.
 TEST(Battery, DayAtNominalPowerTakes600WattHours) {
   const LoadPhase nominal{86400, 25.0}, printed{86400, 15.0};
   EXPECT_DOUBLE_EQ(energy_J({&nominal, 1}) / 3600, 600.0);
@@ -102,7 +102,7 @@ TEST(Battery, DayAtNominalPowerTakes600WattHours) {
   EXPECT_DOUBLE_EQ(battery_mass_kg(600 * 3600.0, 150 * 3600.0), 4.0);
 }
 
-// 1.8 deg, 2 mm and 0.25 kg on 7 kg: usual parts, which give the paper's printed results.
+// Usual parts, 1.8 deg, 2 mm and 0.25 kg on 7 kg, which give the paper's printed results.
 MovingMass usual_mass() {
   return {.direction_body = Vec3::UnitX(),
           .mass_kg = 0.25,

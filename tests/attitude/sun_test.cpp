@@ -1,4 +1,4 @@
-// Where the Sun is, and its pressure.
+// Position and light pressure of the Sun.
 #include "attitude/environment/sun.h"
 
 #include <gtest/gtest.h>
@@ -36,17 +36,17 @@ Vec3 ecliptic(double longitude_deg) {
 }
 
 // J. Meeus, Astronomical Algorithms (1998), example 25.b: on 1992 October 13.0 TD the Sun's
-// longitude is 199.907272 deg by the equinox of date, 0.1009 deg more by that of J2000; R =
+// longitude is 199.907272 deg for the equinox of date and 0.1009 deg more for that of J2000; R =
 // 0.99760775.
 TEST(Sun, StandsWhereTheAlmanacHasIt) {
   const Vec3 sun = sun_at("date = \"1992-10-13\"");
   EXPECT_LT(angle_deg(sun, ecliptic(199.907272 + 0.1009)), 0.02);
   EXPECT_NEAR(sun.norm(), 0.99760775, 1e-3);
-  // And three days later, by the daily motion there, 0.993 deg (Kepler's second law at R).
+  // Three days later: the daily motion is 0.9905 deg there (Kepler's second law).
   EXPECT_NEAR(angle_deg(sun, sun_at("date = \"1992-10-13\"", 3 * 86400.0)), 3 * 0.9905, 0.01);
 }
 
-// An ellipse's own numbers: distances at both ends of the long axis, and half a period between.
+// The distances at both ends of the long axis, half a period apart.
 TEST(Sun, OrbitIsKepler) {
   const std::string orbit =
       "date = \"2020-01-01\"\norbit = { semi_major_axis_au = 1.5, eccentricity = 0.3, "
@@ -56,12 +56,12 @@ TEST(Sun, OrbitIsKepler) {
   EXPECT_NEAR(near.norm(), 1.5 * 0.7, 1e-12);
   EXPECT_NEAR(far.norm(), 1.5 * 1.3, 1e-7);
   EXPECT_NEAR(angle_deg(near, far), 180.0, 1e-5);
-  // The latitude of the perihelion: sin b = sin i sin ω, and it lies opposite to the Sun.
+  // The latitude b of the perihelion, opposite to the Sun: sin b = sin i sin ω.
   const double obliquity = 23.4392911 * degree_rad;
   const Vec3 pole(0.0, -std::sin(obliquity), std::cos(obliquity));
   EXPECT_NEAR(-near.normalized().dot(pole), std::sin(20 * degree_rad) * std::sin(70 * degree_rad),
               1e-12);
-  // An epoch before the date moves the spacecraft on.
+  // With an epoch one day before the date, the spacecraft is one day further.
   EXPECT_NEAR((sun_at(orbit + "\n", 86400.0) -
                sun_at("date = \"2020-01-02\"\norbit = { semi_major_axis_au = 1.5, eccentricity = "
                       "0.3, inclination_deg = 20, ascending_node_deg = 40, perihelion_deg = 70, "
@@ -70,7 +70,7 @@ TEST(Sun, OrbitIsKepler) {
               0.0, 1e-12);
 }
 
-// Kepler's equation read backwards: from the eccentric anomaly to the time, in closed form.
+// Kepler's equation in the closed direction: from the eccentric anomaly to the time.
 TEST(Sun, KeplersEquationHoldsForEveryEllipse) {
   for (const double eccentricity : {0.0, 0.0167, 0.29, 0.31, 0.7, 0.97, 0.9999}) {
     for (const double e_rad : {-3.1, -1.0, -1e-3, 0.0, 1e-6, 0.02, 0.5, 1.6, 3.0, 3.14}) {
@@ -79,8 +79,8 @@ TEST(Sun, KeplersEquationHoldsForEveryEllipse) {
         orbit.eccentricity = eccentricity;
         orbit.mean_anomaly_rad = e_rad - eccentricity * std::sin(e_rad) + 2.0 * pi * turns;
         const auto seen = orbit.in_plane(0.0).position_au;
-        // The mean anomaly is rounded to 1e-12 after a thousand turns, and dE/dM is as large as
-        // this.
+        // The mean anomaly is rounded to 1e-12 after a thousand turns. This error is multiplied by
+        // dE/dM.
         const double rounding = 1e-15 + (turns != 0.0 ? 2e-12 : 4e-16);
         const double tolerance = 1e-15 + rounding / (1.0 - eccentricity * std::cos(e_rad));
         EXPECT_NEAR(seen[0][0], std::cos(e_rad) - eccentricity, tolerance) << eccentricity << e_rad;
@@ -92,13 +92,13 @@ TEST(Sun, KeplersEquationHoldsForEveryEllipse) {
   }
 }
 
-// Eight instants at once are eight: each lane has a different anomaly.
+// Eight instants at once: each lane has a different anomaly.
 TEST(Sun, KeplersEquationHoldsInEveryLane) {
   const double e_rad[] = {-3.0, -1.7, -0.4, -1e-4, 0.0, 0.3, 1.5, 2.9};
   for (const double eccentricity : {0.0167, 0.29, 0.6, 0.95}) {
     HeliocentricOrbit orbit;
     orbit.eccentricity = eccentricity;
-    // Gauss's year; at 1 au.
+    // Mean motion of Gauss's year, at 1 au.
     const double motion_rad_s = 0.01720209895 / 86400.0;
     Lanes times_s;
     for (int lane = 0; lane < Lanes::count; ++lane) {
@@ -133,10 +133,10 @@ TEST(Sun, PointingTurnsTheLab) {
     return sun_at(std::string("date = \"2000-01-01T12:00:00\"\npointing = ") + pointing);
   };
   const Vec3 sun = sun_at("date = \"2000-01-01T12:00:00\"");
-  // x to the equinox and y to the north pole: z is −y of the equator.
+  // With x towards the equinox and y towards the north pole, z is −y of the equator.
   const Vec3 a = lab("{ axis = \"x\", right_ascension_deg = 0, declination_deg = 0 }");
   EXPECT_NEAR((a - Vec3(sun.x(), sun.z(), -sun.y())).norm(), 0.0, 1e-14);
-  // Rolled by a right angle about x, y points to −y of the equator.
+  // After a roll of 90 deg about x, y points to −y of the equator.
   const Vec3 b =
       lab("{ axis = \"x\", right_ascension_deg = 0, declination_deg = 0, roll_deg = 90 }");
   EXPECT_NEAR((b - Vec3(sun.x(), -sun.y(), -sun.z())).norm(), 0.0, 1e-14);
@@ -180,8 +180,8 @@ TEST(Sun, ComesFromATableToo) {
   EXPECT_THROW(sun_at("date = \"yesterday\""), InputError);
 }
 
-// 1361 W/m² over the speed of light, a quarter at 2 au; the torque p s × a of a centre of pressure
-// off the centre of mass, and that it turns with the body.
+// The pressure is 1361 W/m² divided by the speed of light, and a quarter of it at 2 au. The torque
+// is p s × a for a centre of pressure beside the centre of mass, and rotates with the body.
 TEST(Sun, PressesBesideTheCentreOfMass) {
   AttitudeModel model = bench_model();
   model.environment = environment_of("[sun]\ndirection = [0, 5, 0]\ndistance_au = 2");
@@ -189,7 +189,7 @@ TEST(Sun, PressesBesideTheCentreOfMass) {
   const double pressure_Pa = 1361.0 / 299792458.0 / 4.0;
   const Vec3 upright = torque_body_N_m(model, state_of(model, Quat::Identity()));
   EXPECT_NEAR((upright - pressure_Pa * Vec3(0.5, 0, 0)).norm(), 0.0, 1e-18);
-  // Turned by a about x, the Sun stands at (0, cos a, −sin a) in the body.
+  // After a rotation by a about x, the Sun is at (0, cos a, −sin a) in the body.
   const double a = 0.4;
   const Vec3 leaning = torque_body_N_m(model, state_of(model, turned(a, Vec3::UnitX())));
   EXPECT_NEAR((leaning - pressure_Pa * Vec3(0.5 * std::cos(a), 0, 0)).norm(), 0.0, 1e-18);

@@ -33,8 +33,8 @@ Pose leaning_by(double tilt_deg, double heading_deg) {
           Vec3::Zero()};
 }
 
-// Poisson noise alone: σ²/N for a spot wide against its pixels (R. Thompson, D. Larson, W. Webb,
-// Biophys. J. 82 (2002) 2775, eq. 9); pixels add a twelfth of a pixel² to σ².
+// Only Poisson noise: σ²/N for a spot that is large relative to its pixels (R. Thompson, D. Larson,
+// W. Webb, Biophys. J. 82 (2002) 2775, eq. 9). Pixels add a twelfth of a pixel² to σ².
 TEST(SpotCentre, IsAsGoodAsItsPhotons) {
   const Spot spot{{20.3, 17.8}, 2e6, 3.0, Vec2::Zero()};
   const Mat2 covariance = centre_covariance_px2(spot, {0.0, 1e-3, 1e300});
@@ -44,7 +44,7 @@ TEST(SpotCentre, IsAsGoodAsItsPhotons) {
   EXPECT_NEAR(covariance(0, 1) / expected, 0.0, 1e-3);
 }
 
-// A background b per pixel alone: 8πσ⁴ b/N², what a fitted Gaussian reaches (the same, eq. 14).
+// Only a background b per pixel: 8πσ⁴ b/N², as for a fitted Gaussian (the same source, eq. 14).
 TEST(SpotCentre, UnderABackgroundIsAsGoodAsAFittedGaussian) {
   const Spot spot{{20.0, 20.0}, 1e4, 3.0, Vec2::Zero()};
   const double b = 1e7;
@@ -53,8 +53,8 @@ TEST(SpotCentre, UnderABackgroundIsAsGoodAsAFittedGaussian) {
   EXPECT_NEAR(covariance(0, 0) / expected, 1.0, 0.01);
 }
 
-// A long even line of light along x, where only its ends matter: along the line the centre is less
-// certain than across it.
+// In a long uniform line of light along x, only the ends carry information on x: the centre is less
+// certain along the line than across it.
 TEST(SpotCentre, SuffersFromMotionAlongItAlone) {
   const Spot still{{20.0, 20.0}, 1e5, 1.0, Vec2::Zero()};
   Spot moved = still;
@@ -66,8 +66,8 @@ TEST(SpotCentre, SuffersFromMotionAlongItAlone) {
   EXPECT_NEAR(after(1, 1) / before(1, 1), 1.0, 0.1);
 }
 
-// Numbers of OpenCV 4.6.0: cv2.projectPoints of points in the camera's frame, with its camera
-// matrix of a focal length of 8 mm over 4.8 µm and the distortion k1, k2, p1, p2.
+// Values of OpenCV 4.6.0: cv2.projectPoints of points in the camera's frame, with the camera matrix
+// of a focal length of 8 mm and pixels of 4.8 µm, and the distortion k1, k2, p1, p2.
 TEST(Distortion, IsThatOfOpenCv) {
   struct Case {
     Distortion lens;
@@ -93,7 +93,7 @@ TEST(Distortion, IsThatOfOpenCv) {
   }
 }
 
-// The image's derivatives by the pose against differences.
+// Derivatives of the image by the pose, compared with differences.
 void expect_derivatives(const TrackingCamera& camera, const Pose& pose, double step,
                         double tolerance) {
   for (size_t marker = 0; marker < camera.markers.size(); ++marker) {
@@ -122,10 +122,10 @@ TEST(Distortion, IsInTheDerivativesOfTheImage) {
   expect_derivatives(camera, leaning_by(20.0, 30.0), 1e-5, 1e-6);
 }
 
-// A lens that is calibrated turns nothing, however much it distorts; uncalibrated, images of a
-// cross seen along its axis grow or shrink and turn nothing either, by their symmetry. What is off
-// the axis is drawn aside: by k₁ r³ f, here along the direction of the lean, so that the board
-// seems to lean by the mean of that, weighed by height, over the mean height.
+// A calibrated lens does not rotate the pose, however much it distorts. An uncalibrated lens
+// enlarges or reduces images of a cross on its axis and does not rotate the pose either, by
+// symmetry. Off the axis it shifts images by k₁ r³ f, here along the direction of the tilt. The
+// apparent tilt is the mean of this shift, weighted by height, divided by the mean height.
 TEST(Distortion, TurnsThePoseWhereItIsNotCalibrated) {
   TrackingCamera camera = cross_camera();
   camera.distortion = {-0.3, 0.1, 2e-3, -1e-3};
@@ -136,8 +136,8 @@ TEST(Distortion, TurnsThePoseWhereItIsNotCalibrated) {
   EXPECT_LT(marker_bias_lab_rad(camera, leaning_by(0.0, 0.0))->norm(), 1e-7);
   camera.weighs_alike = true;
   const Vec3 found = *marker_bias_lab_rad(camera, lean);
-  // Least squares about lab y alone, by symmetry: a turn δ moves the image of (x, y, z) by
-  // f ∂u/∂δ, u = (x, y)/(1 − z).
+  // By symmetry, least squares for a rotation about lab y alone: a rotation δ moves the image of
+  // (x, y, z) by f ∂u/∂δ, u = (x, y)/(1 − z).
   double normal = 0.0, right = 0.0;
   for (const Marker& m : camera.markers) {
     const Vec3 p = lean.lab_from_body * m.position_body_m;
@@ -153,8 +153,8 @@ TEST(Distortion, TurnsThePoseWhereItIsNotCalibrated) {
   EXPECT_GT(std::abs(found.y()), 10.0 * arcsecond_rad);
 }
 
-// Solvers that know no errors lose little where all spots are about as bright, and their images
-// agree with the covariance that is predicted of them.
+// Equal weights lose little accuracy if all spots are about as bright, and simulated images agree
+// with the covariance that is predicted for equal weights.
 TEST(Distortion, AndEqualWeightsAgreeWithTheirImages) {
   TrackingCamera camera = cross_camera();
   camera.distortion = {-0.3, 0.1, 2e-3, -1e-3};
@@ -170,9 +170,9 @@ TEST(Distortion, AndEqualWeightsAgreeWithTheirImages) {
   EXPECT_NEAR(seen.chi2, 1.0, 4.0 * std::sqrt(2.0 / (3.0 * images)));
 }
 
-// Far away the image is a parallel projection: a turn about the optical axis moves a marker at a
-// distance r from it by r, one across it moves a marker at a height z by z, so that with equal
-// errors s of all images the attitude's are s/√Σr² and s/√Σz².
+// Far away the image is a parallel projection. A rotation about the optical axis moves a marker by
+// its distance r from the axis; a rotation across it moves a marker by its height z. With equal
+// errors s of all images, the errors of the attitude are s/√Σr² and s/√Σz².
 TEST(AttitudeCovariance, OfADistantBoardHasItsClosedForm) {
   TrackingCamera camera = cross_camera();
   camera.focal_length_m = 4.0;
@@ -199,16 +199,14 @@ TEST(AttitudeCovariance, OfTheStatedBoardAndLensIsThePapers) {
   EXPECT_NEAR(errors.across_rad[1] / arcsecond_rad, 37.0, 2.0);
 }
 
-// Errors alike in all images along both axes: J⁺ J⁺ᵀ s². With one error for all that is the same
-// formula as for noise of that size.
+// Equal errors s of all images along both axes: J⁺ J⁺ᵀ s², the formula for noise of this size.
 TEST(AttitudeCovariance, GrowsWithTheErrorOfCalibrationInProportion) {
   const TrackingCamera camera = cross_camera();
   const Pose pose = leaning_by(12, 40);
   const Mat3 one = *calibration_error_lab_rad2(camera, pose, 0.1);
   const Mat3 two = *calibration_error_lab_rad2(camera, pose, 0.2);
   EXPECT_LT((two - 4.0 * one).norm(), 1e-12 * two.norm());
-  // With the centre known a shifted image is a tilt: of all images by 0.1 px, that of the board's
-  // middle and of the perspective between.
+  // With a known centre, a shift of all images by 0.1 px looks like a tilt.
   const Mat3 shifted = *principal_point_error_lab_rad2(camera, {}, 0.1);
   EXPECT_GT(plane_errors(camera, shifted).out_of_plane_rad,
             2.0 * plane_errors(camera, one).out_of_plane_rad);
@@ -231,8 +229,8 @@ TEST(ViewOfAMarker, IsGoneWhereNoLightComes) {
   EXPECT_FALSE(view_of(camera, 3, {}));
 }
 
-// A spot of less than an electron, or drawn out over the image, is no reading: the errors of such
-// spots have no bound, and the estimate of a run would follow them without end.
+// A spot of less than one electron or with a very long trace is no reading. The errors of such
+// spots have no bound, and an estimate would follow them.
 TEST(ViewOfAMarker, IsGoneWhereTheSpotIsTooFaintOrTooLong) {
   TrackingCamera camera = cross_camera();
   const double electrons = view_of(camera, 1, {})->electrons, dimmed = 0.9 / electrons;
@@ -243,8 +241,8 @@ TEST(ViewOfAMarker, IsGoneWhereTheSpotIsTooFaintOrTooLong) {
   camera = cross_camera();
   camera.markers[0].normal_body = Vec3(1.0, 0.0, 1e-18).normalized();  // edge-on
   EXPECT_FALSE(view_of(camera, 0, {}));
-  // A marker 80.75 mm from the axis, 0.9745 m before a lens of 8 mm over 4.8 µm, moves by 0.0062 px
-  // in 45 µs at 1 rad/s: by 62 px at 1e4 rad/s and by 186 px at 3e4 rad/s.
+  // A marker 80.75 mm from the axis and 0.9745 m from a lens of 8 mm, with pixels of 4.8 µm, moves
+  // by 0.0062 px in 45 µs at 1 rad/s: by 62 px at 1e4 rad/s and by 186 px at 3e4 rad/s.
   camera = cross_camera();
   Pose spinning;
   spinning.rate_lab_rad_s = {0, 0, 1e4};
@@ -263,7 +261,8 @@ std::vector<MarkerReading> exact_readings(const TrackingCamera& camera, const Po
   return readings;
 }
 
-// Without noise the pose is exact from a start that is degrees off, about the centre and free.
+// Without noise the pose is exact from an initial value that is wrong by degrees, with a known and
+// with a free centre.
 TEST(PoseOfMarkers, IsExactWithoutNoise) {
   for (const bool knows_centre : {true, false}) {
     TrackingCamera camera = cross_camera();
@@ -278,7 +277,8 @@ TEST(PoseOfMarkers, IsExactWithoutNoise) {
   }
 }
 
-// A board that is turned on its plate against the drawing turns every attitude by as much.
+// A board that is rotated on its plate relative to the drawing rotates every attitude by this
+// angle.
 TEST(PoseOfMarkers, TakesOverATurnedBoard) {
   TrackingCamera camera = cross_camera();
   const Vec3 turn_rad(2e-4, -1e-4, 5e-4);
@@ -292,8 +292,8 @@ TEST(PoseOfMarkers, TakesOverATurnedBoard) {
   EXPECT_LT((*bias - pose.lab_from_body * turn_rad).norm(), 1e-9);
 }
 
-// Rows exposed one after the other: with the rate known the pose is exact, without it the board's
-// height in the image turns into an error of the rate times the time between its rows.
+// Rows that are exposed one after the other: the pose is exact if the rate is known. Otherwise its
+// error is the rate times the time between the rows of the board's image.
 TEST(PoseOfMarkers, IncludesTheDelayOfARollingShutter) {
   TrackingCamera camera = cross_camera();
   camera.line_time_s = 1e-5;
@@ -309,8 +309,8 @@ TEST(PoseOfMarkers, IncludesTheDelayOfARollingShutter) {
   EXPECT_GT(not_knowing->pose.lab_from_body.angularDistance(truth.lab_from_body), 1e-5);
 }
 
-// Simulated images against the predicted covariance: χ² of 3 × 4000 numbers, whose standard error
-// is √(2/12000) = 1.3 %.
+// Simulated images compared with the predicted covariance: χ² of 3 × 4000 numbers, whose standard
+// error is √(2/12000) = 1.3 %.
 double chi2_of_images(const TrackingCamera& camera, const TrackingCamera& predicting) {
   double sum = 0.0;
   const std::pair<double, double> attitudes[] = {{0, 0}, {10, 30}, {20, 200}, {30, 90}};
@@ -331,7 +331,7 @@ TEST(SimulatedImages, ErrAsPredicted) {
   EXPECT_NEAR(chi2_of_images(camera, camera), 1.0, 0.03);
 }
 
-// The mutant: a prediction that leaves out the read noise.
+// A deliberately wrong prediction, without the read noise.
 TEST(SimulatedImages, DoNotErrAsPredictedWithoutReadNoise) {
   const TrackingCamera camera = cross_camera();
   TrackingCamera predicting = camera;
@@ -347,8 +347,8 @@ TEST(SimulatedImages, AreReadFasterThanTheCameraTakesThem) {
   EXPECT_GT(320.0 / wall.count(), 160.0);
 }
 
-// Recorded attitudes scatter as the geometry predicts, at a tilt where x, y and z differ from zero
-// tilt.
+// Recorded attitudes scatter as the geometry predicts, at a tilt where the errors of x, y and z
+// differ from those at zero tilt.
 TEST(CameraWithGeometry, MakesTheNoiseOfARecording) {
   Sensors sensors;
   sensors.camera.emplace().geometry = cross_camera();

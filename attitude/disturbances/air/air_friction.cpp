@@ -1,8 +1,8 @@
 // Laminar boundary layers on a rotating body: T = −k |ω|^½ ω (eq. 18, 20, 21).
 //
-// coefficient: k ≥ 0 [N m s^1.5]; or one [[disturbance.part]] per body of external_air.h, whose
-// friction about the vertical axis is summed in the environment's air. The law is taken the same
-// about every axis.
+// coefficient: k ≥ 0 [N m s^1.5]. Instead, one [[disturbance.part]] for each body of
+// external_air.h, whose friction about the vertical axis is summed for the air of the environment.
+// The law applies to all axes.
 
 #include "attitude/disturbances/air/external_air.h"
 #include "attitude/disturbances/kind.h"

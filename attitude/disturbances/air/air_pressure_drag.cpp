@@ -1,8 +1,8 @@
 // Form drag of parts in the air: T = −k |ω| ω (eq. 22).
 //
-// coefficient_N_m_s2: k ≥ 0, valid about every axis; or three numbers, T = −|ω| diag(k) ω. Instead,
-// one [[disturbance.part]] for each part of external_air.h, whose form drags about the vertical
-// axis are summed.
+// coefficient_N_m_s2: k ≥ 0 for all axes, or three numbers, T = −|ω| diag(k) ω. Instead, one
+// [[disturbance.part]] for each part of external_air.h, whose form drags about the vertical axis
+// are summed.
 #include "attitude/disturbances/air/external_air.h"
 #include "attitude/disturbances/kind.h"
 

@@ -40,17 +40,17 @@ constexpr TablesKey part("part", "parts in the air of `[environment]`");
 }  // namespace part_key
 
 // Von Kármán's disc: the slope G'(0) = −0.6159 of the similarity solution at the wall (White,
-// Viscous Fluid Flow, 3rd ed., table 3-5). One face feels ½ π 0.6159 ρ R⁴ √(ν ω³).
+// Viscous Fluid Flow, 3rd ed., table 3-5). The torque on one face is ½ π 0.6159 ρ R⁴ √(ν ω³).
 constexpr double disc_wall_slope = 0.6159;
 // Mean friction coefficient of a plate of length l, one side: 1.328/√Re_l (Blasius).
 constexpr double blasius_mean = 1.328;
 
-// Transition: disc on R²ω/ν (Kobayashi, Kohama, Takamadate 1980), plate on v l/ν (Schlichting),
-// sphere on R²ω/ν (Kohama and Kobayashi 1983, where turbulence starts), cylinder on v d/ν (the
-// drag crisis).
+// Reynolds numbers of transition: disc R²ω/ν (Kobayashi, Kohama, Takamadate 1980), plate v l/ν
+// (Schlichting), sphere R²ω/ν (Kohama and Kobayashi 1983, start of turbulence), cylinder v d/ν
+// (drag crisis).
 constexpr double disc_transition = 2.8e5, plate_transition = 5e5, sphere_transition = 1.5e5,
                  cylinder_transition = 2e5;
-// A boundary layer of thickness 5 l/√Re is a fifth of the length at Re = 600; below 100 it is half.
+// A boundary layer has the thickness 5 l/√Re: a fifth of the length at Re = 600, half at 100.
 constexpr double smallest_for_layer = 100.0;
 // Drag coefficients of order one need a separated wake.
 constexpr double smallest_for_wake = 100.0;
@@ -72,7 +72,7 @@ double AirCoefficients::torque_N_m(double rate_rad_s) const {
 }
 
 AirCoefficients air_coefficients(const AirPart& part, const Air& air) {
-  // ρ √ν, which without air is nought.
+  // ρ √ν as √(ρ μ), which is zero without air.
   const double rho = air.density_kg_m3, rho_root_nu = std::sqrt(rho * air.viscosity_Pa_s);
   const auto friction = [&](double x) { return AirCoefficients{part.count * x, 0.0}; };
   const auto form = [&](double x) { return AirCoefficients{0.0, part.count * x}; };
@@ -127,7 +127,7 @@ AirFlow air_flow(const AirPart& part, const Air& air, double rate_rad_s) {
     case AirShape::radial_cylinder:
     case AirShape::upright_cylinder:
       return {per_m2 * outermost_m * 2.0 * part.radius_m, cylinder_transition, smallest_for_wake};
-    case AirShape::blunt_face:  // sharp edges fix the separation: no drag crisis
+    case AirShape::blunt_face:  // sharp edges determine the separation: no drag crisis
       return {per_m2 * outermost_m * std::sqrt(part.area_m2), 1e9, smallest_for_wake};
   }
   return {};

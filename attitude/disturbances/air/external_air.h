@@ -1,4 +1,4 @@
-// The torque of still air on a platform that turns steadily about its vertical axis.
+// The torque of still air on a platform that rotates steadily about its vertical axis.
 //
 // The platform is divided into plates, discs, spheres and cylinders without interference, as in the
 // paper (section II.B.2). Laminar friction is proportional to ω^1.5, form drag to ω². The
@@ -79,7 +79,7 @@ struct AirFlow {
 };
 AirFlow air_flow(const AirPart& part, const Air& air, double rate_rad_s);
 
-// The parts of an experiment: `[[disturbance.part]]` or the like. Keys: name, shape, count,
+// Reads the parts of an experiment, for example `[[disturbance.part]]`. Keys: name, shape, count,
 //   disc: radius_m, faces; plate: length_m, area_m2, distance_m, faces;
 //   swept_plate: length_m, inner_m, outer_m, faces; sphere: radius_m, moment_coefficient;
 //   radial_cylinder: radius_m, inner_m, length_m, drag_coefficient;
@@ -90,7 +90,7 @@ std::vector<AirPart> read_air_parts(const std::vector<Settings>& parts);
 // One row per part: torque, fraction, Reynolds number, transition, and whether the law holds.
 Table air_table(const std::vector<AirPart>& parts, const Air& air, double rate_rad_s);
 
-// [[disturbance.part]] as read_air_parts() reads it.
+// The key [[disturbance.part]] of read_air_parts().
 Key air_parts_key();
 
 // The coefficient of a disturbance: the stated one or, with parts, the member `of` of their sum in

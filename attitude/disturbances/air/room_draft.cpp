@@ -1,7 +1,7 @@
 // A steady draught in the room: a torque that is constant in the lab.
 //
-// torque_lab_N_m[3]. A platform whose shape matters to the draught feels other torques at other
-// headings; this is the part that does not turn with it.
+// torque_lab_N_m[3]. The part of the torque that changes with the attitude, due to the shape of the
+// platform, is not modelled.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::room_draft {

@@ -12,7 +12,7 @@ namespace photorque {
 
 namespace {
 
-// ∫ sin³θ from 0 to θ, the closed form of eq. 17; the half angle keeps its digits for small θ.
+// ∫ sin³θ from 0 to θ, the closed form of eq. 17. The half angle keeps the precision for small θ.
 double integral_sin_cubed(double theta) {
   const double s = std::sin(0.5 * theta);
   return 4.0 / 3.0 * s * s * s * s * (3.0 - 2.0 * s * s);
@@ -72,7 +72,8 @@ double crossing(double low, double high, const Function& f) {
   return bisect(low, high, [&](double x) { return f(x) > 0.0; }, {200, 1e-14}).middle();
 }
 
-// The pressure falls like a logarithm or a Bessel function over the film: to rounding.
+// Number of panels that integrates the pressure in the film (logarithm or Bessel function) to
+// rounding errors.
 constexpr int film_panels = 16;
 
 // Isentropic flow through a hole, choked below the critical pressure ratio.

@@ -1,10 +1,12 @@
-// Friction that does not depend on the rate's size: T = −τ ω/|ω|, a bearing that touches.
+// Friction with a magnitude that does not depend on the rate: T = −τ ω/|ω|, a bearing that touches.
 //
-// torque_N_m: τ ≥ 0. About one axis the propagator holds the direction of slip within a step, ends
-// steps where the rate changes its sign, and lets the platform stick until the other torques exceed
-// τ (attitude/propagation/dry_contact.h). About three axes, creep_rate_rad_s (default 1e-6): below
-// this rate the torque fades linearly to zero, so that the law has a derivative at rest: T = −τ
-// ω/√(ω² + creep²). Sticking is thus a slow creep, too slow for an instrument to resolve.
+// torque_N_m: τ ≥ 0. For a platform with one axis, the propagator keeps the direction of slip
+// constant within a step and ends steps at sign changes of the rate. The platform then sticks until
+// the other torques exceed τ (attitude/propagation/dry_contact.h).
+//
+// About three axes, the torque decreases linearly to zero below creep_rate_rad_s (default 1e-6), so
+// that the law has a derivative at rest: T = −τ ω/√(ω² + creep²). Sticking is then a creep that is
+// too slow to be measured.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::dry_friction {

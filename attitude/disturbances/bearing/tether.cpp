@@ -1,13 +1,14 @@
-// A cable or hose that pulls back to zero attitude: T = −k × the rotation vector from it.
+// A cable or hose that pulls the platform back to zero attitude: T = −k r, where r is the rotation
+// vector from zero attitude.
 //
-// stiffness_N_m_per_rad: k ≥ 0, the same about every axis, no hysteresis.
-// pull_N_m (default 0): the torque at zero attitude, about the one axis or else about body z, so
-// that about one axis pull/k is where it is slack.
-// winds_up (default false): the vector is that of the shortest way back, which changes side after
-// half a turn, as the catalogue has it. A cable that is wound up remembers it: with true, whole
-// turns about body z count besides, T = −k (r + 2π n z), so that the torque about z goes on
-// growing; what a tilt adds to r changes side there still. The run begins with less than half a
-// turn. About one axis the angle about that axis counts, always with its whole turns.
+// stiffness_N_m_per_rad: k ≥ 0 for all axes, without hysteresis.
+// pull_N_m (default 0): the torque at zero attitude, about the only axis or else about body z. A
+// platform with one axis has no torque at the angle pull/k.
+// winds_up (default false): with false, r is the shortest rotation and changes its side at half a
+// turn, as in the catalogue. With true, whole turns n about body z are added, T = −k (r + 2π n z),
+// so that the torque about z continues to increase; the part of r due to a tilt still changes its
+// side. A run starts with less than half a turn. For a platform with one axis, r is the angle about
+// it, always with whole turns.
 #include <array>
 #include <cmath>
 
@@ -31,13 +32,14 @@ constexpr FlagKey winds_up(
     "winds_up", false,
     "true: whole turns about body z count, φ + 2π n z; about one axis they always do");
 }  // namespace key
-// The angle about body z since the start; counts whole turns, so its accuracy hardly matters.
+// The angle about body z since the start. It only determines the number of whole turns, so its
+// accuracy is not important.
 constexpr StateKey twist{"tether_twist_rad"};
 
 // Derivative of the twist angle t about body z in attitude = swing · twist, tan(t/2) = q_z/q_w.
 template <class T>
 T twist_rate(const QuatOf<T>& q, const Vec3Of<T>& rate) {
-  // Upside down there is no such angle.
+  // Upside down, this angle is undefined.
   const T cosine = q.w() * q.w() + q.z() * q.z() + 1e-9;
   return rate[2] +
          ((q.x() * q.z() - q.w() * q.y()) * rate[0] + (q.w() * q.x() + q.y() * q.z()) * rate[1]) /
@@ -63,7 +65,7 @@ class Tether final : public TorqueLaw<Tether> {
       const T angle = whole_turns(own, T(2.0 * atan2(T(axis.dot(q.vec())), T(q.w()))));
       return (own[pull] - own[stiffness] * angle) * axis;
     }
-    // q and −q are the same attitude; the one with w ≥ 0 is the short way.
+    // q and −q are one attitude; w ≥ 0 selects the shorter rotation.
     const T side = where_at_least(q.w(), 0.0, T(1.0), T(-1.0));
     const Vec3Of<T> v = side * q.vec();
     const T sine = length(v);
@@ -79,7 +81,7 @@ class Tether final : public TorqueLaw<Tether> {
   }
 
  private:
-  // The angle, and as many turns as bring it nearest to the twist.
+  // The angle plus the whole turns that bring it nearest to the twist.
   template <class T>
   T whole_turns(const ParametersAndStates<T>& own, const T& angle) const {
     return angle + 2.0 * pi * nearest_whole(T((own.state(twist) - angle) / (2.0 * pi)));

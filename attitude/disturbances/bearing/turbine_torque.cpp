@@ -1,7 +1,7 @@
-// Air that leaves the socket in a swirl turns the ball: a constant torque about lab z.
+// A swirl of the air that leaves the socket drives the ball: a constant torque about lab z.
 //
-// torque_N_m: positive counterclockwise from above. Steady supply and a gap that does not depend on
-// the attitude are assumed; catalogues give no figure, so it is measured or fitted.
+// torque_N_m: positive counterclockwise from above. The supply is assumed to be steady and the gap
+// independent of the attitude. Catalogues state no value; it is measured or fitted.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::turbine_torque {

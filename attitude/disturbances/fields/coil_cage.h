@@ -1,4 +1,4 @@
-// Currents as magnets (eq. 26–28), and the field along an orbit that a cage applies.
+// Magnetic moments of currents (eq. 26–28), and the field along an orbit that a coil cage applies.
 #pragma once
 
 #include <functional>
@@ -15,8 +15,8 @@ namespace photorque {
 // Vacuum permeability, CODATA 2018.
 inline constexpr double vacuum_permeability_N_A2 = 1.25663706212e-6;
 
-// Area vector of a closed polygon [m²]: its normal by the right hand along the corners. Independent
-// of the origin; a polygon that is not plane has one too.
+// Area vector of a closed polygon [m²], along its right-handed normal. It is independent of the
+// origin, and also defined for a polygon that is not plane.
 Vec3 polygon_area_m2(std::span<const Vec3> corners_m);
 
 struct CurrentLoop {
@@ -29,11 +29,11 @@ struct CurrentLoop {
 Vec3 dipole_A_m2(std::span<const CurrentLoop> loops);
 
 // Reads tables with current_A, turns (default 1) and either area_m2 (a vector) or corners_m (a
-// polygon, at least three).
+// polygon with at least three corners).
 std::vector<CurrentLoop> read_current_loops(const std::vector<Settings>& loops);
 std::vector<Key> current_loop_keys();
 
-// A circular orbit about the Earth's centre, in inertial axes whose z is the Earth's.
+// A circular orbit about the Earth's centre, in inertial axes with z along the Earth's axis.
 struct CircularOrbit {
   double radius_m = 6871.2e3;
   double inclination_rad = 0.0;
@@ -42,20 +42,20 @@ struct CircularOrbit {
   double greenwich_angle_rad = 0.0;  // of the Earth's zero meridian at time 0
 
   double motion_rad_s() const;
-  // Unit vectors in inertial axes: towards the ascending node, a quarter turn further along the
-  // orbit, and from the Earth's centre to the spacecraft.
+  // Unit vectors in inertial axes: to the ascending node, to the point a quarter of a turn further
+  // along the orbit, and from the Earth's centre to the spacecraft.
   Vec3 node() const;
   Vec3 ahead() const;
   Vec3 up(double time_s) const;
 };
 inline constexpr double earth_gravitation_m3_s2 = 3.986004418e14;  // EGM2008
 
-// Field along an orbit, in inertial axes (the lab frame), sampled every `interval_s` over
-// `duration_s` [T]. The Earth and its field rotate below the orbit.
+// Field along an orbit [T] in inertial axes (the lab frame), sampled every `interval_s` during
+// `duration_s`. The Earth rotates with its field.
 TimeSeries orbit_field_T(const CircularOrbit& orbit, double decimal_year, double duration_s,
                          double interval_s);
-// Likewise along any path: from the Earth's centre [m] over time, in axes whose x is
-// `greenwich_angle_rad` west of the zero meridian at time 0.
+// Field along any path `position_m`, from the Earth's centre [m] as a function of time. The x axis
+// is `greenwich_angle_rad` west of the zero meridian at time 0.
 TimeSeries orbit_field_T(const std::function<Vec3(double)>& position_m, double greenwich_angle_rad,
                          double decimal_year, double from_s, double duration_s, double interval_s);
 

@@ -1,13 +1,11 @@
-// The light of lamps that stand in the laboratory pushes: T = torque · (their current over that of
-// the key).
+// Radiation pressure of lamps in the laboratory: T = torque · (their current / led_current_A).
 //
-// torque_lab_N_m[3]: lab axes, where the lamps draw led_current_A. Their current is a channel of
-// the recording and holds from row to row; where there is none they shine at that current. A body
-// that leans or turns far meets other light; this is the part that does not change with that. Its
-// table with attitude is radiation_pressure.
+// torque_lab_N_m[3]: the torque at the lamp current led_current_A, lab axes. The current is a
+// channel of the recording, held from row to row; without it, it is led_current_A. The change of
+// the torque with the attitude is not modelled; radiation_pressure has a table for it.
 //
-// A draught is the same torque where the light never changes. Where lamps are dimmed or switched,
-// their current separates the two.
+// Under constant light, a draught has the torque of lamps. A change of their current distinguishes
+// the two.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::lamp_pressure {

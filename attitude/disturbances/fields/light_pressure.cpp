@@ -13,7 +13,8 @@ std::vector<Switch> switches_of(const std::vector<LampGroup>& groups, double fro
   return all;
 }
 
-// Σ over the quaternion of slope · its derivative.
+// The value and, for DualLanes, its derivatives by the chain rule: Σ slope · derivative of the
+// component of the quaternion.
 Lanes chained(const QuatOf<Lanes>&, const Lanes& value, const std::array<Lanes, 4>&) {
   return value;
 }

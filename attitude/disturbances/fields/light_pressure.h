@@ -1,6 +1,6 @@
-// The pressure of light on the platform in a run that knows the light: T = Σ of the groups of
-// lamps, output of the group · torque at full output, as a table over attitude has it; or as it was
-// traced beside the motion.
+// The pressure of light on the platform in a run with a simulation of the light. The torque is the
+// sum over groups of lamps: the output of the group times its torque at full output, from a table
+// over the attitude. Instead, it may be traced during the run.
 #pragma once
 
 #include <functional>
@@ -12,14 +12,14 @@
 
 namespace photorque {
 
-// Lamps that shine alike over time.
+// Lamps with equal output as a function of time.
 struct LampGroup {
-  size_t first_channel = 0;  // of the torque in the table: x, y, z [N m], body axes
-  // Light over that at full output, ≥ 0; smooth but at the switches, where the value after it
-  // counts.
+  size_t first_channel = 0;  // channel of the x torque in the table, then y, z [N m], body axes
+  // Light relative to that at full output, ≥ 0. It is smooth except at the switches, where it has
+  // the value after the switch.
   std::function<double(double time_s)> output;
-  std::vector<double> switches_s;  // rising
-  bool in_orbit = false;           // the Sun: the planet's shadow takes it away
+  std::vector<double> switches_s;  // times of switches, increasing
+  bool in_orbit = false;           // the Sun, which the planet may eclipse
 };
 
 // Both are disturbances of the kind radiation_pressure.

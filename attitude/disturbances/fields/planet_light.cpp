@@ -1,14 +1,14 @@
-// The pressure of the light that the planet sends: sunlight that it reflects, and its infrared, by
-// Knocke, Ries and Tapley (attitude/environment/planet_light.h). Needs an `orbit`.
+// The pressure of the light from the planet: reflected sunlight and thermal infrared, by Knocke,
+// Ries and Tapley (attitude/environment/planet_light.h). Needs an `orbit`.
 //
-// table: of torque-map over azimuth and elevation, traced in sunlight of table_irradiance_W_m2
-// (default that of the Sun at 1 au); infrared_table: the same in infrared light, where the surfaces
-// have other optics; without it they meet it as they meet sunlight. sun_direction[3] (any length):
-// towards the Sun, by default that of `orbit`. albedo, emissivity: means over the planet; zonal:
-// with the Earth's belts, and with date_year its seasons. irradiance_W_m2: of the Sun at the
-// planet. scale: default 1.
+// table: result of torque-map over azimuth and elevation, traced in sunlight of
+// table_irradiance_W_m2 (default: that of the Sun at 1 au). infrared_table: the table for infrared
+// light, for which the surfaces have other optical properties; without it, infrared is treated like
+// sunlight. sun_direction[3] (any length): direction of the Sun, by default that of `orbit`.
+// albedo, emissivity: means over the planet. zonal: variation with latitude as on the Earth;
+// date_year adds its seasons. irradiance_W_m2: of the Sun at the planet. scale: default 1.
 //
-// The planet's night side reflects nothing, so that an eclipse needs no extra term; infrared stays.
+// The night side reflects nothing, so an eclipse needs no extra term. Infrared remains.
 
 #include "attitude/environment/planet_light.h"
 #include "attitude/disturbances/fields/coil_cage.h"
@@ -53,7 +53,7 @@ constexpr NumberKey date_year(
 
 struct PlanetOptions {
   PlanetSurface surface;
-  double season = 0.0;  // its cosine
+  double season = 0.0;  // cosine of the phase of the year
   Vec3 to_sun = Vec3::UnitX();
   double irradiance_W_m2 = solar_irradiance_W_m2;
   double table_W_m2 = solar_irradiance_W_m2;

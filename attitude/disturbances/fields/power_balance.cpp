@@ -1,14 +1,13 @@
-// The current that the battery must give: the load less what the solar array delivers, at the
-// battery's voltage.
+// The battery current: the load minus the power of the solar array, at the battery's voltage.
 //
-// load_W; and the array's power
-//   array_power_W (default 0) at zero tilt in full light, falling with the cosine of the tilt; or
-//   tilt_deg = [0, …], power_W = […]: a table, as `sweep` finds it, held beyond its end;
-// in proportion to the light that arrives. array_scale (default 1) multiplies it. Where a recording
-// or a file of commands has the battery's current, that is all that flows.
+// load_W: the load. The power of the array is one of
+//   array_power_W (default 0): at zero tilt in full light, proportional to the cosine of the tilt;
+//   tilt_deg = [0, …], power_W = […]: a table, for example from `sweep`, constant beyond its end;
+// both multiplied by the illumination and by array_scale (default 1). If a recording or a file of
+// commands has the battery current, it is the only current.
 //
-// Where the battery's capacity is known its controller tapers the current exponentially within the
-// last per cent or so: a full battery takes no more, an empty one gives no more.
+// If the battery's capacity is known, a controller reduces the current exponentially within about
+// the last per cent: a full battery is not charged, an empty one not discharged.
 #include <cmath>
 
 #include "attitude/disturbances/kind.h"
@@ -37,7 +36,7 @@ constexpr ScalarKey array_scale("array_scale", 1.0, Range::not_negative(),
                                 "factor on the power of the array", load.end());
 
 // A monotone cubic through points (F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984)
-// 300): smooth, and without a maximum that the points do not have.
+// 300). It is smooth, and has no maximum between points.
 class MonotoneCurve {
  public:
   MonotoneCurve(std::vector<double> x, std::vector<double> y)
@@ -56,7 +55,7 @@ class MonotoneCurve {
     }
   }
 
-  // Value and slope; the last value beyond the end.
+  // Value and slope; constant beyond the last point.
   std::array<double, 2> at(double x) const {
     if (x >= x_.back() || x_.size() == 1) return {y_.back(), 0.0};
     const auto after = std::upper_bound(x_.begin() + 1, x_.end() - 1, x);
@@ -73,7 +72,7 @@ class MonotoneCurve {
   std::vector<double> x_, y_, slope_;
 };
 
-// sin²(tilt/2), which is smooth where the tilt itself has a corner.
+// sin²(tilt/2), which is smooth at zero tilt, where the tilt is not.
 template <class T>
 T half_tilt_sine_squared(const EvaluationContext<T>& now) {
   return now.attitude.x() * now.attitude.x() + now.attitude.y() * now.attitude.y();
@@ -97,7 +96,8 @@ class PowerBalance final : public LawOf<PowerBalance> {
   }
 
  private:
-  // Fraction of the current that flows: 1 − exp(−room/δ), room the charge that can still move.
+  // Fraction of the current that flows: 1 − exp(−room/δ), where room is the charge that can still
+  // flow.
   template <class T>
   static T controller(const T& drawn_C, const T& current_A, double capacity_C) {
     const T room_C = where_at_least(values(current_A), 0.0, T(capacity_C - drawn_C), drawn_C);

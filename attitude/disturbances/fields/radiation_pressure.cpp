@@ -1,18 +1,21 @@
-// The pressure of light. From a table that the tracer made, T = scale · table(attitude), or of
-// sunlight on a spacecraft of which no more is known than where the pressure acts,
-// T = p s × a: p = 4.54e-6 Pa/r² at r au from the Sun, s the unit vector towards it, a the sum over
-// the lit surfaces of projected area times place from the centre of mass, times one plus the
-// fraction that is sent back (J. R. Wertz, Spacecraft Attitude Determination and Control, 1978,
-// sec. 17.2.2). That takes the projected area for the same from all sides that the Sun comes to.
+// The pressure of light, in one of two forms.
+//
+// From a table of the ray tracer: T = scale · table(attitude).
+//
+// Of sunlight on a spacecraft with few known properties: T = p s × a. p = 4.54e-6 Pa/r² is the
+// pressure at r au from the Sun and s the unit vector towards it. a is the sum over the lit
+// surfaces of projected area times position from the centre of mass, times one plus the reflected
+// fraction (J. R. Wertz, Spacecraft Attitude Determination and Control, 1978, sec. 17.2.2). The
+// projected area is assumed to be independent of the direction of the Sun.
 //
 // area_moment_m3[3]: a, body axes; the Sun is that of [environment.sun]. table: a CSV file
-// (torque_surface.h), its path relative to the experiment's. A table over tilt and heading holds
-// for light that is the same all round the vertical (a beamer overhead); a table over azimuth and
-// elevation for far light from one direction, sun_direction_lab[3], towards the light. scale:
-// default 1. In eclipse the torque falls with the illumination.
+// (torque_surface.h), with a path relative to the experiment. A table over tilt and heading applies
+// to light that is symmetric about the vertical (a projector overhead). A table over azimuth and
+// elevation applies to distant light from one direction, sun_direction_lab[3], towards the light.
+// scale: default 1. The torque is proportional to the illumination in an eclipse.
 //
-// Per ray, the tracer counts momentum in minus momentum out; eq. 29's cosine is inside the
-// irradiance already (docs/physics.md).
+// The tracer sums the momentum in minus the momentum out for each ray. The cosine of eq. 29 is
+// already part of the irradiance (docs/physics.md).
 
 #include "attitude/disturbances/fields/torque_surface.h"
 #include "attitude/disturbances/kind.h"
@@ -34,7 +37,7 @@ class RadiationPressure final : public TorqueLaw<RadiationPressure> {
       return own[factor] * now.illumination *
              look_up_towards<T>(surface_, now.to_body(sun_direction_lab_.template cast<T>()));
     }
-    // Off the pole, where the second angle has no derivative.
+    // Small distance from the pole, where the second angle has no derivative.
     constexpr double pole_offset = 1e-9;
     const Vec3Of<T> up = now.lab_from_body.row(2).transpose();
     const T x = up.x() + pole_offset, y = up.y(), across = sqrt(x * x + y * y);

@@ -14,8 +14,8 @@ namespace photorque {
 
 namespace {
 
-// The cubic through f[1] and f[2] whose slopes there are those of the parabolas through three
-// neighbours, at x[1] ≤ at ≤ x[2].
+// The cubic through f[1] and f[2], for x[1] ≤ at ≤ x[2]. Its slopes there are those of the
+// parabolas through three neighbours.
 Vec3 cubic_between(const std::array<double, 4>& x, const std::array<Vec3, 4>& f, double at) {
   const auto slope_at = [&](int i) -> Vec3 {
     const double before = x[i] - x[i - 1], after = x[i + 1] - x[i];
@@ -28,7 +28,7 @@ Vec3 cubic_between(const std::array<double, 4>& x, const std::array<Vec3, 4>& f,
   return f[1] + t * (from + t * (bend + t * twist));
 }
 
-// Index of the interval that holds x, which may lie up to one interval outside: then `x` becomes
+// Index of the interval that contains x. If x is outside by at most one interval, it is moved to
 // the end.
 size_t interval(const std::vector<double>& nodes, double& x, const char* name) {
   const size_t n = nodes.size();
@@ -41,7 +41,7 @@ size_t interval(const std::vector<double>& nodes, double& x, const char* name) {
   return static_cast<size_t>(std::max<std::ptrdiff_t>(above - nodes.begin() - 1, 0));
 }
 
-// A last node a whole turn after the first repeats the first.
+// Number of different nodes. A last node one turn after the first repeats the first.
 size_t different_around(const std::vector<double>& nodes_rad) {
   const bool repeats =
       nodes_rad.size() > 1 && nodes_rad.back() - nodes_rad.front() > 2.0 * pi - 1e-9;
@@ -75,7 +75,7 @@ double TorqueSurface::width_around_rad(size_t i) const {
   return i + 1 < nodes.size() ? nodes[i + 1] - nodes[i] : nodes.front() + 2.0 * pi - nodes.back();
 }
 
-// The surface is a cubic in both angles within a cell: sixteen values determine it.
+// The surface is a cubic in both angles within a cell, determined by sixteen values.
 TorqueSurface::Patch TorqueSurface::fit_patch(size_t polar, size_t around) const {
   constexpr double coefficients[4][4] = {// of the cubic through values at 0, 1/3, 2/3, 1
                                          {1.0, 0.0, 0.0, 0.0},
@@ -104,7 +104,8 @@ TorqueSurface::Patch TorqueSurface::fit_patch(size_t polar, size_t around) const
   return patch;
 }
 
-// The cell that holds an angle, which is brought into its range.
+// The cell that contains an angle. The angle is converted to its range; `held`: it is beyond an
+// edge.
 size_t TorqueSurface::cell_around(double& around_rad, bool* held) const {
   const std::vector<double>& nodes = table_.around_rad;
   *held = false;
@@ -146,7 +147,7 @@ TorqueSurface::Sample TorqueSurface::at(const TableAngles& angles) const {
   return sample;
 }
 
-// One row of nodes of equal polar angle, interpolated around.
+// Interpolates a row of nodes with equal polar angle in the other angle.
 Vec3 TorqueSurface::row_at(size_t polar, double around_rad) const {
   const std::vector<double>& nodes = table_.around_rad;
   const auto n = static_cast<std::ptrdiff_t>(nodes.size());
@@ -168,7 +169,7 @@ Vec3 TorqueSurface::row_at(size_t polar, double around_rad) const {
       const auto j = static_cast<size_t>(i - turns * n);
       x[k] = nodes[j] + 2.0 * pi * static_cast<double>(turns);
       f[k] = table_.torque_body_N_m[table_.node(j, polar)];
-    } else {  // the edge, continued in a straight line
+    } else {  // linear extrapolation beyond the edge
       const size_t edge = i < 0 ? 0 : nodes.size() - 1, inner = i < 0 ? 1 : nodes.size() - 2;
       x[k] = 2.0 * nodes[edge] - nodes[inner];
       f[k] = 2.0 * table_.torque_body_N_m[table_.node(edge, polar)] -
@@ -185,8 +186,8 @@ bool TorqueSurface::beyond_is_pole(bool below) const {
   return closed_ && std::abs(edge - pole) < 1e-9;
 }
 
-// The row beyond the first (last): across a pole lie the angles of the opposite side; elsewhere the
-// edge is extended linearly.
+// The row beyond the first or last one. Beyond a pole it is that of the opposite side; elsewhere
+// the edge is extrapolated linearly.
 Vec3 TorqueSurface::ghost_row(bool below, double around_rad, double* polar_rad) const {
   const std::vector<double>& nodes = table_.polar_rad;
   const size_t edge = below ? 0 : nodes.size() - 1, inner = below ? 1 : nodes.size() - 2;

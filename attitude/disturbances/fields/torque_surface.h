@@ -1,4 +1,4 @@
-// Smooth interpolation of a wrench table: the torque between the nodes, and its derivatives.
+// Smooth interpolation of a wrench table: the torque between the nodes, with its derivatives.
 #pragma once
 
 #include <array>
@@ -10,18 +10,18 @@
 
 namespace photorque {
 
-// Cubic Hermite interpolation of a table's torque in both angles: continuous with its slopes, exact
-// at the nodes and for a torque linear in the angles. (core's wrench_at() is bilinear: its kinks
-// would shorten every step of an integrator.)
+// Cubic Hermite interpolation of a table's torque in both angles. It has continuous slopes, and is
+// exact at the nodes and for a torque that is linear in the angles. (The slopes of core's bilinear
+// wrench_at() jump at the nodes, which would shorten the steps of an integrator.)
 class TorqueSurface {
  public:
-  // At poles and at azimuths a turn apart the nodes are averaged first. NumericalError unless both
-  // axes have two nodes or more.
+  // Nodes at poles and at azimuths a turn apart are averaged first. NumericalError unless both axes
+  // have at least two nodes.
   explicit TorqueSurface(const WrenchTable& table);
 
   struct Sample {
     Vec3 torque_body_N_m;
-    Vec3 by_polar, by_around;  // its derivatives [N m/rad]
+    Vec3 by_polar, by_around;  // derivatives of the torque [N m/rad]
   };
   // Up to one step beyond the table, the torque is that of the edge, because an integrator
   // evaluates torques beyond the tilt limit. NumericalError further out.
@@ -46,13 +46,13 @@ class TorqueSurface {
   std::vector<Patch> patches_;  // one per cell, the azimuth varying fastest
 };
 
-// Reads a table as the program writes it: a CSV with heading_deg and tilt_deg, or azimuth_deg and
+// Reads a table in the program's format: a CSV with heading_deg and tilt_deg, or azimuth_deg and
 // elevation_deg, and torque_x_N_m, torque_y_N_m, torque_z_N_m about the centre of rotation, in any
-// order among other columns; every pair of angles once. Lines that start with # are skipped.
-// InputError with the line for anything else.
+// order and among other columns. Every pair of angles occurs once. Lines that start with # are
+// skipped. InputError with the line for anything else.
 WrenchTable read_wrench_table(const std::filesystem::path& path);
 
-// The torque of a surface at a polar angle and one around [N m, body axes].
+// The torque of a surface at a polar angle and the angle around the pole [N m, body axes].
 template <class T>
 Vec3Of<T> look_up(const TorqueSurface& surface, const T& polar_rad, const T& around_rad) {
   std::array<Lanes, 3> value, by_polar, by_around;
@@ -71,7 +71,8 @@ Vec3Of<T> look_up(const TorqueSurface& surface, const T& polar_rad, const T& aro
   return torque;
 }
 
-// The torque for light from a direction in body axes; the surface is over azimuth and elevation.
+// The torque for light from a direction in body axes [N m]; the surface is over azimuth and
+// elevation.
 template <class T>
 Vec3Of<T> look_up_towards(const TorqueSurface& surface, const Vec3Of<T>& light_body) {
   constexpr double pole_offset = 1e-9;  // off the pole, where the azimuth has no derivative

@@ -1,4 +1,4 @@
-// A camera that reports where the platform was.
+// A camera that reports a past attitude.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::attitude_latency {

@@ -1,4 +1,4 @@
-// A camera's target mounted at a small angle to the body axes.
+// A camera target that is mounted at a small angle to the body axes.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::camera_misalignment {
@@ -7,8 +7,8 @@ namespace {
 constexpr VectorKey turn("misalignment_rad",
                          "rotation vector from the true to the measured body axes");
 
-// The attitude seen is q ⊗ exp(m/2) for the rotation vector m, in body axes, from the true to the
-// seen body axes.
+// The measured attitude is q ⊗ exp(m/2) with the rotation vector m, in body axes, from the true to
+// the measured body axes.
 struct CameraMisalignment final : LawOf<CameraMisalignment> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {

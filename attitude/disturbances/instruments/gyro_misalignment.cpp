@@ -6,8 +6,8 @@ namespace {
 
 constexpr VectorKey turn("misalignment_rad", "rotation vector of the mounting");
 
-// reading − ω = m × ω for a mounting rotation vector m of the body axes against the gyro's: first
-// order, good to |m|²/2.
+// reading − ω = m × ω, where m is the mounting rotation vector of the body axes relative to the
+// gyro's. First order, with an error of |m|²/2.
 struct GyroMisalignment final : LawOf<GyroMisalignment> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {

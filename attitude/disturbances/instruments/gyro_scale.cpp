@@ -1,4 +1,4 @@
-// A gyro whose axes read too much or too little, in proportion.
+// A gyro whose readings are proportionally too large or too small on each axis.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::gyro_scale {

@@ -1,4 +1,4 @@
-// Markers that are not where the camera's pose takes them to be.
+// Markers whose true positions differ from those that the camera's pose assumes.
 #include <cmath>
 
 #include "attitude/camera/spot.h"
@@ -22,18 +22,18 @@ constexpr NumbersKey error(error_key, {-0.1, 0.1},
                            {.has_error = true});
 }  // namespace key
 
-// One marker as the law needs it.
+// The properties of one marker that the law needs.
 struct SeenMarker {
   Vec3 place_m, normal;  // body axes
 };
 
-// The least-squares pose of markers that stand at m + e and are taken to stand at m, in full
-// perspective, so that it depends on the attitude and the camera's place. To first order in e it is
-// turned, in body axes, by
+// The least-squares pose for markers with true positions m + e and assumed positions m, in full
+// perspective, so that it depends on the attitude and the camera position. To first order in e it
+// is rotated, in body axes, by
 //   θ = (Σ w Hᵀ H)⁻¹ Σ w Hᵀ D e,  D = ∂(pixel)/∂m,  H θ = D (θ × m)
-// (of a free pose H holds the shift too); a flat board close to the centre of rotation needs the
-// orders after it, by Gauss and Newton's rounds. Errors that contradict each other weigh as the
-// pose weighs them: the weight w is the information of a marker's spot on its centre, or one.
+// (for a free pose H also contains the shift). A flat board close to the centre of rotation needs
+// higher orders, by Gauss–Newton iterations. Contradicting errors have the weights of the pose: the
+// weight w is the information of a marker's spot on its centre, or one.
 struct MarkerPositions final : LawOf<MarkerPositions> {
   MarkerPositions(const TrackingCamera& camera, std::optional<size_t> only)
       : lab_from_camera_(camera.lab_from_camera.rotation.toRotationMatrix()),
@@ -61,8 +61,8 @@ struct MarkerPositions final : LawOf<MarkerPositions> {
   }
 
  private:
-  // Weights from the Fisher information of the first spot in sight at zero tilt, and of one less
-  // bright, in the middle of a pixel and on the edge between two: N²/information = a N + b.
+  // Weights from the Fisher information of the first visible spot at zero tilt and of a fainter
+  // one, at the centre of a pixel and on the edge between two: N²/information = a N + b.
   void weigh(const TrackingCamera& camera) {
     for (size_t i = 0; i < markers_.size() && !camera.weighs_alike; ++i) {
       const auto view = view_of(camera, index_[i], {});
@@ -87,8 +87,8 @@ struct MarkerPositions final : LawOf<MarkerPositions> {
     }
   }
 
-  // Standard deviation of a spot's centre along one axis, from the marker's brightness and its
-  // position within the pixel. Without known errors, all markers have the same weight.
+  // Information of a spot on its centre along one axis, from the marker's brightness and the
+  // position within the pixel. It is one for all markers if the pose weights them equally.
   template <class T>
   T information(const T& brightness, const T& pixel) const {
     if (in_middle_.constant == 0.0) return T(1.0);
@@ -99,8 +99,8 @@ struct MarkerPositions final : LawOf<MarkerPositions> {
     return brightness * brightness / (slope * brightness + constant);
   }
 
-  // The light that enters the lens, up to a constant: cosᵐ ε cos α/d², α at the lens. A marker that
-  // is turned away counts as one that grazes.
+  // The light that enters the lens, relative to a constant: cosᵐ ε cos α/d², with α at the lens. A
+  // marker that is turned away is treated like one at grazing angle.
   template <class T>
   T brightness_at(const Vec3Of<T>& to_camera_m, const Vec3& normal, const T& depth_m) const {
     const T distance_m = length<T>(to_camera_m);
@@ -121,7 +121,7 @@ struct MarkerPositions final : LawOf<MarkerPositions> {
     return {own.parameters[1], own.parameters[2], own.parameters[3]};
   }
 
-  // The present estimate of the pose: a turn in body axes, and a shift where it is free.
+  // The present estimate of the pose: a rotation in body axes and, for a free pose, a shift.
   template <class T>
   struct Found {
     Mat3Of<T> turned = Mat3Of<T>::Identity();
@@ -174,7 +174,7 @@ struct MarkerPositions final : LawOf<MarkerPositions> {
     return found.turn;
   }
 
-  // A turn of a hundredth or less more, to the third order of it.
+  // Adds a rotation of at most about 0.01 rad, accurate to third order.
   template <int unknowns, class T>
   static void step(const std::array<T, unknowns>& by, Found<T>& found) {
     const Vec3Of<T> turn{by[0], by[1], by[2]};
@@ -184,12 +184,12 @@ struct MarkerPositions final : LawOf<MarkerPositions> {
       found.turned.col(c) =
           column + once + T(0.5) * twice + T(1.0 / 6.0) * Vec3Of<T>(turn.cross(twice));
     }
-    // The rotation vector of one turn after another (Baker, Campbell, Hausdorff).
+    // The rotation vector of two successive rotations (Baker, Campbell, Hausdorff).
     found.turn += turn + T(0.5) * Vec3Of<T>(turn.cross(found.turn));
     for (int c = 3; c < unknowns; ++c) found.shift_m[c - 3] += by[c];
   }
 
-  // A symmetric system, of which the upper half is given, by Gauss's elimination from the last
+  // Solves a symmetric system, given by its upper half, by Gaussian elimination from the last
   // unknown upwards.
   template <int unknowns, class T>
   static std::array<T, unknowns> solved(std::array<std::array<T, unknowns>, unknowns>& a,
@@ -216,15 +216,15 @@ struct MarkerPositions final : LawOf<MarkerPositions> {
   Vec3 camera_lab_m_;
   bool is_free_;
   double emission_exponent_, unit_brightness_ = 1.0;
-  double pixels_;                    // of the focal length
-  std::array<double, 2> middle_px_;  // of the image, from the middle of its first pixel
+  double pixels_;                    // focal length in pixels
+  std::array<double, 2> middle_px_;  // image centre, from the centre of its first pixel
   struct Information {
     double per_brightness = 0.0, constant = 0.0;
   };
   Information in_middle_, on_edge_;  // of a pixel
   std::optional<size_t> only_;
   std::vector<SeenMarker> markers_;
-  std::vector<size_t> index_;  // of each among the camera's
+  std::vector<size_t> index_;  // index of each in camera.markers
 };
 
 const TrackingCamera& camera_of(const Settings& settings, const DisturbanceContext& context) {
@@ -261,7 +261,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
       camera, std::optional<size_t>(static_cast<size_t>(which - 1)));
 }
 
-// One of them alone, and all together where none alone does it.
+// One parametrisation for each marker alone, and one for all together.
 std::vector<Parametrisation> of_markers(const DisturbanceContext& context) {
   std::vector<Parametrisation> all;
   if (context.camera == nullptr) return all;

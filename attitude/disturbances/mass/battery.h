@@ -1,5 +1,5 @@
 // The effect of a discharging lithium-ion battery on a platform: lithium migrates from anode to
-// cathode and takes the centre of mass along. Source: eq. 30–34.
+// cathode and displaces the centre of mass. Source: eq. 30–34.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ namespace photorque {
 // Lithium per charge, one ion per electron, M/F: 7.19e-8 kg/C or 0.2589 g/Ah. Molar mass 6.94 g/mol
 // (IUPAC 2021, conventional value; natural sources vary by 0.4 %).
 inline constexpr double lithium_kg_C = 6.94e-3 / faraday_C_mol;
-// Eq. 31: the transport rules' 0.3 g/Ah, which counts all lithium in a cell and is rounded up.
+// Eq. 31: the 0.3 g/Ah of the transport rules, which count all lithium in a cell and round up.
 inline constexpr double lithium_as_published_kg_C = 0.3e-3 / 3600.0;
 
 // One cell on the platform.
@@ -48,8 +48,8 @@ inline double energy_J(std::span<const LoadPhase> profile) {
   return sum_J;
 }
 
-// Mass of the battery that holds this energy [kg]; lithium-ion packs reach 60 to 250 Wh/kg, here in
-// J/kg.
+// Mass [kg] of a battery with this energy. Lithium-ion packs reach 60 to 250 Wh/kg; the parameter
+// is in J/kg.
 inline double battery_mass_kg(double energy_J, double specific_energy_J_kg) {
   return energy_J / specific_energy_J_kg;
 }

@@ -1,10 +1,12 @@
-// Lithium migrates through the battery: T = m s Q(t) × g_B, Q the charge drawn (eq. 30–34).
+// Lithium migrates through the battery: T = m s Q(t) × g_B, where Q is the charge drawn (eq.
+// 30–34).
 //
-// shift_m_per_Ah[3]: shift of the centre of mass per charge, body axes; or one [[disturbance.cell]]
-// per cell with
-//   electrodes_m[3]: from the lithium's mean place when charged to that when empty, body axes. Half
-//     a cell's length is the paper's upper bound; wound cells shift by orders of magnitude less;
-//   charge_share: 1 in series (default), 1/n of n in parallel;
+// shift_m_per_Ah[3]: shift of the centre of mass per charge, body axes. Instead, one
+// [[disturbance.cell]] for each cell with
+//   electrodes_m[3]: from the mean position of the lithium when charged to that when empty, body
+//     axes. Half a cell's length is the paper's upper bound; in wound cells it is smaller by orders
+//     of magnitude;
+//   charge_share: 1 in series (default), 1/n for n in parallel;
 // and lithium: "exact" (Faraday, default) or "rounded" (the paper's 0.3 g/Ah).
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/mass/battery.h"

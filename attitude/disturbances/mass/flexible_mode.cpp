@@ -1,15 +1,16 @@
-// An appendage on a spring, or sloshing liquid: one mode with its own two states.
+// An appendage on a spring, or sloshing liquid: one mode with two states.
 //
 // axis[3] (body, any length), frequency_Hz and damping (fraction of critical) of the appendage with
-// the body held, inertia_kg_m2 (J, about the axis; part of the platform's inertia). With φ its
-// angle beside the body and σ its absolute rate about the axis a:
+// a fixed body, inertia_kg_m2 (J, about the axis; part of the platform's inertia). With the angle φ
+// of the appendage relative to the body and its absolute rate σ about the axis a:
 //   φ' = σ − a·ω,  σ' = −ω_n² φ − 2 ζ ω_n φ',  T = a J (ω_n² φ + 2 ζ ω_n φ') − ω × (J a σ)
-// while J a aᵀ no longer follows the body's acceleration.
-// inertia_slope[6] (S: xx, yy, zz, xy, xz, yz; default 0): an appendage that is not round about its
-// axis changes the inertia by φ J S and is driven by the rotation: to first order in φ
+// and J a aᵀ no longer follows the body's acceleration.
+//
+// inertia_slope[6] (S: xx, yy, zz, xy, xz, yz; default 0): an appendage that is not symmetric about
+// its axis changes the inertia by φ J S, and the rotation drives it. To first order in φ
 //   σ' += ½ ωᵀ S ω,  T −= ½ a J ωᵀ S ω + J φ' S ω.
-// initial_angle_deg (default 0), initial_rate_rad_s (default a·ω: at rest beside the body): φ and σ
-// at the start of a run.
+// initial_angle_deg (default 0), initial_rate_rad_s (default a·ω: at rest relative to the body): φ
+// and σ at the start of a run.
 #include "attitude/disturbances/kind.h"
 #include "core/constants.h"
 

@@ -1,6 +1,7 @@
-// Gravity is weaker higher up: T = 3 g/R up_B × I up_B; in orbit g/R is μ/r³.
+// Gravity decreases with height: T = 3 g/R up_B × I up_B; in orbit g/R is μ/r³.
 //
-// No parameters. The field of a point mass, to first order in the platform's size over R.
+// No parameters. The field is that of a point mass, to first order in the platform's size divided
+// by R.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::gravity_gradient {

@@ -1,6 +1,6 @@
-// The mass is not the nominal one: m + δ.
+// The mass is m + δ instead of the nominal m.
 //
-// delta_kg: δ. The whole must remain positive.
+// delta_kg: δ. The sum must be positive.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::mass_error {

@@ -1,4 +1,4 @@
-// Something slips: the same as static_unbalance, from one instant on.
+// A part slips: the effect of static_unbalance from one instant on.
 //
 // time_s: the instant. offset_m[3]: the shift of the centre of mass, body axes.
 

@@ -40,7 +40,7 @@ BalanceCommand balancing_steps(const Vec3& offset_body_m, const std::vector<Movi
   }
   Eigen::VectorXd steps = least_squares(shift_m, -offset_body_m).solution.array().round().matrix();
   Vec3 left_m = offset_body_m + shift_m * steps;
-  // Each pass makes the rest strictly shorter, by at least a part in 1e12: it ends.
+  // Each pass reduces the remaining offset by a factor of at least 1 − 1e-12, so the loop ends.
   for (bool better = true; better;) {
     better = false;
     for (Eigen::Index i = 0; i < steps.size(); ++i) {

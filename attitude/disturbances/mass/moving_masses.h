@@ -1,5 +1,5 @@
-// Balancing masses on stepper-driven screws: where they can put the centre of mass, and how finely.
-// Source: eq. 1.
+// Balancing masses on screws with stepper motors: the positions of the centre of mass that they can
+// reach, and the resolution. Source: eq. 1.
 #pragma once
 
 #include <cstdint>
@@ -26,12 +26,12 @@ struct MovingMass {
 // Resolution of the centre of mass along one axis [m]: half a step, ½ Δφ/2π · lead · m_m/m_tot.
 double com_resolution_m(const MovingMass& mass, double platform_mass_kg);
 
-// Eq. 1: torque of half a step on an axis that is horizontal at zero tilt, at a tilt across it [N
-// m].
+// Eq. 1: torque of half a step [N m] on an axis that is horizontal at zero tilt, for a tilt
+// perpendicular to it.
 double horizontal_rounding_torque_N_m(const MovingMass& mass, double tilt_rad, double gravity_m_s2);
 
-// Eight equal masses as the paper's platform has them: two along each horizontal axis and four
-// along the vertical one.
+// Eight equal masses, as on the paper's platform: two along each horizontal axis and four along the
+// vertical axis.
 std::vector<MovingMass> eight_masses(const MovingMass& pattern);
 
 // Whole steps of each mass, and the remaining offset.
@@ -40,9 +40,9 @@ struct BalanceCommand {
   Vec3 left_over_m = Vec3::Zero();  // of the centre of mass, body axes
 };
 
-// The steps that best undo an offset of the centre of mass: the least travel, rounded, then
-// repaired step by step while that brings the rest closer to zero. Directions that no mass can
-// reach are left over.
+// The steps that compensate an offset of the centre of mass best: the solution with the least
+// travel, rounded, then improved step by step while the remaining offset decreases. Directions that
+// no mass can reach remain.
 BalanceCommand balancing_steps(const Vec3& offset_body_m, const std::vector<MovingMass>& masses,
                                double platform_mass_kg);
 

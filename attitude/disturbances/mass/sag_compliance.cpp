@@ -5,9 +5,9 @@
 namespace photorque {
 namespace {
 
-// ∫ (displacement) dm of one clamped beam of mass m with an end mass M, per unit of gravity across
-// it [kg s²]: the end load bends the end by l³/3EI and the beam's mean by l³/8EI, the beam's own
-// weight the end by l³/8EI and its mean by l³/20EI, each per unit load.
+// ∫ (displacement) dm [kg s²] of one clamped beam of mass m with an end mass M, per unit of
+// transverse gravity. Per unit load, the end load displaces the end by l³/3EI and the mean of the
+// beam by l³/8EI. The weight of the beam displaces the end by l³/8EI and its mean by l³/20EI.
 double sagging_moment_kg_s2(double length_m, double end_mass_kg, double beam_mass_kg,
                             double bending_stiffness_N_m2) {
   const double M = end_mass_kg, m = beam_mass_kg;

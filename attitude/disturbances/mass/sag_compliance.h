@@ -28,13 +28,14 @@ struct CounterbalanceBeams {
   int count = 1;                        // N_l
 };
 
-// Compliance of the whole platform's centre of mass [s²]; `platform_mass_kg` is of everything.
+// Compliance of the centre of mass of the whole platform [s²]; `platform_mass_kg` is the total
+// mass.
 Mat3 sag_compliance_s2(const DumbbellArms& arms, double platform_mass_kg);
 Mat3 sag_compliance_s2(const CounterbalanceBeams& beams, double platform_mass_kg);
 
-// Torque [N m] about a horizontal axis across the arms (beams), at a tilt about that axis, balanced
-// at zero tilt. Dumbbell: ∝ sin θ − ½ sin 2θ, the arms tilting with it; tabletop: ∝ sin 2θ.
-// Positive: drives the tilt on.
+// Torque [N m] about a horizontal axis perpendicular to the arms (beams), for a tilt about that
+// axis, balanced at zero tilt. Dumbbell, whose arms tilt: ∝ sin θ − ½ sin 2θ; tabletop: ∝ sin 2θ.
+// Positive: increases the tilt.
 double sag_torque_N_m(const DumbbellArms& arms, double tilt_rad, double gravity_m_s2);
 double sag_torque_N_m(const CounterbalanceBeams& beams, double tilt_rad, double gravity_m_s2);
 

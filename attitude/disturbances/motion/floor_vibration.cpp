@@ -1,13 +1,14 @@
-// The floor shakes: T = −m r × a_B, r the centre of mass's offset, a the floor's acceleration.
+// The floor vibrates: T = −m r × a_B, where r is the offset of the centre of mass and a the
+// acceleration of the floor.
 //
 // One of
 //   acceleration_m_s2[3] (lab axes), frequency_Hz, phase [rad] (or phase_deg; default 0):
 //     a = a₀ sin(2π f t + φ);
-//   the table spectrum = {frequency_Hz = […], density_m2_s3 = […] (one-sided, the same along all
+//   the table spectrum = {frequency_Hz = […], density_m2_s3 = […] (one-sided, equal along all
 //     axes), tones (default 32), seed (default 1)}: see vibration.h;
-//   accelerogram_file: a CSV with t_s, acceleration_x_m_s2, …_y_…, …_z_… in lab axes, at rest
-//     outside its time; the path is relative to the experiment's file.
-// The last two take scale (default 1). The floor moves without turning.
+//   accelerogram_file: a CSV with t_s, acceleration_x_m_s2, …_y_…, …_z_… in lab axes, zero before
+//     and after; the path is relative to the experiment's file.
+// The last two have scale (default 1). The floor does not rotate.
 
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/motion/vibration.h"
@@ -16,7 +17,8 @@
 namespace photorque::kinds::floor_vibration {
 namespace {
 
-// Faster, and the phase loses its digits within a day: steps would see something slow.
+// At higher frequencies the phase loses its precision within a day: the steps would sample a slow
+// alias.
 constexpr Range tone_Hz{0.0, 1e6};
 constexpr auto shaking = VectorKey("acceleration_m_s2",
                                    "amplitude a of a sine in T = −m r × a (zero without an offset "

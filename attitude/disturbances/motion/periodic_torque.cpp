@@ -8,7 +8,8 @@
 namespace photorque::kinds::periodic_torque {
 namespace {
 
-// Faster, and the phase loses its digits within a day: steps would see something slow.
+// At higher frequencies the phase loses its precision within a day: the steps would sample a slow
+// alias.
 constexpr Range tone_Hz{0.0, 1e6};
 constexpr VectorKey amplitude("torque_N_m", "T₀ in T = T₀ sin(2π f t + φ), body axes");
 constexpr ScalarKey frequency("frequency_Hz", tone_Hz, "frequency f of the torque",

@@ -11,7 +11,7 @@ namespace photorque {
 
 namespace {
 
-// ∫ of the piecewise linear density from the first point to f.
+// Integral of the piecewise linear density from the first point to the frequency.
 Vec3 power_below(std::span<const SpectrumPoint> spectrum, double frequency_Hz) {
   Vec3 sum = Vec3::Zero();
   for (size_t i = 0; i + 1 < spectrum.size(); ++i) {

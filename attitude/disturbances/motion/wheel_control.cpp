@@ -1,15 +1,16 @@
 // Three reaction wheels along the body axes under quaternion feedback.
 //
-// The wheels are asked for the body torque −k_p sgn(e_w) 2 e_v − k_d (ω − ω_t) that turns the body
-// to the target attitude: e = target⁻¹ ⊗ attitude. Each motor gives at most largest_torque_N_m, and
-// nothing that drives its wheel beyond largest_rate_rad_s; the bearings rub.
+// The wheels apply the body torque −k_p sgn(e_w) 2 e_v − k_d (ω − ω_t) that rotates the body to the
+// target attitude, with e = target⁻¹ ⊗ attitude. The torque of each motor is at most
+// largest_torque_N_m, and a motor does not drive its wheel beyond largest_rate_rad_s. The bearings
+// have friction.
 //
-// gain_N_m_per_rad (k_p), gain_N_m_s (k_d);
-// target_axis[3], target_angle_deg (default 0: zero attitude), target_rate_rad_s[3] (body, default
-//   0);
-// wheel_inertia_kg_m2 (axial, of each; part of the platform's inertia), largest_torque_N_m,
-// largest_rate_rad_s (of a wheel against the body);
-// viscous_N_m_s (default 0), dry_N_m (default 0): friction of a wheel's bearing.
+//   gain_N_m_per_rad (k_p), gain_N_m_s (k_d);
+//   target_axis[3], target_angle_deg (default 0: zero attitude),
+//   target_rate_rad_s[3] (body, default 0);
+//   wheel_inertia_kg_m2 (axial, of each; part of the platform's inertia), largest_torque_N_m,
+//   largest_rate_rad_s (of a wheel relative to the body);
+//   viscous_N_m_s (default 0), dry_N_m (default 0): friction of a wheel's bearing.
 //
 // Source of the feedback law: B. Wie, H. Weiss, A. Arapostathis, J. Guid. Control Dyn. 12 (1989)
 // 375.
@@ -49,15 +50,15 @@ constexpr NumberKey largest_rate("largest_rate_rad_s", Range::positive(),
 constexpr std::array<StateKey, 3> wheel = {
     {{"wheel_x_rad_s", 0}, {"wheel_y_rad_s", 1}, {"wheel_z_rad_s", 2}}};
 
-// x for |x| far below `limit`, ±limit far above: 1.5 % short at half the limit, smooth.
+// x for |x| far below `limit`, ±limit far above. Smooth; at half the limit it is 1.5 % below x.
 template <class T>
 T saturated(const T& x, double limit) {
   const T u = x / limit, square = u * u;
   return x / sqrt(sqrt(1.0 + square * square));
 }
 
-// 1 while the wheel is below its largest rate, falling to 0 over its last per cent; `share` is its
-// rate over the largest, positive where the motor drives it further.
+// 1 while the wheel is below its largest rate, decreasing to 0 over the last per cent. `fraction`
+// is its rate divided by the largest one, positive if the motor drives it further.
 template <class T>
 T headroom(const T& fraction) {
   // Limited, because the exponential would overflow; the result is 0 there.
@@ -108,7 +109,7 @@ class WheelControl final : public LawOf<WheelControl> {
 
   template <class T>
   T friction(const ParametersAndStates<T>& own, const T& relative) const {
-    // Dry friction turns over within this rate, a wheel's creep.
+    // Rate within which dry friction changes its sign, the creep of a wheel.
     constexpr double creep_rad_s = 0.1;
     return own[viscous] * relative +
            own[dry] * relative / sqrt(relative * relative + creep_rad_s * creep_rad_s);

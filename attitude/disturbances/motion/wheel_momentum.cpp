@@ -1,8 +1,9 @@
-// Wheels whose speed was measured: T = −J (Ω' + ω × Ω), ω the inertial rate.
+// Wheels with measured speeds: T = −J (Ω' + ω × Ω), where ω is the inertial rate.
 //
-// inertia_kg_m2: J ≥ 0 of a wheel about its own axis, relative to which the body's inertia counts
-// it at rest; one number for all wheels, or three for those about body x, y and z. Their speeds Ω
-// relative to the body are the recording's columns wheel_x_rad_s, wheel_y_rad_s, wheel_z_rad_s.
+// inertia_kg_m2: J ≥ 0 of a wheel about its axis; one number for all wheels, or three for those
+// about body x, y and z. The inertia of the body includes the wheels at rest. Their speeds Ω
+// relative to the body are the columns wheel_x_rad_s, wheel_y_rad_s, wheel_z_rad_s of the
+// recording.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::wheel_momentum {

@@ -1,4 +1,4 @@
-// Viscous drag of a sliding body, as of an air film: F = −c v.
+// Viscous drag of a sliding body, for example of an air film: F = −c v.
 //
 // coefficient_kg_s: c ≥ 0.
 #include "attitude/disturbances/kind.h"

@@ -1,7 +1,7 @@
 // A table that is not level: F = −m g (s_x, s_y) on a platform that slides.
 //
-// slope_rad[2]: slope of the table along lab x and y; small. A steady draught or any other
-// constant force looks the same.
+// slope_rad[2]: slope of the table along lab x and y; small. A steady draught or another constant
+// force has the same effect.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::table_slope {
@@ -12,7 +12,7 @@ constexpr KeyOf<2> slope("slope_rad", "slope of the table along lab x and y; sma
 struct TableSlope final : ForceLaw<TableSlope> {
   template <class T>
   Vec3Of<T> force(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
-    const T weight = now.mass_kg * now.gravity_lab_m_s2[2];  // downwards: below zero
+    const T weight = now.mass_kg * now.gravity_lab_m_s2[2];  // downwards: negative
     return {weight * own.element(slope, 0), weight * own.element(slope, 1), T(0.0)};
   }
 };

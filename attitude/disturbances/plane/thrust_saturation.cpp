@@ -1,5 +1,5 @@
-// Thrusters that give less for larger commands, on each body axis of a sliding body: F = c / (1 + k
-// |c| / 1 N) in place of the commanded c.
+// Thrusters that give a smaller fraction of larger commands, on each body axis of a sliding body:
+// the force is F = c / (1 + k |c| / 1 N) instead of the commanded c.
 //
 // loss_at_one_newton: k ≥ 0; the largest thrust is 1/k newton.
 #include "attitude/disturbances/kind.h"
@@ -11,7 +11,7 @@ constexpr ScalarKey loss("loss_at_one_newton", Range::not_negative(),
                          "k in F = c/(1 + k |c|/1 N), c the commanded force along a body axis; the "
                          "largest thrust is 1/k newton");
 
-// Rounds the corner of |c| at no command.
+// Makes |c| smooth at zero.
 constexpr double least_N = 1e-9;
 
 struct ThrustSaturation final : ForceLaw<ThrustSaturation> {

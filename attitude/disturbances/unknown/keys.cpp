@@ -1,4 +1,4 @@
-// The keys of a torque without a law, which shape.cpp reads: those of every variable and function.
+// The keys of an empirical torque, which shape.cpp reads: those of all variables and functions.
 #include "attitude/disturbances/unknown/shape.h"
 #include "core/settings/typed_keys.h"
 
@@ -8,7 +8,7 @@ namespace {
 struct VariableKeys {
   const char* name;
   const char* unit;
-  double reference_SI;  // where its powers are 1
+  double reference_SI;  // value at which its powers are 1
   double least_power;
 };
 constexpr VariableKeys shape_variables[] = {{"tilt", "deg", 0.1, 1.0},
@@ -18,7 +18,7 @@ constexpr VariableKeys shape_variables[] = {{"tilt", "deg", 0.1, 1.0},
                                             {"time", "s", 100.0, 0.0}};
 constexpr double most_order = 200.0;
 
-// Keys of all variables, one property after the other: documents then show each property once.
+// Keys of all variables, one property after the other, so that documents show each property once.
 std::vector<Key> function_keys() {
   std::vector<Key> exponents, powers, knots, references, ranges;
   for (const VariableKeys& variable : shape_variables) {

@@ -40,8 +40,8 @@ class EmpiricalTorqueLaw final : public TorqueLaw<EmpiricalTorqueLaw> {
     return along_axes(size, now);
   }
 
-  // The cubics of a table over time meet at its knots, where their curvature jumps: a step that
-  // ends there is a step through polynomials alone, several times as long.
+  // The cubics of a table over time meet at its knots, where their second derivative jumps. Steps
+  // that end at the knots contain only polynomials and can be several times as long.
   std::vector<Switch> switches(std::span<const Parameter>, double from_s,
                                double to_s) const override {
     std::vector<Switch> at;
@@ -70,7 +70,7 @@ class EmpiricalTorqueLaw final : public TorqueLaw<EmpiricalTorqueLaw> {
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + T(least * least));
   }
 
-  // The variables except the yaw, which is undefined at a whole turn.
+  // The value of a variable. Not for the yaw, whose angle jumps at a whole turn.
   template <class T>
   static T value_of(const MotionFunction& f, const EvaluationContext<T>& now) {
     T x = now.time_s;
@@ -81,8 +81,8 @@ class EmpiricalTorqueLaw final : public TorqueLaw<EmpiricalTorqueLaw> {
     return f.range ? held_within(x, *f.range) : x;
   }
 
-  // The variable within its range, and beyond it the range's end, approached within a twentieth of
-  // its width with a slope that falls from 1.
+  // The variable within its range. Beyond an end it continues by at most a twentieth of the range's
+  // width, with a slope that decreases from 1 to 0.
   template <class T>
   static T held_within(const T& x, const std::array<double, 2>& range) {
     const double margin = 0.05 * (range[1] - range[0]);
@@ -137,7 +137,7 @@ class EmpiricalTorqueLaw final : public TorqueLaw<EmpiricalTorqueLaw> {
         c = next;
       }
       visit(term++, c);
-      if (wanted > 0) visit(term++, s);  // the sine of nothing is none
+      if (wanted > 0) visit(term++, s);  // sin(0) is zero
     }
   }
 
@@ -161,7 +161,7 @@ class EmpiricalTorqueLaw final : public TorqueLaw<EmpiricalTorqueLaw> {
     for (const int order : f.orders) visit(term++, cos(static_cast<double>(order) * angle));
   }
 
-  // Only those knots whose values count at one of the eight instants.
+  // Visits only the knots that have weight at one of the eight instants.
   template <class T, class Visit>
   static void each_knot(const SmoothTable& table, const T& x, const Visit& visit) {
     std::array<SmoothTable::Weights, Lanes::count> at;

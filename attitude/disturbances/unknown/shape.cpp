@@ -26,7 +26,7 @@ std::string with_unit(MotionVariable variable, const std::string& what) {
   return name_of(variable) + "_" + what + "_" + unit_of(variable);
 }
 
-// The keys of a variable, each of which makes another function of it.
+// The keys of a variable; each selects another form of function.
 struct FormKey {
   FunctionForm form;
   std::string key;
@@ -60,7 +60,7 @@ std::vector<int> read_orders(const Settings& settings, const std::string& key, i
 
 SmoothTable read_knots(const Settings& settings, const std::string& key) {
   const std::vector<double> knots = settings.numbers(key);
-  // Slopes between knots that lie closer are of rounding.
+  // Slopes between closer knots are dominated by rounding errors.
   constexpr double least_step = 1e-9;  // of the range
   const bool rise = std::adjacent_find(knots.begin(), knots.end(), [&](double a, double b) {
                       return !(b - a >= least_step * (knots.back() - knots.front()) && b > a);
@@ -134,7 +134,8 @@ std::vector<TorqueAxes> read_axes(const Settings& settings) {
   return all;
 }
 
-// Some axes exist only where a variable is not zero: there a function of it has to vanish.
+// Some axes are undefined where a variable is zero, so a function of this variable, which vanishes
+// there, is required.
 void require_functions(const Settings& settings, const EmpiricalShape& shape) {
   const auto needs = [&](TorqueAxes axes, MotionVariable variable) {
     if (std::find(shape.axes.begin(), shape.axes.end(), axes) == shape.axes.end()) return;
@@ -152,8 +153,8 @@ void require_functions(const Settings& settings, const EmpiricalShape& shape) {
   needs(TorqueAxes::cross_talk, MotionVariable::command);
 }
 
-// The key of the harmonics of the yaw, under the name that the user wrote: the second one is that
-// of earlier improved.toml.
+// The key of the harmonics of the yaw that the user wrote. "heading_orders" is the name in earlier
+// files improved.toml.
 std::string yaw_key(const Settings& settings) {
   return settings.has("heading_orders") ? "heading_orders" : "yaw_orders";
 }

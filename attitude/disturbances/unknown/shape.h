@@ -13,19 +13,19 @@
 namespace photorque {
 
 // Cubic Hermite interpolation with the slopes of the parabolas through three neighbouring knots
-// (Catmull and Rom for knots of any distance): once continuously differentiable, linear in the
-// values, exact for parabolas, and each value acts within two intervals of its knot. Its error is
-// of the third order of the knots' distance.
+// (Catmull and Rom, for knots at any distances). It is once continuously differentiable, linear in
+// the values and exact for parabolas. Each value acts within two intervals of its knot. The error
+// is of third order in the distance of the knots.
 class SmoothTable {
  public:
   SmoothTable() = default;
-  // At least four rising knots; NumericalError otherwise.
+  // NumericalError unless there are at least four increasing knots.
   explicit SmoothTable(std::vector<double> knots);
 
-  // Weights of four neighbouring values at x, and their slopes; x must not lie outside of the knots
-  // by much (the last cubic goes on).
+  // Weights of four neighbouring values at x, and their slopes. x may lie slightly outside the
+  // knots (the last cubic is extended).
   struct Weights {
-    int first = 0;  // knot of the first
+    int first = 0;  // index of the first of the four knots
     std::array<double, 4> value = {}, slope = {};
   };
   Weights at(double x) const;
@@ -44,15 +44,15 @@ class SmoothTable {
   std::vector<Slope> slopes_;
 };
 
-// Axes of the torque. Each counts as one component, or more: a coefficient for each.
+// Axes of the torque. Each has one or more components, with one coefficient per component.
 enum class TorqueAxes {
   body,          // body x, y, z
   lab,           // lab x, y, z
   vertical,      // lab z
-  lean,          // the horizontal axis about which the platform leans: positive rights it
+  lean,          // the horizontal tilt axis; positive: reduces the tilt
   rate,          // against the rate: positive brakes
-  rate_by_axis,  // the same, body x, y, z each with its own coefficient
-  command,       // along the torque commanded
+  rate_by_axis,  // against the rate, body x, y, z with separate coefficients
+  command,       // along the commanded torque
   cross_talk,    // the commanded torque's components about other axes: xy, xz, yx, yz, zx, zy, the
                  // first the axis of the torque, the second that of the command
 };
@@ -77,7 +77,8 @@ struct MotionFunction {
   double reference = 1.0;  // of powers; of cosines the span
   double own = 0.0;        // exponent, time constant or period, where the form has one
   SmoothTable table = {};
-  // Beyond it the variable is held, smoothly: it goes on for a twentieth of the range at most.
+  // Beyond this range the variable is constant, after a smooth transition of at most a twentieth of
+  // the range.
   std::optional<std::array<double, 2>> range = {};
 
   size_t terms() const;
@@ -104,15 +105,15 @@ std::string name_of(MotionVariable variable);
 // Unit of the variable in files and reports: "deg", "rad_s", "s", "Ah", "N_m".
 std::string unit_of(MotionVariable variable);
 
-// From the keys of an experiment file (empirical_torque.cpp lists them). InputError for keys that
-// are missing, double or inconsistent.
+// Reads a shape from the keys of an experiment file (listed in empirical_torque.cpp). InputError
+// for keys that are missing, duplicate or inconsistent.
 EmpiricalShape read_shape(const Settings& settings);
-// The shape as keys and values of TOML that read_shape() reads, but for the functions' own
-// parameters and the coefficients, which may have sigmas.
+// The shape as keys and values of TOML that read_shape() reads, without the parameters of the
+// functions and the coefficients, which may have sigmas.
 std::vector<std::pair<std::string, std::string>> shape_as_written(const EmpiricalShape& shape);
 
-// The disturbance, every coefficient 0, the functions' own parameters at their values. Coefficients
-// stand term by term, of each term all components.
+// The disturbance with zero coefficients and the functions' parameters at their values.
+// Coefficients are in the order of the terms; each term has all components.
 Disturbance empirical_torque(const EmpiricalShape& shape);
 
 // The keys of an empirical torque.
