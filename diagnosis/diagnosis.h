@@ -73,7 +73,7 @@ struct EmpiricalTorque {
   std::vector<Vec3> torque_N_m;          // at each
   std::vector<Vec3> standard_error_N_m;  // of each; empty: unknown
   // The law with its constants and their errors, "T = (4.4 ± 0.1)e-06 N m cos(3 ψ − 95°) about the
-  // vertical"; empty if there is no short one.
+  // vertical"; empty if there is no short formula.
   std::string formula = {};
   std::string looks_like = {};  // weak evidence: physics that commonly has this form
   // The law as a disturbance of the kind empirical_torque: keys with their values in TOML, and the
@@ -150,13 +150,13 @@ struct ChannelSeries {
   std::vector<double> residual_before, residual_after;  // measured − model
   double noise = 0.0;  // standard deviation of one reading, in residual_unit
 };
-// Attitude of the body over time, lab from body, if recorded. All vectors have the length of
-// `time_s`. Those of the models are empty in a diagnosis of light, where the motion is exact.
+// Attitude of the body over time (lab from body), if recorded. All vectors have the length of
+// `time_s`. Those of the models are empty in a diagnosis of light, in which the motion is exact.
 struct AttitudeSeries {
   std::vector<double> time_s;
   std::vector<Quat> measured;
-  // Rotation vectors about lab axes from the attitudes predicted by the nominal and the chosen
-  // model to the readings, and one standard error.
+  // Rotation vectors in lab axes from the predicted to the measured attitude, for the nominal and
+  // the chosen model, and one standard error.
   std::vector<Vec3> off_before_rad, off_after_rad, error_rad;
 };
 
@@ -242,7 +242,7 @@ struct Diagnosis {
   Where where;
   std::vector<FoundEffect> effects;
   std::vector<DomainAnswer> domains = {};  // for motion and light together; otherwise empty
-  // Table of such effects in an experiment: [[disturbance]] for motion, [[effect]] for light.
+  // Table of these effects in an experiment: [[disturbance]] for motion, [[effect]] for light.
   std::string effect_table = "disturbance";
   std::vector<EmpiricalTorque> empirical;
   // Unnamed effects that the reported model contains because its predictions require them.

@@ -13,7 +13,7 @@ namespace photorque {
 
 namespace {
 
-// In units of the mean moment, except for `least_sigma` [standard errors].
+// Limits in units of the mean moment, except for `least_sigma` [standard errors].
 constexpr double least_difference = 0.1, most_error = 0.05, least_sigma = 5.0;
 
 struct OneRecording {

@@ -13,18 +13,19 @@ namespace photorque {
 
 // The text of an experiment file for `diagnose` in `folder`. Lines with an assumption contain
 // CONFIRM. All recordings must be of one machine and have the columns of the first. Throws
-// InputError for files that are neither recordings of motion nor curves of current over voltage,
-// with the remedy if known.
+// InputError for files that are neither recordings of motion nor current-voltage curves, with the
+// remedy if known.
 std::string guess_experiment(const std::vector<std::filesystem::path>& recordings,
                              const std::filesystem::path& folder);
 
 // Adds to the experiment the values that the recordings determine.
 void guess_motion(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings);
 
-// Columns of a curve by the names of a curve's columns ("voltage_V", "current_mA").
+// Columns of a current-voltage curve: channel ("voltage_V", "current_mA") → column of the file.
 struct GuessedCurve {
-  std::map<std::string, std::string> columns;  // empty: there are not one voltage and one current
-  std::string because = {};                    // the assumption, if there is one
+  std::map<std::string, std::string>
+      columns;               // empty unless the file has exactly one voltage and one current
+  std::string because = {};  // the assumption, if there is one
 };
 void guess_module(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings,
                   const std::filesystem::path& folder, const GuessedCurve& named);

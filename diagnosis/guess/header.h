@@ -1,4 +1,4 @@
-// One cell of a header as people write it: the words of its name, and its unit.
+// One cell of a header: the words of its name, and its unit.
 #pragma once
 
 #include <optional>
