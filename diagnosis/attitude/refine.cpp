@@ -16,7 +16,7 @@ namespace {
 constexpr double knot_distance_s = 6.5;
 constexpr size_t most_knots = 64;
 constexpr double typical_torque_N_m = 5e-6;
-constexpr int highest_order = 9;  // of a torque with a period
+constexpr int highest_order = 9;  // maximum order of a periodic torque
 
 std::vector<double> even_knots(double duration_s, size_t count) {
   std::vector<double> at;

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t fewest_readings = 20;  // as of Observation
+constexpr size_t fewest_readings = 20;  // minimum for an Observation
 
 std::string digits(double value, int significant = 3) {
   return printed("%.*g", significant, value);
@@ -43,7 +43,7 @@ struct Machine {
   std::vector<Observation> runs;
   std::optional<AngleConvention>
       angles;  // convention of roll, pitch and yaw of the first recording
-  // The gyro axis whose rates are those about `platform.axis`, if that has another letter.
+  // Gyro axis whose rates are taken as those about `platform.axis`, if the two axes differ.
   std::optional<int> rate_from;
 
   bool has(const char* channel) const { return recordings.front().find(channel) != nullptr; }
@@ -122,8 +122,8 @@ void add_inertia(TomlDocument& document, SettingsNode::Table& table,
                  const std::vector<Observation>& runs) {
   const std::optional<FreeInertia> found = free_inertia(runs);
   Mat3 value = Mat3::Identity(), sigma;
-  // To first order the magnitude of the rate of a sphere is constant for any moments, so different
-  // moments are assumed.
+  // If all moments are equal, the magnitude of the rate is constant to first order and does not
+  // determine them. Different moments are therefore assumed.
   if (!runs.front().has_gyro) value.diagonal() << 1.0, 0.8, 0.6;
   sigma << 0, 0.2, 0.2, 0.2, 0.4, 0.2, 0.2, 0.2, 0.4;
   constexpr double worth_saying = 0.1;
@@ -204,8 +204,9 @@ RestoringLaw law_of_swing(const std::vector<Observation>& runs, const Vec3& axis
   return law;
 }
 
-// A swing that the rates about body axis `k` show. A weight acts about a level axis, a spring about
-// any: rates about another body axis are read as those about the axis of the platform.
+// Detects a swing in the rates about body axis `k` and sets the axis of the platform. A weight acts
+// about a level axis. For a spring the upright axis is assumed. If that is not axis `k`, the rates
+// about `k` are taken as those about the platform's axis. Returns whether there is a swing.
 bool infer_oscillation_from_rates(Machine& m, int k, const std::string& seen) {
   const Vec3 axis = Vec3::Unit(k);
   const bool swings = std::ranges::any_of(
@@ -248,8 +249,8 @@ void infer_one_axis(Machine& m) {
   if (law != RestoringLaw::spring) m.observe_as(Topology::one_axis, Vec3::UnitX());
 }
 
-// The axis about which a body swings that three rates show: nearly all of their square is along one
-// line, whose largest component is returned. Nothing if they are not, or if they do not swing.
+// The body axis that is nearest to the line along which nearly all of the squared rate lies.
+// Returns nothing if there is no such line.
 std::optional<int> axis_of_swing(const std::vector<Observation>& runs) {
   constexpr double across = 0.2;
   Mat3 squares = Mat3::Zero();
@@ -277,7 +278,7 @@ std::optional<int> only_axis(const std::vector<Observation>& runs) {
   }
   int axis = 0;
   const double most = squares.maxCoeff(&axis);
-  constexpr double across = 0.05;  // of the rate: a slightly misaligned gyro
+  constexpr double across = 0.05;  // fraction of the rate: a slightly misaligned gyro
   if (squares.sum() - most > across * across * most) return std::nullopt;
   return axis;
 }
@@ -355,7 +356,8 @@ void infer_machine(Machine& m) {
       "bearing (\"free\" for what is in orbit or thrown).";
 }
 
-// Without the velocity of a coordinate that is recorded as well: it is usually computed from it.
+// Removes the velocity of a coordinate that is also recorded: it is usually computed from the
+// coordinate.
 std::vector<GuessedColumn> without_computed_velocity(std::vector<GuessedColumn> columns) {
   for (const std::string axis : {"x", "y"}) {
     const bool has_place = std::ranges::any_of(
@@ -385,7 +387,7 @@ void add_columns(TomlDocument& document, const std::vector<GuessedColumn>& colum
   }
 }
 
-// The columns with the rates about body axis `k` as those about the one axis.
+// Renames the rates about body axis `k` to rates about the single axis of rotation.
 std::vector<GuessedColumn> with_rate_from(std::vector<GuessedColumn> columns, int k) {
   const std::string gyro = std::string("gyro_") + "xyz"[k];
   for (GuessedColumn& c : columns) {
@@ -394,7 +396,7 @@ std::vector<GuessedColumn> with_rate_from(std::vector<GuessedColumn> columns, in
   return columns;
 }
 
-// Throws InputError for a file without a time or without anything that moves.
+// Throws InputError for a file without a time or without a channel of motion.
 void require_motion(const fs::path& path, const std::vector<GuessedColumn>& columns) {
   if (is_message(path, "AEM")) return;
   const bool has_time = std::ranges::any_of(
@@ -427,13 +429,14 @@ void require_rows(const fs::path& path, const std::vector<GuessedColumn>& column
                    "at least " + std::to_string(fewest_readings) + " readings");
 }
 
-// A circle on which coordinates stay, and to which part of its radius.
+// Circle through recorded coordinates. `off`: RMS distance of the coordinates from the circle, as a
+// fraction of the radius.
 struct Circle {
   Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();
   double radius_m = 0.0, off = 0.0;
 };
 
-// The circle of coordinates that turn back on it again and again, or go round it.
+// The circle on which coordinates swing repeatedly or revolve; nothing if there is none.
 std::optional<Circle> circle_of(const Recording& recording) {
   if (recording.find("x_m") == nullptr || recording.find("y_m") == nullptr) return std::nullopt;
   const Channel &x = *recording.find("x_m"), &y = *recording.find("y_m");
@@ -444,7 +447,8 @@ std::optional<Circle> circle_of(const Recording& recording) {
   }
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const auto& p : points) mean += p / static_cast<double>(points.size());
-  // |p − c|² = R² is linear in c and R² − |c|² (I. Kåsa 1976).
+  // |p − c|² = R² is linear in c and R² − |c|². Source: I. Kåsa, IEEE Trans. Instrum. Meas. 25, 8
+  // (1976).
   Mat3 squares = Mat3::Zero();
   Vec3 right = Vec3::Zero();
   for (const auto& p : points) {
@@ -470,7 +474,7 @@ std::optional<Circle> circle_of(const Recording& recording) {
     low = std::min(low, at);
     high = std::max(high, at);
   }
-  // Turning points, beyond a fifth of the arc.
+  // Counts turning points that are separated by more than a fifth of the arc.
   int turns = 0, sense = 0;
   double extreme = 0.0;
   for (const double a : angle_rad) {
@@ -486,7 +490,8 @@ std::optional<Circle> circle_of(const Recording& recording) {
       ++turns;
     }
   }
-  // The arc's height must show above the scatter: a straight line is part of any large circle.
+  // The height of the arc must exceed the scatter, because a straight line is an arc of any large
+  // circle.
   constexpr double off = 0.02, round_rad = 2.0, scatters = 10.0;
   const double relative = std::sqrt(square) / radius_m, range_rad = high - low,
                height = 1.0 - std::cos(0.5 * std::min(range_rad, pi));

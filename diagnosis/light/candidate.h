@@ -27,7 +27,7 @@ FittedRun part_of(const FittedRun& whole, const std::vector<size_t>& rows,
 
 struct LightCandidate {
   LightEffectKind kind;
-  size_t index = 0;   // of the lamp, cell …
+  size_t index = 0;   // number of the lamp, cell …
   std::string label;  // "led_derated[3]", "unknown in position"
   // Variable of an empirical law; otherwise empty.
   std::string variable = {};
@@ -45,7 +45,7 @@ struct LightCandidate {
   bool has_strength() const;
   // Whether all fitted numbers are strengths and no scan is required.
   bool is_linear() const;
-  // Whether cell circuits make the readings nonlinear in it.
+  // Whether cell circuits make the readings a nonlinear function of its numbers.
   bool bends = false;
 };
 

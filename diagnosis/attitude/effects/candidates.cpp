@@ -14,7 +14,7 @@ namespace {
 struct ReadMotion {
   std::vector<PlatformState> states;
   double acceleration_rad_s2 = 0.0;
-  double acceleration_m_s2 = 0.0;  // of a sliding body
+  double acceleration_m_s2 = 0.0;  // for a sliding body
 };
 
 // Position and velocity of a sliding body at block `i`, from the readings.

@@ -13,7 +13,7 @@ using inference::solve_score;
 // A group of parameters that are added together.
 struct ScoreGroup {
   std::vector<Disturbance> disturbances;
-  std::vector<int> parameters = {};  // of each disturbance; empty: all
+  std::vector<int> parameters = {};  // indices in each disturbance; empty: all
 };
 
 // Scores all groups in one pass, or in several to limit memory. A group that cannot be propagated

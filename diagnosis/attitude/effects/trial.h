@@ -39,11 +39,11 @@ struct NominalModel;  // attitude/propagation/run.h
 // An effect of the catalogue, or an empirical law.
 struct Candidate {
   std::string label;     // "magnetic_dipole", "unknown in yaw: 3 periods a turn"
-  std::string variable;  // of an empirical law; empty for the catalogue
+  std::string variable;  // variable of an empirical law; empty for the catalogue
   Effect effect;         // empty kind for an empirical law
   EmpiricalLaw law;      // empty for an effect of the catalogue
   Disturbance start;
-  std::vector<double> scale;  // of each parameter
+  std::vector<double> scale;  // one per parameter
   std::vector<double> lowest, highest;
   std::vector<bool> searched;
 

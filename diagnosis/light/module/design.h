@@ -41,7 +41,7 @@ struct ModuleDesign {
   double voltage_noise_V = 0.0;  // 0: a ten-thousandth of the open-circuit voltage
   // Effects on the recordings by name of the curve; "" applies to all.
   std::map<std::string, ModuleActing> acting;
-  LightColumns columns;  // of all files: [recording] columns
+  LightColumns columns;  // columns of all files, from [recording] columns
 };
 
 // All effects on a curve, whose name may include folders.
