@@ -94,7 +94,7 @@ std::vector<std::string> read_column_names(const std::filesystem::path& path);
 struct JsonExtent {
   uint64_t values =
       0;          // upper limit: every value but the first follows one of [ { , : outside a string
-  int depth = 0;  // of brackets within each other; libraries recurse once per level
+  int depth = 0;  // nesting depth of brackets; libraries recurse once per level
 };
 
 JsonExtent extent_of_json(std::string_view text);
