@@ -8,7 +8,7 @@
 namespace photorque {
 namespace {
 
-constexpr double min_drop_V = 1e-9;  // stands for none
+constexpr double min_drop_V = 1e-9;  // replaces a drop of zero
 
 size_t cells_in(const ArrayWiring::String& string) {
   size_t count = 0;
@@ -25,7 +25,7 @@ bool of_one_kind(const ArrayWiring& shape, const CellTables& tables) {
          });
 }
 
-// Equal pieces that all substrings can be cut into, and their diode.
+// Size of equal pieces into which all substrings can be cut, and their diode.
 struct PieceShape {
   size_t size = 0;
   Diode bypass;
@@ -57,7 +57,7 @@ PieceShape pieces_of(const ArrayWiring& shape) {
   return piece;
 }
 
-// k diodes in a row.
+// k diodes in series as one diode.
 Diode times(Diode diode, double k) {
   diode.drop_V *= k;
   diode.ideality *= k;
