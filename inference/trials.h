@@ -110,6 +110,7 @@ void keep_below(std::vector<Trial>& trials, size_t fitted) {
   }
 }
 
+// Sorts trials on the same runs, the largest evidence first.
 template <class Trial>
 void sort_by_evidence(std::vector<Trial>& trials) {
   std::stable_sort(trials.begin(), trials.end(),

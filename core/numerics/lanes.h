@@ -109,7 +109,7 @@ inline Lanes max(const Lanes& a, const Lanes& b) {
   return {max(a.low, b.low), max(a.high, b.high)};
 }
 
-// The larger of |a| and |b|, lane by lane; |a| where b is NaN.
+// The larger of |a| and |b|, lane by lane; |a| if b is NaN.
 inline Lanes larger_magnitude(const Lanes& a, const Lanes& b) {
   return {max(abs(a.low), abs(b.low)), max(abs(a.high), abs(b.high))};
 }

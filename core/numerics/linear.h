@@ -26,6 +26,7 @@ struct SymmetricEigen {
   Eigen::VectorXd values;   // ascending; not finite where A is not
   Eigen::MatrixXd vectors;  // columns of unit length
 };
+// Eigenvalues and eigenvectors of a symmetric matrix.
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
 
 }  // namespace photorque

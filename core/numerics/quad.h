@@ -53,7 +53,7 @@ inline bool any_of(QuadBits mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
 }
 
-// a where the mask holds, b elsewhere; for code that is written once for numbers and vectors.
+// a where the mask is set, otherwise b; for code that is written once for numbers and vectors.
 inline Quad select(QuadBits mask, Quad a, Quad b) {
   return mask ? a : b;
 }
@@ -100,6 +100,7 @@ struct FourColumns {
   Quad a, b, c, d;
 };
 
+// Transposes the rows a, b, c, d.
 inline FourColumns transposed(Quad a, Quad b, Quad c, Quad d) {
   const Quad ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6);
   const Quad ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);

@@ -90,6 +90,8 @@ T second_order_length(const T& newton, const T& bend) {
   return -newton * select(abs(bend) < 0.5, 1.0 + bend, 1.0 + T{});
 }
 
+// Step with derivatives up to the third one. If its terms are too large, second_order_length() is
+// used.
 template <class T>
 RootStep<T> third_order_step(const T& value, const T& slope, const T& curvature, const T& third) {
   using photorque::abs;

@@ -2,8 +2,8 @@
 //
 //   constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi}, "the body's z axis leans by this");
 //
-//   settings.get(tilt)            its value in SI; the default where the user did not write it
-//   settings.has(tilt)            a key is its name where a name is expected
+//   settings.get(tilt)            its value in SI; the default if the user did not write it
+//   settings.has(tilt)            a key converts to its name
 //   Key::table("attitude", {tilt, heading}, "how the platform stands")      declares both
 //
 // Defaults and ranges are SI. A key without a default is required, unless its traits make it
@@ -24,9 +24,8 @@ namespace photorque {
 
 // Further properties of a key: the members of Key.
 struct KeyTraits {
-  bool optional = false;  // the table can do without it
-  std::string_view usually =
-      {};  // the default in words, if it is not a constant; implies `optional`
+  bool optional = false;          // the table can do without it
+  std::string_view usually = {};  // default in words, if it is not a constant; implies `optional`
   bool completes = false;
   bool has_error = false;
   bool several = false;  // Key::or_array; get() reads one, Settings::numbers() several

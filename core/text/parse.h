@@ -59,8 +59,8 @@ class DataLines {
   InputLocation where_;
 };
 
-// A whole text as a finite number, the same in every locale; a leading plus is accepted. Nothing
-// for anything else, blanks included.
+// A whole text as a finite number, the same in every locale; a leading plus is accepted. Returns
+// nothing for any other text, also with blanks.
 std::optional<double> number_in(std::string_view text);
 
 // A number that is required: InputError at `where` under the key `what`.

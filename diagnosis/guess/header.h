@@ -9,7 +9,7 @@
 namespace photorque {
 
 struct HeaderUnit {
-  // As in names of channels ("deg_s"); empty: a channel cannot be named in this unit.
+  // Suffix in names of channels ("deg_s"); empty: channels cannot have this unit.
   std::string suffix;
   // "time", "angle", "angular rate", "frequency" (Hz), "per second" (1/s: radians or revolutions),
   // "length", "speed", "acceleration", "angular acceleration", "magnetic field", "voltage",

@@ -20,6 +20,7 @@ struct FittedRun {
   std::shared_ptr<const Eigen::MatrixXd> prior_slopes;  // ∂(predicted/noise), one column per prior
 };
 
+// Prepares a recording for the fits of all trials.
 FittedRun prepared_run(LightRun run, const NominalLight& nominal);
 // Selects rows of a prepared run.
 FittedRun part_of(const FittedRun& whole, const std::vector<size_t>& rows,

@@ -50,9 +50,9 @@ struct Options {
   double initial_damping = 1e-9;  // λ, ≥ 0
   double min_damping = 0.0;       // ≥ 0; fixes undetermined combinations at their values
   double max_damping = 1e9;       // beyond it no step lowers χ²
-  // D is the largest diagonal met in a window instead of the present one (J. J. Moré, Lecture Notes
-  // in Mathematics 630 (1978) 105). A parameter whose slopes vanish on the way, such as the rate of
-  // an exponential that has decayed, then does not diverge.
+  // D is the largest diagonal so far in a window instead of the present one (J. J. Moré, Lecture
+  // Notes in Mathematics 630 (1978) 105). A parameter whose slopes vanish on the way, such as the
+  // rate of an exponential that has decayed, then does not diverge.
   bool keep_largest_scale = false;
 
   // Converges to double precision, for problems whose evaluation costs next to nothing.

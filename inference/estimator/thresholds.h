@@ -207,8 +207,8 @@ struct Thresholds {
     // above which the name is rejected.
     double max_held_out_growth = 1.5;
     // Minimum log evidence that a known effect must add to an empirical law to be named. An effect
-    // may absorb the error of an inaccurate law, and an error that is not detected as structure is
-    // worth some tens.
+    // may absorb the error of an inaccurate law, and an undetected error may contribute some
+    // tens.
     double min_log_odds_beside_law = 100.0;
     // Maximum ratio of the held-out χ² to that of the nominal model for an empirical law to be
     // accepted.

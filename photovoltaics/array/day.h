@@ -28,8 +28,7 @@ struct Battery {
   double capacity_J = 360.0 * 3600.0;  // > 0
   double charge = 1.0;                 // initial charge as a fraction of the capacity, in [0, 1]
   double charge_efficiency = 0.97;  // stored energy over energy delivered to the battery, in (0, 1]
-  double discharge_efficiency =
-      0.97;  // delivered energy over energy taken from the store, in (0, 1]
+  double discharge_efficiency = 0.97;  // delivered energy over that taken from it, in (0, 1]
 };
 
 // Every efficiency is in (0, 1].
@@ -61,6 +60,7 @@ DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const Day
 // The table `[array.day]`.
 DaySettings read_day(const Settings& day);
 
+// Final temperature and charge, mean power, the table "day" and the plot "day_history".
 Product day_product(const DayResult& day);
 
 }  // namespace photorque

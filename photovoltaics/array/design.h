@@ -27,7 +27,7 @@ struct CellOverride {
 // The array on one receiver: places, wiring and models of its cells.
 struct ArrayDesign {
   int columns = 0;                   // cells along u of the receiver's grid
-  int rows = 0;                      // and along v; cell = row · columns + column
+  int rows = 0;                      // cells along v; cell = row · columns + column
   std::optional<CellPlaces> places;  // instead of equal rectangles over the whole grid
   double gap_m = 0.0;                // between neighbouring cells
   double margin_m = 0.0;

@@ -142,7 +142,7 @@ double sorted_bound_W(const ArrayWiring& shape, const CellTables& tables,
                       const std::vector<double>& light_A) {
   const PieceShape piece = pieces_of(shape);
   std::vector<ArrayCurve> curves = brightest_in_series(shape, tables, light_A);
-  // A drop of min_drop_V stands for diodes without drop. Its voltage is added again, so that the
+  // A drop of min_drop_V replaces a drop of zero. Its voltage is added again, so that the
   // bound holds.
   const size_t count = shape.cells().size() / piece.size;
   const auto pieces = static_cast<double>(count);

@@ -50,9 +50,8 @@ class LampOutput {
 // Parts of the power system. The temperature of the cells follows array.heat.
 struct SupplyDesign {
   ArrayDesign array;
-  std::vector<double> cell_area_m2;  // per cell of the wiring
-  double max_photocurrent_A =
-      0.0;  // largest one of any cell during the run, at array.temperature_K
+  std::vector<double> cell_area_m2;     // per cell of the wiring
+  double max_photocurrent_A = 0.0;      // largest one of any cell, at array.temperature_K
   std::optional<Battery> battery = {};  // none: all power of the array is used
   double converter_efficiency = 1.0;    // between the array and battery and load, in (0, 1]
   double load_W = 0.0;                  // at the battery's terminals
@@ -85,7 +84,7 @@ struct SupplyEnergies {
   EnergySum converter;  // lost in the converter
   EnergySum load;       // served
   EnergySum unserved;   // load without supply
-  EnergySum into_battery, out_of_battery;  // at its terminals
+  EnergySum into_battery, out_of_battery;  // at the battery's terminals
   EnergySum battery_loss;
 };
 

@@ -12,7 +12,7 @@ namespace photorque {
 // Photocurrents of every cell over time, linear between the instants and constant outside them.
 struct LightHistory {
   std::vector<double> time_s;                        // strictly ascending, at least one
-  std::vector<std::vector<double>> photocurrents_A;  // per instant, as the wiring's cells
+  std::vector<std::vector<double>> photocurrents_A;  // per instant and cell of the wiring
 
   std::vector<double> at(double time_s) const;
 };

@@ -28,7 +28,7 @@ struct Task {
   SweepNoise noise;
   ShuntLaw law = ShuntLaw::constant;
   double first_A = 1.0;         // approximate photocurrent of the first curve
-  double brightest_A = 1.0;     // and the largest one
+  double brightest_A = 1.0;     // largest photocurrent
   double reference_K = 298.15;  // temperature of the shared values
   bool fits_gap = false;
   bool holds_shared = false;      // fits the photocurrents only

@@ -19,6 +19,7 @@ namespace photorque {
 // Temperature at which n V_t is converted into an ideality; the result does not depend on it.
 constexpr double fit_temperature_K = 298.15;
 
+// The circuit of one diode with n V_t = `scale_V` at `temperature_K`.
 CellParameters single_diode(double saturation_A, double scale_V, double series_ohm,
                             double shunt_ohm, double temperature_K = fit_temperature_K);
 

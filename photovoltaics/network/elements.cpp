@@ -57,7 +57,7 @@ double DiodeJunction::curvature_A_V2(double g) const {
   return g / (scale_V * divisor * divisor * divisor);
 }
 
-// With w the voltage forwards, w(i) = n V_t ln(1 + i/I_s) + i R_s; the substring's V is −w.
+// With w the forward voltage, w(i) = n V_t ln(1 + i/I_s) + i R_s; the substring's V is −w.
 Slopes DiodeJunction::slopes(double g) const {
   const double divisor = 1.0 + g * series_ohm, per_divisor = 1.0 / divisor;
   const double per_divisor3 = per_divisor * per_divisor * per_divisor;

@@ -130,7 +130,7 @@ FourStrings::Point FourStrings::rows_at(const Quad& rows_A, const CellTargets& t
   return {value - rows_A * series_ohm_, {slope + series_ohm_, curvature, -third}};
 }
 
-// Adds the reverse current of the bypass diodes beside lit rows, in place of the assumed leak:
+// Adds the reverse current of the bypass diodes of lit rows, in place of the assumed leak:
 // Newton's method as in DiodeJunction::junction_V(), with as many rounds as small diodes need.
 bool FourStrings::add_bypass(Point& at, Quad& current_A, Quad& leak_A) const {
   constexpr int rounds = 2;

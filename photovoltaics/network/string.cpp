@@ -129,8 +129,8 @@ void StringCurve::reverse_at_voltage(double voltage_V, const StringRegime& regim
   state.third_V_A3 = sum.third_V_A3 - 2.0 * bend * junction_ohm * blocking_.per_scale_1_V;
 }
 
-// With the current r through the cells as the unknown, all is explicit: their voltage, hence the
-// current i ≤ 0 of the diode beside them, the string's I = r + i and its voltage.
+// With the current r through the cells as the unknown, everything is explicit: their voltage, the
+// current i ≤ 0 of the diode in parallel, the string's current I = r + i and its voltage.
 FunctionAt StringCurve::beside_junction(double rows_A, double voltage_V, const StringRegime& regime,
                                         ElementPoint& rows, StringState& state) const {
   const DiodeJunction& bypass = parts_[0].bypass;

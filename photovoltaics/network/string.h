@@ -152,8 +152,7 @@ class StringCurve {
     // Currents of this part: at which its ideal diode starts to conduct; at which its junction
     // approximately does.
     double own_clamp_A = unlimited, turn_on_A = unlimited;
-    double clamp_A =
-        unlimited;  // current of the string at which this part's ideal diode starts to conduct
+    double clamp_A = unlimited;  // string current at which this part's ideal diode conducts
     // Lower bound of the voltage at any current, and the current at which it is reached.
     double lowest_V = -unlimited, lowest_A = unlimited;
     bool has_clamps = false;  // whether parts inside it have clamping diodes
@@ -236,8 +235,7 @@ class StringCurve {
     return std::span(wired_).subspan(first, end - first);
   }
   std::vector<LitCell> cells_;
-  std::vector<double> photocurrents_A_,
-      copies_;              // those of cells_, contiguous for vector registers
+  std::vector<double> photocurrents_A_, copies_;  // of each of cells_, for vector registers
   std::vector<int> wired_;  // the wiring's cells behind each of cells_, one after the other
   std::vector<uint32_t> first_wired_;  // first index in wired_ for each of cells_
   std::vector<Run> runs_;

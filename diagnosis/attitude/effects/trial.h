@@ -90,6 +90,7 @@ struct Candidates {
 };
 // An empirical law as a candidate.
 Candidate candidate_of(const EmpiricalLaw& law);
+// All candidates that these runs can reveal, with scales for the machine.
 Candidates all_candidates(const NominalModel& nominal, const std::vector<Observation>& runs,
                           const Thresholds& limits = {});
 
@@ -100,6 +101,7 @@ struct Trial : inference::Explanation {
   Fit fit;
 };
 
+// The fitted nominal model as a trial without candidates.
 Trial nominal_trial(const Fit& nominal, const Candidates& all);
 
 // The trial with all parameters of its candidates within physical bounds. If one is beyond, the

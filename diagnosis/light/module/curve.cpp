@@ -10,7 +10,8 @@
 namespace photorque {
 namespace {
 
-// A fit may try unphysical parameters; they give a bad curve instead of an error.
+// The parameters of a cell in a state. They are limited, because a fit may try unphysical values:
+// these result in a bad curve instead of an error.
 CellParameters at_state(const ModuleCell& cell, const ModuleState& state) {
   const double T = std::clamp(state.temperature_K, 100.0, 800.0), T0 = cell.temperature_K,
                light = std::max(state.light, 1e-6);

@@ -60,8 +60,7 @@ struct ReferenceFit {
   std::vector<VectorXd> residuals_A;
 };
 
-constexpr Index own =
-    2;  // parameters of each curve: log light, deviation from the stated temperature
+constexpr Index own = 2;  // per curve: log light, deviation from the stated temperature
 
 inference::Parameters reference_parameters(const ModuleDesign& design,
                                            const std::vector<ModuleSweep>& sweeps) {
