@@ -114,9 +114,9 @@ class Forecast {
   }
 
  private:
-  // Rounding of the information on a unit diagonal before projection: undetermined combinations
-  // stay at their values. Derivatives are accurate to about 1e-7, so their squares to the square of
-  // that.
+  // Limit of the information on a unit diagonal before projection. Combinations with less
+  // information keep their values. It is above the square of the error of the derivatives, which is
+  // about 1e-7.
   static constexpr double rounding = 1e-10;
 
   std::vector<Eigen::Index> places(const std::vector<size_t>& groups) const {

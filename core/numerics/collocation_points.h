@@ -106,7 +106,7 @@ inline std::array<Row, points> continuation_columns(double ratio) {
   return column;
 }
 
-// Σ_j column_j x_j.
+// The product of a matrix, given by its columns, with x: Σ_j column_j x_j.
 inline Lanes times(const std::array<Row, points>& columns, const Lanes& x) {
   // Two independent chains of additions, which the processor can overlap.
   Lanes even = Lanes(columns[0]) * x[0];

@@ -67,7 +67,7 @@ struct Lanes {
   friend Lanes operator/(const Lanes& a, const Lanes& b) {
     return {a.low / b.low, a.high / b.high};
   }
-  // All lanes equal; Eigen needs it.
+  // Whether all lanes are equal; Eigen requires this operator.
   friend bool operator==(const Lanes& a, const Lanes& b) {
     for (int i = 0; i < count; ++i) {
       if (a[i] != b[i]) return false;

@@ -202,7 +202,7 @@ std::optional<HeaderUnit> with_exponent(std::string plain) {
   const size_t blank = plain.rfind(' ');
   if (blank != std::string::npos) return ratio(plain.substr(0, blank), plain.substr(blank + 1));
   if (const auto unit = ratio("1", plain)) return unit;
-  // "rads-1"
+  // A unit without a separator: "rads-1".
   for (size_t k = plain.size(); k-- > 1;) {
     if (const auto unit = ratio(plain.substr(0, k), plain.substr(k))) return unit;
   }
@@ -419,7 +419,7 @@ HeaderCell read_header_cell(const std::string& in_file) {
     cell.unit = unit_written(brackets.inside);
     const size_t comma = brackets.inside.find_last_of(",;");
     if (!cell.unit && comma != std::string::npos) {
-      // "Gyroscope (x, rad/s)"
+      // The unit may follow a comma: "Gyroscope (x, rad/s)".
       cell.unit = unit_written(std::string_view(brackets.inside).substr(comma + 1));
       name += " " + brackets.inside.substr(0, comma);
     }

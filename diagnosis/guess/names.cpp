@@ -249,7 +249,7 @@ std::string fitting_unit(const HeaderCell& cell, const std::string& dimension, c
   const HeaderUnit& unit = *cell.unit;
   if (unit.dimension == dimension) return unit.suffix;
   if (dimension != "angular rate") return "";
-  // "omega_rads"
+  // In a name such as "omega_rads" the unit is rad/s.
   if (cell.unit_text == "rads" || cell.unit_text == "degs") return unit.suffix + "_s";
   if (unit.dimension == "frequency") return unit.suffix;
   if (unit.dimension != "per second") return "";

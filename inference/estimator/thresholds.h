@@ -140,7 +140,7 @@ struct Thresholds {
     double worth_a_fit = 10.0;
   } leaders;
 
-  // Weighing with the held-out data.
+  // Limits of the weighing with the held-out data.
   struct HeldOut {
     size_t max_leaders = 12;
     // Difference in log evidence to the best within which an explanation is a leader: odds of 3e6
@@ -183,7 +183,7 @@ struct Thresholds {
     double min_periods = 3.0;
   } objection;
 
-  // The verdict.
+  // Limits of the verdict.
   struct Decision {
     // Minimum log evidence over the nominal model to report an explanation: odds of 90 to 1, in
     // addition to the prior odds against each name. An empirical law must exceed the best physics

@@ -31,7 +31,7 @@ struct Battery {
   double discharge_efficiency = 0.97;  // delivered energy over that taken from it, in (0, 1]
 };
 
-// Every efficiency is in (0, 1].
+// Settings of a day; every efficiency is in (0, 1].
 struct DaySettings {
   LampDroop droop;
   Battery battery;
@@ -57,7 +57,7 @@ struct DayResult {
 // between a few temperatures and light levels, with an error of 1e-3.
 DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const DaySettings& settings);
 
-// The table `[array.day]`.
+// Reads the table `[array.day]`.
 DaySettings read_day(const Settings& day);
 
 // Final temperature and charge, mean power, the table "day" and the plot "day_history".

@@ -76,8 +76,7 @@ class EnergySum {
 // Energies since the start [J], each added up separately.
 struct SupplyEnergies {
   EnergySum on_cells;   // light
-  EnergySum reflected;  // reflected light, by CellHeat::absorptance; 0 if the cells' temperature is
-                        // stated
+  EnergySum reflected;  // by CellHeat::absorptance; 0 if the cells' temperature is stated
   EnergySum given_off;  // heat, by convection and radiation
   EnergySum array;      // electric, from the array
   EnergySum best;       // energy available at the best point of the array

@@ -33,7 +33,7 @@ struct CellFront {
 
   // T at a cosine in [0, 1] of the angle of incidence. The wavelength affects a coating only.
   double transmitted(double cosine, double wavelength_m) const;
-  // K; 1 in perpendicular light.
+  // The modifier K, which is 1 at normal incidence.
   double modifier(double cosine, double wavelength_m) const {
     return transmitted(cosine, wavelength_m) / transmitted(1.0, wavelength_m);
   }

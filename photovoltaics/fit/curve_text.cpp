@@ -311,7 +311,7 @@ class Reader {
     if (is_missing(cell)) return std::nullopt;
     Unit unit = header_.unit[column];
     std::string_view text = cell;
-    // "0.52 V"
+    // A cell may contain its unit: "0.52 V".
     const size_t digits = text.find_last_of("0123456789.") + 1;
     if (digits > 0 && digits < text.size()) {
       const auto stated = unit_named(column, lower(trimmed(text.substr(digits))));

@@ -206,7 +206,7 @@ Named named_without_brackets(std::string cell) {
       std::string text = cell;
       std::ranges::replace(text, '_', ' ');
       if (text == name) return {column, {}, {}};
-      // "U / V", "U/V", "voltage mV"
+      // A name may be followed by a unit: "U / V", "U/V", "voltage mV".
       if (!text.starts_with(std::string(name) + " ") &&
           !text.starts_with(std::string(name) + "/")) {
         continue;

@@ -231,8 +231,8 @@ bool FourStrings::solve(double voltage_V, const Quad& low_A, const Quad& high_A,
   return false;
 }
 
-// Extrapolates from the last voltage by the sum of a straight line and an exponential, like a shunt
-// and a diode. Correct to third order for any curve.
+// The search starts from the last solution, extrapolated by the sum of a straight line and an
+// exponential, like a shunt and a diode. This is correct to third order for any curve.
 bool FourStrings::advance(double voltage_V, State& state) const {
   const SlopesOf<Quad> conductance = inverted(state.resistance);
   const double h = voltage_V - state.voltage_V;

@@ -43,8 +43,8 @@ class FourStrings {
   // fraction `tolerance` of the currents.
   bool solve(double voltage_V, const Quad& low_A, const Quad& high_A, double tolerance,
              State& state, std::span<StringState> states) const;
-  // Extrapolates a solution to a nearby voltage, without the states of cells. Returns false if that
-  // fails.
+  // Solves at a nearby voltage, starting from the extrapolated solution in `state`, without the
+  // states of cells. Returns false if the search does not end; `state` is then unchanged.
   bool advance(double voltage_V, State& state) const;
   // Sum of the currents of all members.
   double sum_A(const State& state) const;

@@ -45,7 +45,7 @@ class ArrayCurve::Search {
     return std::move(scan_);
   }
 
-  // The largest maximum.
+  // Finds only the largest maximum.
   ArrayPoint run_for_largest() {
     if (curve_.end_x_ == 0.0) return {};
     edges_ = curve_.edges();

@@ -40,7 +40,7 @@ struct ModuleHypothesis {
   std::vector<Member> members;
 };
 
-// The first hypothesis is "nothing missing".
+// All hypotheses about the module of a design; the first one is "nothing missing".
 std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
                                                 const ModuleNominal& nominal);
 
@@ -89,7 +89,7 @@ class ModuleFitter {
   // and temperature of that run.
   std::vector<ArrayCurve::SlopedPoint> curve(const ModuleHypothesis& h, const ModuleTrial& trial,
                                              size_t run, const ModuleRun& at) const;
-  // (measured − predicted)/error.
+  // Residuals (measured − predicted)/error of the points of a run at parameters x.
   Eigen::VectorXd residuals(const ModuleHypothesis& h, const Eigen::VectorXd& x,
                             const ModuleRun& run) const;
   // Parameters of one run of a trial: its two nuisance parameters, then the shared ones.
