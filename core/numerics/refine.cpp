@@ -282,7 +282,7 @@ class RotationTableBuilder {
     for (size_t i = 0; i < keys.size(); ++i) known_.emplace(keys[i], samples[i]);
   }
 
-  // Adds nodes to a leaf.
+  // Sets the nodes of a leaf.
   void fill(const Cell& cell) {
     Box& box = table_.boxes_[cell.box];
     box.node_x = box.x;

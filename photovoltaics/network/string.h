@@ -235,7 +235,7 @@ class StringCurve {
     return std::span(wired_).subspan(first, end - first);
   }
   std::vector<LitCell> cells_;
-  std::vector<double> photocurrents_A_, copies_;  // of each of cells_, for vector registers
+  std::vector<double> photocurrents_A_, copies_;  // one per element of cells_, for vector registers
   std::vector<int> wired_;  // the wiring's cells behind each of cells_, one after the other
   std::vector<uint32_t> first_wired_;  // first index in wired_ for each of cells_
   std::vector<Run> runs_;
