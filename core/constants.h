@@ -1,4 +1,4 @@
-// Physical constants, each with its source, and factors of units. SI throughout.
+// Physical constants, each with its source, and factors of units, all in SI.
 #pragma once
 
 #include <numbers>
@@ -25,10 +25,10 @@ inline constexpr double solar_temperature_K = 5772.0;
 // Angular radius of the Sun at 1 au: nominal solar radius 6.957e8 m (IAU 2015 B3) over 1 au.
 inline constexpr double solar_angular_radius_rad = 6.957e8 / astronomical_unit_m;
 
-// No vertex of a model, opening of a lamp or start of a ray lies farther from its origin: well
-// inside what single precision can square and add, and larger than anything that is built.
+// Maximum distance of a vertex of a model, an opening of a lamp or the start of a ray from its
+// origin. Single precision can square and add such lengths, and no structure is larger.
 inline constexpr double largest_extent_m = 1e9;
-// No lamp stands farther from the platform; the Sun of another star's planet does not.
+// Maximum distance of a lamp from the platform, 6.7 au.
 inline constexpr double largest_distance_m = 1e12;
 
 inline constexpr double degree_rad = pi / 180.0;

@@ -1,5 +1,6 @@
 // Dry air as an ideal gas. Source of the laws of Sutherland: F. M. White, Viscous Fluid Flow,
-// 3rd ed., tables 1-2 and 1-3, good to 2 % (viscosity) and 3 % (conductivity) from 170 to 1900 K.
+// 3rd ed., tables 1-2 and 1-3, accurate to 2 % (viscosity) and 3 % (conductivity) from 170 to 1900
+// K.
 #pragma once
 
 #include <cmath>

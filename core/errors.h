@@ -6,8 +6,8 @@
 
 namespace photorque {
 
-// Where a value of the user's came from. `line` is 1-based; 0 when a line means nothing (binary
-// files, the command line).
+// Source of a value that the user wrote. `line` counts from 1; it is 0 for sources without lines
+// (binary files, the command line).
 struct InputLocation {
   std::string file;
   int line = 0;
@@ -20,7 +20,7 @@ class InputError : public std::runtime_error {
   InputError(const InputLocation& where, const std::string& key, const std::string& found,
              const std::string& expected);
 
-  // Whether the line begins with a file.
+  // Whether what() begins with the name of a file.
   bool names_file() const { return names_file_; }
 
  private:

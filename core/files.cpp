@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// "@machine.part": the names of processes mean something on one machine only.
+// "@machine.part": process numbers are unique on one machine only.
 std::string host_mark() {
   char host[64] = {};
   if (::gethostname(host, sizeof host - 1) != 0) host[0] = '\0';
@@ -33,7 +33,7 @@ std::string host_mark() {
   return mark + ".part";
 }
 
-// An unpredictable name, so that no link can wait at it.
+// A random name, so that a third party cannot place a link there in advance.
 std::string unpredictable() {
   uint64_t bits = 0;
   if (::getrandom(&bits, sizeof bits, 0) != static_cast<ssize_t>(sizeof bits)) {
@@ -53,7 +53,7 @@ void make_own_file(const fs::path& path, const fs::path& wanted) {
   ::close(file);
 }
 
-// The process of this machine that a temporary name belongs to.
+// The process of this machine in the name of a temporary file; nothing for other names.
 std::optional<pid_t> writer_of(const std::string& name) {
   const size_t mark = name.rfind(host_mark());
   if (!name.starts_with('.') || mark == std::string::npos) return std::nullopt;
@@ -72,20 +72,23 @@ void remove_where(const fs::path& folder, const std::function<bool(pid_t)>& unwa
   }
 }
 
-// Whether the opened file is on the disk. True where the file system cannot do that.
+// Syncs an opened file to the disk and closes it. Returns false if the sync failed, but true if the
+// file system does not support it.
 bool sync_and_close(int opened) {
   const bool synced = ::fsync(opened) == 0 || errno == EINVAL || errno == EROFS;
   ::close(opened);
   return synced;
 }
 
-// Before a file gets its name, or a power cut could leave the name without the bytes.
+// Syncs a file to the disk. This must precede the renaming of the file: otherwise a power cut could
+// leave the name without the content.
 bool reaches_disk(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   return file >= 0 && sync_and_close(file);
 }
 
-// The code that moves results out of such a folder syncs their names.
+// Whether the path lies in a temporary folder. The code that moves results out of such a folder
+// syncs their names.
 bool is_temporary(const fs::path& folder) {
   return std::any_of(folder.begin(), folder.end(),
                      [](const fs::path& part) { return writer_of(part.string()).has_value(); });
@@ -135,7 +138,7 @@ std::string read_file(const fs::path& path, uint64_t largest_bytes) {
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<size_t>(in.gcount()));
   if (in.bad()) throw InputError({path.string()}, "", "a read that failed", "a readable file");
-  // Files that grew meanwhile, and files of the kernel, whose size is 0.
+  // Reads on for files that grew meanwhile, and for files of the kernel, whose reported size is 0.
   constexpr size_t piece = 1 << 16;
   while (in && bytes.size() <= largest_bytes) {
     const size_t had = bytes.size();
@@ -192,7 +195,7 @@ void sync_folder(const fs::path& folder) {
 
 void make_folders(const fs::path& folder, const std::string& key) {
   std::error_code failure;
-  std::vector<fs::path> above;  // folders that get a new one
+  std::vector<fs::path> above;  // parents of the new folders
   for (fs::path place = fs::absolute(folder, failure);
        !fs::exists(place, failure) && place.has_relative_path(); place = place.parent_path()) {
     above.push_back(place.parent_path());

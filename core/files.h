@@ -1,4 +1,4 @@
-// Whole files in and out, and the file that holds this code.
+// Reading and writing of whole files, and the path of the file that contains this code.
 #pragma once
 
 #include <filesystem>
@@ -8,53 +8,53 @@
 
 namespace photorque {
 
-// Throws InputError unless there is a regular file: devices have no end, pipes can be read but
-// once.
+// Throws InputError unless the path is a regular file: devices have no end, and pipes can be read
+// only once.
 void require_plain_file(const std::filesystem::path& path);
 
-// The bytes of a regular file. InputError when it is something else, cannot be read or is larger
-// than `largest_bytes`.
+// The content of a regular file. Throws InputError if the path is something else, cannot be read or
+// is larger than `largest_bytes`.
 std::string read_file(const std::filesystem::path& path, uint64_t largest_bytes = 1ull << 30);
 
-// The bytes of the file that `folder` has under a relative path; nothing when there is none.
-// InputError when the path, or a symbolic link on it, leads out of the folder and may not: names in
-// models come from third parties.
+// The content of the file with a relative path in `folder`; nothing if there is none. Throws
+// InputError if the path, or a symbolic link on it, leads out of the folder and `may_leave` is
+// false: names in models come from third parties.
 std::optional<std::string> read_file_beside(const std::filesystem::path& folder,
                                             const std::string& name, uint64_t largest_bytes,
                                             bool may_leave);
 
-// A hidden name beside `path`, with its extension, for an incomplete file. It names process and
-// machine, so that files of a killed process are distinguishable from those of a living one.
+// A hidden name beside `path`, with its extension, for an incomplete file. It contains the number
+// of the process and the machine, so that files of ended processes can be recognised.
 std::filesystem::path temporary_beside(const std::filesystem::path& path);
 
-// Removes what one process of this machine left in `folder` under such names, or what all did that
-// are no more. Never throws.
+// Removes the temporary files that one process of this machine, or all processes that have ended,
+// left in `folder`. Never throws.
 void remove_leftovers(const std::filesystem::path& folder, int process);
 void remove_leftovers_of_ended_processes(const std::filesystem::path& folder);
 
-// Writes the names in a folder to the disk: new and renamed files there survive a power cut.
-// InputError when that fails, but not where a file system cannot do it or the folder may not be
-// read.
+// Syncs the names in a folder to the disk: new and renamed files there survive a power cut. Throws
+// InputError if that fails, but not if the file system does not support it or the folder is not
+// readable.
 void sync_folder(const std::filesystem::path& folder);
 
-// Makes a folder and those above it that are missing, with their names on the disk. InputError,
-// with the key that asked for it, when that fails.
+// Creates a folder and its missing parents, and syncs their names. Throws InputError with the key
+// that requested the folder if that fails.
 void make_folders(const std::filesystem::path& folder, const std::string& key = "");
 
-// Calls `write` with the path of a temporary file in the same folder (same extension), which is
-// made where it is missing, and then renames it to `path`: the file appears whole or not at all,
-// after a power cut too, since it is on the disk before it has its name, and the name before this
-// returns. If `write` throws, the temporary is removed. InputError when the folder cannot be
-// written.
+// Calls `write` with the path of a temporary file in the folder of `path` (with the same
+// extension), and then renames this file to `path`. Missing folders are created. The file appears
+// completely or not at all, also after a power cut: it is synced before the renaming, and its name
+// before this returns. If `write` throws, the temporary file is removed. Throws InputError if the
+// folder is not writable.
 void write_file_whole(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write);
 
-// Writes given bytes.
+// Writes the bytes as by the function above.
 void write_file_whole(const std::filesystem::path& path, const std::string& bytes);
 
-// The file that holds this code, from which its fonts and modules are found: the program
+// The file that contains this code, from which its fonts and modules are found: the program
 // ("/proc/self/exe" resolved), or the shared library that another program, such as Python, has
-// loaded. Absolute where the loader was given an absolute path.
+// loaded. The path is absolute if the loader received an absolute path.
 std::filesystem::path own_file();
 
 }  // namespace photorque

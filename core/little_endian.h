@@ -11,14 +11,14 @@
 
 namespace photorque {
 
-// The four bytes at `at`, which are there, as a number.
+// The number in the four bytes that start at `at`, which must exist.
 inline uint32_t little_endian_32(std::string_view bytes, size_t at) {
   uint32_t value = 0;
   for (size_t i = 4; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
   return value;
 }
 
-// Reads one number after the other; never beyond the end.
+// Reads numbers in sequence. Throws InputError at the end of the bytes.
 class LittleEndianReader {
  public:
   LittleEndianReader(std::string_view bytes, std::string file)

@@ -25,9 +25,9 @@ namespace photorque {
 
 #ifdef PHOTORQUE_WATCHED_THREADS
 
-// TBB is not compiled with ThreadSanitizer, which therefore does not see that it hands work from
-// one thread to another in order, and reports every loop. The same loop on plain threads has what
-// is looked for, races between bodies, and nothing else.
+// TBB is not compiled with ThreadSanitizer. The sanitizer therefore does not see that TBB passes
+// work between threads in order, and reports every loop. The same loop on plain threads shows only
+// the relevant errors: races between bodies.
 void parallel_for(size_t count, int threads, const std::function<void(size_t)>& body) {
   if (threads == 1) {
     for (size_t i = 0; i < count; ++i) body(i);
@@ -58,8 +58,8 @@ void parallel_for(size_t count, int threads, const std::function<void(size_t)>& 
 #else
 
 void parallel_for(size_t count, int threads, const std::function<void(size_t)>& body) {
-  // One thread takes no part in TBB: a loop within the work of another loop would hold up that
-  // one's threads, whose number is one for the whole program.
+  // A single thread does not use TBB. TBB's limit of threads is global, so a loop with one thread
+  // within another loop would also limit the threads of the outer loop.
   if (threads == 1) {
     for (size_t i = 0; i < count; ++i) body(i);
     return;
@@ -76,7 +76,8 @@ void parallel_for(size_t count, int threads, const std::function<void(size_t)>& 
     loop();
     return;
   }
-  // An arena alone never gets more workers than the machine has; the control removes that limit.
+  // An arena alone never has more workers than the machine has cores; the control removes that
+  // limit.
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<size_t>(threads));
   tbb::task_arena(threads).execute(loop);

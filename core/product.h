@@ -1,4 +1,4 @@
-// Results as plain data, on their way to a writer: estimates, maps, tables, curves, bars.
+// Results as plain data for the writers: estimates, maps, tables, curves, bars.
 #pragma once
 
 #include <span>
@@ -20,7 +20,7 @@ struct Estimate {
 // Source: W. G. Cochran, Sampling Techniques, 3rd ed., eq. 2.20 (without finite correction).
 Estimate estimate_from_replicates(std::span<const double> replicates);
 
-// A headline figure. `name` ends in its unit: "power_on_array_W".
+// A main result. `name` ends in its unit: "power_on_array_W".
 struct Quantity {
   std::string name;
   Estimate estimate;
@@ -40,7 +40,7 @@ struct Map {
   std::vector<double> value;
   std::vector<double> standard_error;
   bool equal_scale = true;  // x and y have the same unit and are drawn to the same scale
-  // Values are those at the middles of the bins of a field that is smooth between them: drawn
+  // Values are those of a smooth field at the middles of the bins. The map is then drawn
   // interpolated, with contour lines.
   bool smooth = false;
   // Weight of each value in the mean (surface area of each bin); empty: equal weights.
@@ -51,7 +51,7 @@ struct Map {
 // Built by column name:
 //   Table table = Table::of("maxima", "Local maxima of the power", {"voltage_V", "power_W"});
 //   table.row().set("voltage_V", 31.2).set("power_W", 94.0);
-// A table that is made without columns gets those of its first row, in the order of set().
+// If a table is created without columns, its first row defines them, in the order of set().
 struct Table {
   std::string name;
   std::string title;
@@ -63,17 +63,17 @@ struct Table {
   };
   std::vector<Column> columns;
 
-  // With these columns in this order, still empty.
+  // An empty table with these columns in this order.
   static Table of(std::string name, std::string title,
                   const std::vector<std::string>& column_names = {});
 
-  // Appended behind the others. NumericalError for a name that is taken or, except in the first
-  // column, another length than the first column's.
+  // Appends a column. Throws NumericalError if the name exists or, except for the first column, if
+  // the length differs from that of the first column.
   Table& add(std::string column_name, std::vector<double> values);
   Table& add(std::string column_name, std::vector<std::string> texts);
 
-  // One line of the table, to be filled in column by column. NumericalError for a column that the
-  // table does not have and for one that is set twice or was left out of an earlier row.
+  // One row of the table, filled in column by column. Throws NumericalError for a column that the
+  // table does not have, that is set twice, or that was left out of an earlier row.
   class Row {
    public:
     Row& set(std::string_view column_name, double value);
@@ -87,12 +87,12 @@ struct Table {
     Table* table_;
     size_t index_;
   };
-  // A new last row.
+  // Appends a row.
   Row row();
 
-  // Null if there is none of this name.
+  // The column of this name; null if there is none.
   const Column* find(std::string_view column_name) const;
-  // NumericalError if there is none of this name.
+  // The column of this name. Throws NumericalError if there is none.
   const Column& column(std::string_view column_name) const;
   Column& column(std::string_view column_name);
 };
@@ -102,7 +102,7 @@ struct Plot {
   std::string name;
   std::string title;
   std::string x_label, y_label;
-  // Colour of a curve: the next of the palette, or one with the same meaning on a whole page.
+  // Colour of a curve: the next one of the palette, or one with the same meaning on a whole page.
   enum class Colour { in_order, blue, vermilion, green, grey };
   struct Curve {
     std::string label;
@@ -113,7 +113,7 @@ struct Plot {
     bool dots = false;                 // small points without errors, for thousands of readings
     bool dashed = false;
     Colour colour = Colour::in_order;
-    double width = 1.6;  // of the line in points; dots are as wide as two lines
+    double width = 1.6;  // width of the line in points; dots are as wide as two lines
   };
   std::vector<Curve> curves = {};
   bool x_log = false, y_log = false;
@@ -127,12 +127,12 @@ struct Plot {
     bool robust_range = false;
   };
   std::vector<Panel> below = {};    // further axes under the first
-  std::vector<double> levels = {};  // of the first axes, as Panel::levels
-  bool robust_range = false;        // of the first axes, as Panel::robust_range
+  std::vector<double> levels = {};  // for the first axes; see Panel::levels
+  bool robust_range = false;        // for the first axes; see Panel::robust_range
   struct Interval {
     double from = 0.0, to = 0.0;
   };
-  std::vector<Interval> shaded = {};  // of x, behind the curves of all axes
+  std::vector<Interval> shaded = {};  // intervals of x, behind the curves of all axes
   std::string shaded_label = {};      // in the first interval that has room for it
 };
 
@@ -158,10 +158,10 @@ struct Product {
   std::vector<Plot> plots;
 };
 
-// The figure or table of this name; null where there is none.
+// The quantity or table of this name; null if there is none.
 const Quantity* find_quantity(const Product& product, std::string_view name);
 const Table* find_table(const Product& product, std::string_view name);
-// NumericalError where there is none.
+// Throws NumericalError if there is none.
 const Table& table_named(const Product& product, std::string_view name);
 
 }  // namespace photorque

@@ -10,11 +10,11 @@ namespace photorque {
 
 struct Provenance {
   std::string program = "photorque";
-  std::string version;   // of the program, from CMake
-  std::string git_hash;  // of the source tree at build; "+" appended if it was modified
+  std::string version;   // program version, from CMake
+  std::string git_hash;  // hash of the source tree at build; "+" appended if it was modified
   uint64_t seed = 0;
   std::vector<std::pair<std::string, std::string>> inputs;  // file name, 128-bit hash in hex
-  // One line for each of the run's own checks that failed: results are not to be trusted then.
+  // One line for each internal check of the run that failed. The results are then unreliable.
   std::vector<std::string> warnings = {};
 
   // "photorque 0.1.0 (git abc123) seed 1 inputs nominal.toml:9f3c… stasis.gltf:77aa…"

@@ -1,9 +1,9 @@
-// The state of a run as bytes, so that it can be broken off and gone on with later, to the last
-// bit.
+// The state of a run as bytes, so that the run can be interrupted and continued later with bitwise
+// equal results.
 //
-// One function of a class names the parts of its state, for both directions:
+// One function of a class lists the parts of its state, for storing and restoring:
 //   void Walk::keep(Snapshot& snapshot) { snapshot(steps_, where_m_, path_m_); }
-// Values that follow from the run's inputs are recomputed, not kept.
+// Values that follow from the run's inputs are recomputed instead of stored.
 #pragma once
 
 #include <algorithm>
@@ -55,7 +55,7 @@ class Snapshot {
     expect(list.size());
     copy(reinterpret_cast<char*>(list.data()), list.size() * sizeof(T));
   }
-  // A number that follows from the inputs. A state with another number belongs to another run.
+  // A number that follows from the inputs. A state with a different number belongs to another run.
   void expect(uint64_t number) {
     uint64_t kept = number;
     value(kept);
@@ -107,7 +107,7 @@ class Snapshot {
     value(count);
     constexpr size_t each_bytes = sizeof(typename Block::value_type);
     if (is_restoring_state()) {
-      // No more than there are bytes for.
+      // The count must not exceed the number of remaining bytes.
       good_ = good_ && count <= (source_->size() - at_) / each_bytes;
       numbers.resize(good_ ? count : 0);
     }

@@ -66,7 +66,7 @@ BandValues band_fractions(const Spectrum& spectrum, const Bands& bands) {
 namespace {
 
 struct SolarBand {
-  double end_nm;  // it begins where the one before ends, the first at 280 nm
+  double end_nm;  // begins at the end of the previous band; the first at 280 nm
   double am0_W_m2;
   double am15g_W_m2;
 

@@ -1,4 +1,4 @@
-// Wavelength: bands that results are split into, the spectra of sources, standard sunlight.
+// Wavelength: bands into which results are split, spectra of sources, standard sunlight.
 #pragma once
 
 #include <array>
@@ -28,8 +28,8 @@ struct Spectrum {
   double temperature_K = 5772.0;  // blackbody
 };
 
-// The fraction of the spectrum's power in each band. Bands may leave wavelengths out: the fractions
-// then sum to less than one and the rest is power that no band carries; scenes refuse that.
+// The fraction of the spectrum's power in each band. Bands may omit wavelengths: the fractions then
+// sum to less than one, which scenes reject.
 BandValues band_fractions(const Spectrum& spectrum, const Bands& bands);
 
 // Standard spectra of sunlight.
@@ -39,7 +39,8 @@ enum class SolarStandard {
 };
 
 // The fraction of the irradiance from 280 to 4000 nm that lies below a wavelength; 0 and 1 outside.
-// Bands of 10 nm from 400 to 1100 nm, 20 nm to 1800 nm, wider beyond; even within a band.
+// It is tabulated in bands of 10 nm from 400 to 1100 nm, of 20 nm to 1800 nm, and wider ones
+// beyond. The spectrum is uniform within a band.
 //
 // Source: ASTM G173-03, columns "extraterrestrial" and "global tilt". The sums agree with the
 // standard's own totals, 1347.9 and 1000.37 W/m², to 6e-4 and 2e-4; bands of 100 nm from 400 to

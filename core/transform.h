@@ -42,9 +42,9 @@ inline RigidTransform operator*(const RigidTransform& a_from_b, const RigidTrans
           a_from_b.rotation * b_from_c.translation_m + a_from_b.translation_m};
 }
 
-// Attitude of a platform (lab from body, origin unmoved) tilted by `tilt_rad` towards the compass
-// direction `heading_rad`: the body's z axis leans from the vertical towards
-// (cos heading, sin heading, 0); no spin about z is added. Tilt 30 deg, heading 0 is a rotation of
+// Attitude of a platform (lab from body, origin unmoved) that is tilted by `tilt_rad` towards the
+// compass direction `heading_rad`: the body's z axis is tilted from the vertical towards (cos
+// heading, sin heading, 0). No rotation about z is added. Tilt 30 deg, heading 0 is a rotation of
 // 30 deg about +y.
 RigidTransform lab_from_body_at(double tilt_rad, double heading_rad);
 

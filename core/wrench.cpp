@@ -99,8 +99,8 @@ Bracket bracket(const std::vector<double>& axis_rad, double angle_rad, const cha
   return {high_index - 1, high_index, std::clamp((angle_rad - from) / (to - from), 0.0, 1.0)};
 }
 
-// The second angle comes round again: bring it into the table's turn, and bridge the gap between
-// the last node and the first when that gap is no wider than the widest step of the table.
+// The second angle is periodic. It is reduced to the turn of the table. The gap between the last
+// node and the first is interpolated if it is not wider than the widest step of the table.
 Bracket bracket_around(const std::vector<double>& axis_rad, double angle_rad) {
   const double low = axis_rad.front();
   double turned = low + std::fmod(angle_rad - low, 2 * pi);
@@ -117,7 +117,7 @@ Bracket bracket_around(const std::vector<double>& axis_rad, double angle_rad) {
   return bracket(axis_rad, turned, "heading or azimuth");
 }
 
-// Nodes that are one and the same attitude, in lists of two or more.
+// Groups of two or more nodes that are the same attitude.
 std::vector<std::vector<size_t>> equal_nodes(const WrenchTable& table) {
   std::vector<std::vector<size_t>> groups;
   const bool closed = table.around_rad.back() - table.around_rad.front() > 2 * pi - angle_slack_rad;
@@ -140,8 +140,8 @@ void average(std::vector<Vec3>& values, const std::vector<size_t>& nodes) {
   for (const size_t node : nodes) values[node] = sum / static_cast<double>(nodes.size());
 }
 
-// Root mean square: nodes traced with one seed share their noise, and a mean of copies is no better
-// known than each.
+// Replaces the errors of equal nodes by their root mean square. Nodes traced with one seed have
+// equal noise, so their mean is no more accurate than each of them.
 void average_errors(std::vector<Vec3>& errors, const std::vector<size_t>& nodes) {
   Vec3 squares = Vec3::Zero();
   for (const size_t node : nodes) squares += errors[node].cwiseAbs2();

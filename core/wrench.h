@@ -60,8 +60,7 @@ struct TableAngles {
 struct WrenchTable {
   enum class Angles {
     // Attitude of a platform under fixed light: polar is the tilt from the vertical in [0, π],
-    // around the
-    // heading of the tilt, as in lab_from_body_at().
+    // around the heading of the tilt, as in lab_from_body_at().
     tilt_heading,
     // Direction towards a distant light, in body axes: polar is the elevation in [−π/2, π/2]
     // above the xy plane, around the azimuth from x towards y.
@@ -75,14 +74,14 @@ struct WrenchTable {
   std::vector<Vec3> force_body_N;
   std::vector<Vec3> torque_body_N_m;
   std::vector<Vec3> force_error_N;     // one standard error per component; zero where exact
-  std::vector<Vec3> torque_error_N_m;  // likewise
+  std::vector<Vec3> torque_error_N_m;  // zero where exact
 
   size_t nodes() const { return polar_rad.size() * around_rad.size(); }
   size_t node(size_t around, size_t polar) const { return around * polar_rad.size() + polar; }
 };
 
-// A table of zeros on the given grid. InputError when an axis is empty, not ascending or out of the
-// range named above.
+// A table of zeros on the given grid. Throws InputError if an axis is empty, not ascending or
+// outside the range stated above.
 WrenchTable make_wrench_table(WrenchTable::Angles angles, std::vector<double> polar_rad,
                               std::vector<double> around_rad,
                               const Vec3& about_body_m = Vec3::Zero());

@@ -67,13 +67,13 @@ struct DomainAnswer {
 // of two.
 struct EmpiricalTorque {
   std::string variable;                  // "yaw", "tilt", "rate", "time", …
-  std::string unit;                      // of `at`: "deg", "rad/s", "s", …
+  std::string unit;                      // unit of `at`: "deg", "rad/s", "s", …
   bool about_lab_axes = false;           // components along lab axes; otherwise body axes
   std::vector<double> at;                // ascending
   std::vector<Vec3> torque_N_m;          // at each
-  std::vector<Vec3> standard_error_N_m;  // of each; empty: unknown
+  std::vector<Vec3> standard_error_N_m;  // one per torque; empty: unknown
   // The law with its constants and their errors, "T = (4.4 ± 0.1)e-06 N m cos(3 ψ − 95°) about the
-  // vertical"; empty if there is no short one.
+  // vertical"; empty if there is no short formula.
   std::string formula = {};
   std::string looks_like = {};  // weak evidence: physics that commonly has this form
   // The law as a disturbance of the kind empirical_torque: keys with their values in TOML, and the
@@ -95,7 +95,7 @@ struct Where {
   struct Interval {
     double from = 0.0, to = 0.0;
   };
-  std::vector<Interval> intervals_s;  // of the first recording, in order of time
+  std::vector<Interval> intervals_s;  // in the first recording, in order of time
   std::optional<Interval> band_Hz;
   struct Dependence {
     std::string variable;  // tilt, heading, rate, time, charge, command, irradiance, …
@@ -143,20 +143,20 @@ struct Manoeuvre {
 struct ChannelSeries {
   std::string name;   // "attitude_x_arcsec"
   std::string label;  // as printed: "Attitude about lab x"
-  std::string unit;   // of measured, before and after
+  std::string unit;   // unit of measured, before and after
   std::vector<double> time_s;
   std::vector<double> measured, before, after;
-  std::string residual_unit;                            // of the two below
+  std::string residual_unit;                            // unit of the two below
   std::vector<double> residual_before, residual_after;  // measured − model
   double noise = 0.0;  // standard deviation of one reading, in residual_unit
 };
-// Attitude of the body over time, lab from body, if recorded. All vectors have the length of
-// `time_s`. Those of the models are empty in a diagnosis of light, where the motion is exact.
+// Attitude of the body over time (lab from body), if recorded. All vectors have the length of
+// `time_s`. Those of the models are empty in a diagnosis of light, in which the motion is exact.
 struct AttitudeSeries {
   std::vector<double> time_s;
   std::vector<Quat> measured;
-  // Rotation vectors about lab axes from the attitudes predicted by the nominal and the chosen
-  // model to the readings, and one standard error.
+  // Rotation vectors in lab axes from the predicted to the measured attitude, for the nominal and
+  // the chosen model, and one standard error.
   std::vector<Vec3> off_before_rad, off_after_rad, error_rad;
 };
 
@@ -220,7 +220,7 @@ struct InstrumentFinding {
 struct BodyOfRecordings {
   std::vector<std::string> recordings;         // names as given
   std::vector<double> inertia_relative;        // Ixx, Iyy, Izz, Ixy, Ixz, Iyz
-  std::vector<double> inertia_relative_sigma;  // of each
+  std::vector<double> inertia_relative_sigma;  // standard error of each
 };
 
 // Rows, rejected and repaired readings, and gaps of the files.
@@ -238,11 +238,11 @@ struct Diagnosis {
   Verdict verdict = Verdict::consistent;
   double confidence = 0.0;   // probability that verdict and names are correct
   std::string sentence;      // the finding, for the top of the report
-  std::string because = {};  // of "unexplained": the decisive evidence
+  std::string because = {};  // decisive evidence for "unexplained"
   Where where;
   std::vector<FoundEffect> effects;
   std::vector<DomainAnswer> domains = {};  // for motion and light together; otherwise empty
-  // Table of such effects in an experiment: [[disturbance]] for motion, [[effect]] for light.
+  // Table of these effects in an experiment: [[disturbance]] for motion, [[effect]] for light.
   std::string effect_table = "disturbance";
   std::vector<EmpiricalTorque> empirical;
   // Unnamed effects that the reported model contains because its predictions require them.

@@ -30,7 +30,8 @@ SettingsNode numbers(const std::vector<double>& values, const char* format) {
   return {std::move(all)};
 }
 
-// A sigma of 0 or an unknown one is not allowed with fitted values: the value is then exact.
+// Whether all standard errors are known and at least one is positive. Otherwise the value is
+// written as exact, because a prior requires a positive sigma.
 bool has_sigma(const FittedParameter& p) {
   bool any = false;
   for (const double s : p.sigma) {
@@ -66,7 +67,7 @@ void add_effect(TomlDocument& document, const FoundEffect& effect, const std::st
   add_kind(document, table, effect.kind);
   for (const auto& [key, value] : effect.texts) document.set(table, key, {value});
   if (table_name == "effect") {
-    // Exact numbers with their errors as a comment: effects on light have no prior.
+    // Effects on light have no prior, so their errors are written as a comment.
     for (const FittedParameter& p : effect.parameters) {
       if (p.key == "index" && p.value.size() > 1) {
         // The first of several equally good places is used.

@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// One number stands alone. (What is not finite is written as null.)
+// A single number is written without an array. Non-finite numbers become null.
 Json numbers(const std::vector<double>& values) {
   return values.size() == 1 ? Json(values.front()) : Json(values);
 }
@@ -106,8 +106,8 @@ Json holdout_json(const Holdout& holdout) {
           {"samples", holdout.samples}};
 }
 
-// "kind" joins several with " + ". It is "none" if nothing is missing, and the label if an
-// explanation is not only physics.
+// "kind" joins several kinds with " + ". It is "none" if nothing is missing, and the label if the
+// kinds do not describe the explanation completely.
 Json alternative_json(const Alternative& alternative) {
   std::string kind = joined_text(alternative.kinds, " + ");
   if (!alternative.label.empty()) kind = alternative.label;

@@ -39,8 +39,8 @@ class Judge {
     return best;
   }
 
-  // Removes candidates from the trial, one at a time, as long as one is not needed (is_missed) or,
-  // without those removed before, within its error.
+  // Removes candidates from the trial one at a time, as long as one of them is not needed
+  // (is_missed()) or the remaining trial contains one that is not significant.
   size_t pruned(size_t trial) const {
     while (trial != 0) {
       size_t fewer = trial;
@@ -200,8 +200,9 @@ class Judge {
     if (!a.predictive || !b.predictive) {
       return !before || !after || *after <= limits_.max_held_out_growth * std::max(1.0, *before);
     }
-    // Errors of the parameters also raise the held-out χ²: growth below its expected value rejects
-    // no name. Nor does growth where only the fit with the name agrees with all data together.
+    // Errors of the parameters also raise the held-out χ², so growth below its expected value does
+    // not reject a name. Growth also rejects no name if only the fit with the name agrees with all
+    // data together.
     const double expected = b.predictive->expected_chi2_per_sample;
     const bool grows = before && after &&
                        *after > limits_.max_held_out_growth * std::max({1.0, *before, expected});
@@ -211,14 +212,16 @@ class Judge {
     return b.predictive->log_score > a.predictive->log_score - limits_.max_predictive_loss;
   }
 
-  // Whether only a combination of the numbers of some name is known, each being within its error.
+  // Whether all numbers of some name are within their errors, so that only a combination is
+  // identifiable.
   bool is_combination(size_t trial) const {
     return !is_empirical(trial) &&
            std::ranges::any_of(trials_[trial].largest_component,
                                [&](double sigma) { return sigma < limits_.min_component_sigma; });
   }
 
-  // Whether an explanation without one of the names is nearly as good, and no such combination.
+  // Whether an explanation that lacks one of the names, and has no such combination, is nearly as
+  // good.
   bool has_clear_rival(size_t trial) const {
     const double least = trials_[trial].log_evidence - limits_.min_log_odds_of_combination;
     for (size_t i = 0; i < trials_.size(); ++i) {
@@ -236,8 +239,8 @@ class Judge {
   const Thresholds::Decision& limits_;
 };
 
-// Posterior probability of each trial. It is 0 for trials that physics forbids and for trials with
-// a candidate that does not differ significantly from zero.
+// Posterior probability of each trial. It is 0 for unphysical trials and for trials with a
+// candidate that does not differ significantly from zero.
 std::vector<double> posterior(const std::vector<Explanation>& trials, const Judge& judge) {
   const auto counts = [&](size_t i) {
     return trials[i].objection.empty() && judge.is_significant(i);
@@ -350,8 +353,8 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
     return d;
   }
   if (is_weak || !is_likely) {
-    // Something else acts beside the probable names, but several effects are about equally likely.
-    // Where the probable ones alone explain the recordings, they are named.
+    // Another effect acts in addition to the probable names, but several effects are about equally
+    // likely. If the probable names alone explain the recordings, they are named.
     d.chosen = judge.part_of(named, [&](size_t c) { return acts(c) >= limits.min_probability; });
     if (d.chosen == 0 || !judge.predicts(d.chosen) ||
         checks.excess_sigma(d.chosen) > limits.max_excess_sigma) {

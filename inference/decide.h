@@ -1,8 +1,9 @@
 // The verdict on the trials of any domain. Every name passes the same gates:
 //
 //   (a) it, or an indistinguishable effect, is probable; otherwise it remains a candidate;
-//   (b) each of its groups of parameters differs significantly from neutral. If only a combination
-//       of numbers does that are all within their errors, no other explanation is nearly as good;
+//   (b) each of its groups of parameters differs significantly from neutral. If every number is
+//       within its error and only a combination is significant, no other explanation may be nearly
+//       as good;
 //   (c) segments that are left out of a fit are predicted better with it than without it;
 //   (d) with all names the held-out χ² agrees with its prediction; otherwise: unknown;
 //   (e) held-out data that the nominal model predicts as well do not test the names;
@@ -24,7 +25,7 @@ enum class Finding {
 
 // Limits of the gates in addition to Thresholds::Decision.
 struct GateLimits {
-  // Minimum gain in the prediction of left-out segments with a name over without it [sigma].
+  // Minimum gain in the prediction of left-out segments by a name [standard errors].
   double min_gain_sigma = 3.0;
   // Ratio of the held-out χ² to that of the nominal model above which the data do not test a name.
   double max_untested_fraction = 0.9;
@@ -36,8 +37,8 @@ struct GateLimits {
 struct Checks {
   // Residual structure of the trial in the fitted data (whiteness.h) [sigma].
   std::function<double(size_t trial)> excess_sigma;
-  // Gain in the prediction of left-out segments with the candidate at `which` over without it
-  // [standard errors]. Nothing: too few segments. Not set: gate (c) is skipped.
+  // Gain in the prediction of left-out segments by the candidate at `which` [standard errors].
+  // Nothing: too few segments. Not set: gate (c) is skipped.
   std::function<std::optional<double>(size_t trial, size_t which)> gain_sigma = {};
   // Candidates of the same kind at other places, each as a replacement for the candidate at
   // `which`, with its deficit in log evidence. If not set, the domain has no places.
@@ -49,7 +50,7 @@ struct Checks {
 // A candidate that passed the gates.
 struct Name {
   size_t candidate = 0;
-  double probability = 0.0;  // of this effect or an indistinguishable one
+  double probability = 0.0;  // probability of this effect or an indistinguishable one
   std::optional<double> gain_sigma = {};
   std::vector<size_t> equal_places = {};  // candidates at other places
 };
@@ -71,8 +72,8 @@ struct Decision {
   // empirical law: at most one, without which all other explanations are far less likely. With
   // several about equally likely explanations: the candidates that they have in common.
   std::vector<size_t> beside_law = {};
-  std::vector<double> probability;  // of each trial
-  std::vector<Name> names = {};     // of the chosen trial where the finding is `named`
+  std::vector<double> probability;  // one per trial
+  std::vector<Name> names = {};     // names of the chosen trial if the finding is `named`
   // Whether the held-out data distinguish the chosen trial from the nominal model.
   bool held_out_tests_names = true;
 };
@@ -83,8 +84,9 @@ bool is_significant(const std::vector<double>& significance, const Thresholds::D
 // Gate (b) for a trial, on fitted and held-out data together where it has been fitted to both.
 bool is_significant(const Explanation& trial, const Thresholds::Decision& limits);
 
-// Trial 0 is the nominal model. `excess_sigma` is called for the best named trial. The finding
-// "nothing missing" requires that the nominal model also predicts the held-out data.
+// Decides between the trials of a domain. Trial 0 is the nominal model. `all` are the candidates.
+// `excess_sigma` is called for the best named trial. The finding "nothing missing" requires that
+// the nominal model also predicts the held-out data.
 Decision decide(const std::vector<Explanation>& trials, const std::vector<CandidateTraits>& all,
                 const Checks& checks, const Thresholds::Decision& limits);
 

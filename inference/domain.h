@@ -50,10 +50,11 @@ struct CandidateTraits {
   // Whether it is so nonlinear that forecasts about a model without it fail. Such candidates are
   // fitted one at a time, from all their starts, before sets are forecast.
   bool is_fitted_first = false;
-  // Whether a part swings, and whether such an effect equals this one in slow motion.
+  // `swings`: a part oscillates relative to the body. `is_limit_of_swinging`: an oscillating effect
+  // equals this effect in slow motion.
   bool swings = false;
   bool is_limit_of_swinging = false;
-  // Whether it changes only readings, so that no torque takes its place.
+  // Whether it is an error of an instrument, which changes the readings but not the motion.
   bool is_of_instrument = false;
   // Maximum number of times that a trial may contain it.
   size_t most = 1;
@@ -150,10 +151,10 @@ concept Domain = std::derived_from<typename D::Trial, Explanation> &&
   { domain.gains(trial, candidates, runs) } -> std::same_as<std::vector<double>>;
   // The candidates of the trial with their fitted values, in their order.
   { domain.terms_of(trial) } -> std::same_as<std::vector<Term<typename D::Start>>>;
-  // Linear problem in the strengths of the terms about a trial, everything else projected out. The
-  // first `terms` are the trial's own. Terms that averages do not resolve form no group.
+  // Linear problem in the strengths of the terms about a trial, with all other parameters projected
+  // out. The first `terms` are those of the trial. Terms that averages do not resolve are omitted.
   { domain.linear_problem(trial, terms, runs) } -> std::same_as<LinearProblem>;
-  // The nominal model with exactly these members, fitted from the end of the trial's fit.
+  // The nominal model with exactly these members. Its fit starts from the result of the trial.
   { domain.assemble(trial, members, runs, effort) } -> std::same_as<typename D::Trial>;
   // Starts of each candidate added to the trial: one, or the best of a scan over its nonlinear
   // parameters. The second runs are averages of the first.

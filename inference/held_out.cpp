@@ -14,7 +14,7 @@ HeldOutPrediction predict_held_out(const Fit& train, const Fit& joint) {
   if (known.rows() != of_all.rows()) return {unknown, unknown};
   const double held = static_cast<double>(joint.samples - train.samples);
   const Eigen::MatrixXd carried = posterior_of(known) * (of_all - known);
-  // Each matrix belongs to the end of another fit, so a difference of zero may come out negative.
+  // The two matrices are from different fits, so a difference of zero may be slightly negative.
   const double mean = std::max(0.0, carried.trace()),
                square = std::max(0.0, carried.cwiseProduct(carried.transpose()).sum());
   return {1.0 + mean / held, std::sqrt(2.0 * (held + 2.0 * mean + square)) / held};

@@ -38,8 +38,8 @@ class Rounds {
   }
 
  private:
-  // Rounds over trials that contain the candidates `swinging`. Without them, the first round is
-  // followed by rounds over what a scan of the base finds.
+  // Rounds over trials that contain the candidates `swinging`. If there are none, the first round
+  // is followed by rounds that start from the results of a scan of the base.
   void go_on(Trial at, const std::vector<size_t>& swinging, bool scans) {
     bool scan = false;
     const bool is_first_track = swinging.empty();
@@ -83,10 +83,10 @@ class Rounds {
     }
   }
 
-  // Slow effects take the quasi-static part of an effect that swings and then hide the rest of it.
-  // The base is therefore scanned without them, but with the errors of instruments of `best`, and
-  // rounds start from the best result. Returns the candidates of that result; empty: nothing
-  // swings.
+  // Slow effects absorb the quasi-static part of an oscillating effect and then hide the rest of
+  // it. The base is therefore scanned without slow effects, but with the instrument errors of
+  // `best`, and rounds start from the best result. Returns the candidates of that result; empty: no
+  // oscillating effect was found.
   std::vector<size_t> search_oscillating_effects(const Trial& best) {
     const Trial base = with_instruments(domain_, best, trials_.front(), set_.runs);
     // A scan about a diverged base is useless if some candidate leads back to the readings.
@@ -106,9 +106,10 @@ class Rounds {
     return first.candidates;
   }
 
-  // Whether slow effects may take the place of one that swings: several together, the limit of one
-  // that swings, one of which only a combination is significant, or one that leaves something. What
-  // remains may cancel in means of neighbours, but it raises χ².
+  // Whether slow effects may imitate an oscillating effect. This is possible for several effects
+  // together, for the slow limit of an oscillating effect, for an effect of which only a
+  // combination is significant, and for an effect that leaves a residual. The residual may cancel
+  // in means of neighbours, but it raises χ².
   bool may_be_surrogates(const Trial& at) const {
     const bool swings = std::ranges::any_of(
         at.candidates, [&](size_t c) { return domain_.candidates()[c].is_fast; });
@@ -163,7 +164,8 @@ class Rounds {
     return at;
   }
 
-  // Pieces of runs do not resolve weak lines or jumps; whole runs are scanned later.
+  // Whether a scan is worthwhile. Pieces of runs do not resolve weak lines or jumps, which are
+  // found later in whole runs.
   bool is_worth_a_scan(const Trial& at) const {
     return set_.pieces == 1 ||
            domain_.excess_sigma(at, set_.runs) > limits_.decision.max_excess_sigma;
@@ -294,8 +296,8 @@ class Rounds {
     return candidates;
   }
 
-  // Whether the set has been fitted with about the log evidence that is `expected`. If it came out
-  // worse, its start may have been too far off, and another fit is worth it.
+  // Whether the set has been fitted with about the log evidence that is `expected`. If its evidence
+  // is lower, its start may have been too far off, and another fit is worthwhile.
   bool was_tried(const Members<typename D::Start>& members, double expected) const {
     const std::vector<size_t> candidates = candidates_of(members);
     return std::any_of(trials_.begin(), trials_.end(), [&](const Trial& t) {
@@ -306,7 +308,7 @@ class Rounds {
   }
 
   // Whether a part of the set has been rejected (for example for a wrong sign) and no gain beyond
-  // that part is predicted. The set would be rejected too, in the place of a valid one.
+  // that part is predicted. The set would be rejected too, and would take the place of a valid one.
   bool is_refused(const Members<typename D::Start>& members, double expected) const {
     const std::vector<size_t> candidates = candidates_of(members);
     return std::any_of(trials_.begin(), trials_.end(), [&](const Trial& t) {
@@ -318,7 +320,7 @@ class Rounds {
     });
   }
 
-  // Fits to averages; the best are refitted to all readings.
+  // Fits sets to averages; the best are refitted to all readings.
   std::vector<Trial> fitted(const Trial& at, const std::vector<Members<typename D::Start>>& chosen,
                             const Runs& averages) const {
     const Effort effort{.max_iterations = limits_.fitting.trial_iterations};
@@ -381,8 +383,8 @@ class Rounds {
   }
 
   // Removes each effect with an instant or a place, together with empirical laws that may
-  // compensate its error, and locates it again. Its first location used a poorer model; a fit does
-  // not move far from it.
+  // compensate its error, and locates it again. Its first location was found with a poorer model,
+  // and a fit does not move far from it.
   std::vector<Trial> relocated(const Trial& at) const {
     std::vector<Trial> found;
     const std::vector<CandidateTraits>& all = domain_.candidates();

@@ -79,8 +79,8 @@ class Search {
   }
 
   // Moves the trials to refit to the front and returns their number. Half of the places are for
-  // trials without an empirical law: in pieces it can replace effects that it cannot replace in the
-  // whole. `found` is sorted by evidence.
+  // trials without an empirical law: in pieces such a law can replace effects that it cannot
+  // replace in whole runs. `found` is sorted by evidence.
   size_t put_refits_first(std::vector<Trial>& found) const {
     const size_t most = std::min(limits_.search.max_refits_of_pieces, found.size());
     const auto has_law = [&](const Trial& t) {

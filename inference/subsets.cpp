@@ -38,7 +38,7 @@ class Forecast {
     gain_without_ = -2.0 * gradient_.dot(value_) - value_.dot(matrix_ * value_);
   }
 
-  // The gain alone, which ranks the sets.
+  // Predicted gain of the groups, which ranks the sets.
   double gain(const std::vector<size_t>& groups) const {
     if (groups.empty()) return gain_without_;
     const std::vector<Eigen::Index> at = places(groups);
@@ -46,7 +46,7 @@ class Forecast {
     return gain_without_ + g.dot(matrix_(at, at).llt().solve(g));
   }
 
-  // Computed from zero strengths: θ_S = H_SS⁻¹ (g + H θ)_S.
+  // Forecast for the groups, computed from zero strengths: θ_S = H_SS⁻¹ (g + H θ)_S.
   Subset subset(const std::vector<size_t>& groups) const {
     Subset result{groups, gain_without_, 0.0, {}};
     const std::vector<Eigen::Index> at = places(groups);
@@ -107,16 +107,16 @@ class Forecast {
                        [&](size_t g) { return problem_.groups[g].is_empirical; });
   }
 
-  // Whether no reading determines one of its parameters.
+  // Whether the readings do not determine some parameter of the group.
   bool is_silent(size_t group) const {
     const StrengthGroup& g = problem_.groups[group];
     return !(unit_.segment(g.first, g.count()).minCoeff() > 0.0);
   }
 
  private:
-  // Rounding of the information on a unit diagonal before projection: undetermined combinations
-  // stay at their values. Derivatives are accurate to about 1e-7, so their squares to the square of
-  // that.
+  // Limit of the information on a unit diagonal before projection. Combinations with less
+  // information keep their values. It is above the square of the error of the derivatives, which is
+  // about 1e-7.
   static constexpr double rounding = 1e-10;
 
   std::vector<Eigen::Index> places(const std::vector<size_t>& groups) const {
@@ -187,7 +187,7 @@ std::vector<Subset> best_subsets(const LinearProblem& problem, size_t max_size,
   std::vector<std::vector<size_t>> beam = {{}};
   for (size_t size = 1; size <= max_size; ++size) {
     std::vector<std::vector<size_t>> sets = larger(forecast, problem, beam, limits);
-    // All single candidates are kept, because any two may hide each other.
+    // All single candidates are kept, because any two may hide each other's gain.
     std::vector<std::vector<size_t>> kept = kept_of(forecast, sets, limits.search.beam);
     for (const std::vector<size_t>& set : kept) found.push_back(forecast.subset(set));
     beam = size == 1 ? std::move(sets) : std::move(kept);

@@ -11,7 +11,7 @@ namespace photorque::inference {
 
 // The best of many trials are fitted with more iterations than all of them could be.
 
-// Options to iterate until convergence: if a fit stops early, every extension of it seems to gain.
+// Options to iterate until convergence. If a fit stops early, every extension of it seems to gain.
 inline Effort until_convergence(const Thresholds& limits) {
   return {.max_iterations = limits.fitting.patient_iterations, .creep = limits.fitting.creep};
 }
@@ -23,14 +23,15 @@ Effort within_reach(Effort effort, const Trial& best, const Thresholds& limits) 
   return effort;
 }
 
-// Whether the χ² of a trial is near that of the best on the same runs. Where even the nominal model
-// has diverged, most other trials are not leaders, however few there are.
+// Whether the χ² of a trial is near that of the best trial on the same runs. If even the nominal
+// model has diverged, most trials are not near.
 template <class Trial>
 bool is_near(const Trial& trial, const Trial& best, const Thresholds& limits) {
   return trial.fit.chi2 < limits.leaders.near_fraction * best.fit.chi2 + limits.leaders.near_chi2;
 }
 
-// Refits a trial from the end of the best fit on the same runs; keeps the better result.
+// Refits a trial, starting from the result of the best fit on the same runs; keeps the better
+// result.
 template <Domain D>
 void refit_from_best(const D& domain, const std::vector<typename D::Run>& runs,
                      const typename D::Trial& best, typename D::Trial& trial) {
@@ -45,7 +46,7 @@ void refit_from_best(const D& domain, const std::vector<typename D::Run>& runs,
 
 // Iterates the leaders' fits to convergence. Otherwise a fit that merely continues its parent's
 // unfinished fit would seem to gain by the added candidate. For the same reason leaders and parents
-// are also refitted from the end of the best fit.
+// are also refitted from the result of the best fit.
 template <Domain D>
 void converge_leaders(const D& domain, const std::vector<typename D::Run>& runs, int threads,
                       std::vector<typename D::Trial>& found,
@@ -88,7 +89,7 @@ typename D::Trial with_instruments(const D& domain, const typename D::Trial& tri
 template <Domain D>
 struct RunSet {
   std::vector<typename D::Run> runs;
-  size_t pieces = 1;  // per recording
+  size_t pieces = 1;  // number of pieces per recording
 };
 
 // Averages with fewer samples: sufficient for slow effects and several times faster.
@@ -109,6 +110,7 @@ void keep_below(std::vector<Trial>& trials, size_t fitted) {
   }
 }
 
+// Sorts trials on the same runs, the largest evidence first.
 template <class Trial>
 void sort_by_evidence(std::vector<Trial>& trials) {
   std::stable_sort(trials.begin(), trials.end(),
@@ -163,8 +165,9 @@ std::vector<typename D::Trial> extend_by_tasks(const D& domain, const typename D
 }
 
 // Cuts the runs into pieces in which the fitted parent stays near the readings. If it diverges in
-// pieces of every length, the missing effects are fast and show best in long pieces: the longest
-// with little more residual than the shortest are returned, possibly whole runs.
+// pieces of every length, the missing effects are fast and best visible in long pieces. The longest
+// pieces whose residual is little more than that of the shortest are then returned, possibly whole
+// runs.
 template <Domain D>
 std::pair<RunSet<D>, typename D::Trial> near_pieces(const D& domain,
                                                     const typename D::Trial& parent,

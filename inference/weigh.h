@@ -82,8 +82,8 @@ class Weighing {
     std::array<double, 2> refitted_at = {};
   };
 
-  // The most likely and the nominal model come first; other fits stop when they cannot come near
-  // them.
+  // The most likely trial and the nominal model are fitted first. The other fits stop if they
+  // cannot come near them.
   void add_leaders(const std::vector<size_t>& places) {
     leaders_.resize(places.size());
     std::vector<size_t> first, others;
@@ -123,7 +123,8 @@ class Weighing {
     return held;
   }
 
-  // Refits every leader from the end of the best; skips those for which this failed before.
+  // Refits every leader from the result of the best leader; skips those for which this failed
+  // before.
   void refit_from_best() {
     const Trial best =
         std::min_element(leaders_.begin(), leaders_.end(), [](const Leader& a, const Leader& b) {
@@ -139,9 +140,9 @@ class Weighing {
   }
 
   // Makes the fits to the train runs and to all runs end in one local minimum. More readings cannot
-  // lower χ²: if the joint χ² is lower, the train fit ended in another minimum and its held-out
+  // lower χ². If the joint χ² is lower, the train fit ended in another minimum and its held-out
   // prediction seems too good. If the prediction is far worse than its errors allow, the train runs
-  // may have a second minimum as good. The train fit then restarts from the joint fit.
+  // may have another, equally good minimum. The train fit then restarts from the joint fit.
   void restart_from_joint_fit() {
     constexpr double as_good_chi2 = 9.0;
     parallel_for(leaders_.size(), threads_, [&](size_t k) {
@@ -224,7 +225,7 @@ class Weighing {
       return;
     if (has_diverged(from.joint, limits_) || !std::isfinite(from.joint.fit.chi2)) return;
     Rounds<D> rounds(domain_, {all_runs_}, nominal().joint, limits_.search.max_effects, threads_);
-    // The train runs have been scanned for fast effects where the start contains an empirical law.
+    // If the start contains an empirical law, the train runs have been scanned for fast effects.
     const bool is_law = std::any_of(from.joint.candidates.begin(), from.joint.candidates.end(),
                                     [&](size_t c) { return domain_.candidates()[c].is_empirical; });
     std::vector<Trial> found = rounds.run(from.joint, !is_law);
@@ -245,9 +246,9 @@ class Weighing {
     }
   }
 
-  // Replaces the slow limit of an effect that swings by that effect where all runs together show
-  // swings beside the limit. The train runs alone may hardly excite them, or the search may have
-  // fitted another swing to what the limit leaves.
+  // Replaces the slow limit of an oscillating effect by the oscillating effect, if all runs
+  // together show oscillations in addition to the limit. The train runs alone may hardly excite
+  // them, or the search may have fitted another oscillation to the residual of the limit.
   void search_swings() {
     const Leader from = best();
     const std::vector<CandidateTraits>& all = domain_.candidates();
@@ -281,7 +282,7 @@ class Weighing {
     }
   }
 
-  // Fits the other candidates to all runs.
+  // Fits the candidates of `joint`, except those that are left out, to all runs.
   template <class Condition>
   Trial together_without(const Trial& joint, const Condition& is_left_out,
                          const Effort& effort) const {
@@ -376,7 +377,7 @@ class Weighing {
     // start.
     const auto is_bent = [&](size_t c) { return !domain_.candidates()[c].is_linear; };
     if (leads(candidates) && std::ranges::none_of(candidates, is_bent)) return;
-    // Without the candidate the others may move far, in particular all nominal values that it
+    // Removing the candidate may move the others far, in particular nominal values that it
     // replaced.
     Effort growing = until_convergence(limits_);
     growing.windows = limits_.fitting.diverged_windows;
@@ -393,7 +394,7 @@ class Weighing {
     add_leader(std::move(train), std::move(joint));
   }
 
-  // Fits the terms to the train runs, starting from the end of a fit to all runs.
+  // Fits the terms to the train runs, starting from the result of a fit to all runs.
   Trial assembled(const Trial& joint, const std::vector<Term<typename D::Start>>& terms,
                   const Effort& effort) const {
     const std::vector<typename D::Begin> begins = domain_.initial_conditions_of(joint);
@@ -421,8 +422,8 @@ class Weighing {
     }
   }
 
-  // Adds candidates that gain on all runs beside `parent` (a leader) but are not yet leaders with
-  // it.
+  // Extends the leader `parent` by candidates that gain on all runs, unless the extended set
+  // already leads.
   void add_candidates_of_all_runs(const std::vector<size_t>& parent) {
     const auto is_parent = [&](const Leader& l) { return trials_[l.at].candidates == parent; };
     const auto at = std::find_if(leaders_.begin(), leaders_.end(), is_parent);
@@ -498,7 +499,8 @@ class Weighing {
 
   // Limits the evidence of those of the first `found` trials that are not leaders.
   void limit_evidence_of_others(size_t found, double nominal, double gain) {
-    // Over the leaders except the nominal model, which may diverge on the held-out runs.
+    // The minimum is over the leaders except the nominal model, which may diverge on the held-out
+    // runs.
     const double nominal_now = trials_.front().log_evidence;
     double lowest = std::numeric_limits<double>::infinity(), highest = nominal_now;
     std::vector<bool> is_leader(trials_.size(), false);

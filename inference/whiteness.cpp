@@ -80,7 +80,8 @@ double mean_sigma(std::vector<double> differences) {
   for (const double d : differences) {
     if (std::isfinite(d)) largest = std::max(largest, std::abs(d));
   }
-  // An explanation that cannot be evaluated counts as the worst that can.
+  // An infinite difference, of an explanation that cannot be evaluated, counts as the largest
+  // finite one.
   if (largest == 0.0) largest = 1.0;
   for (double& d : differences) {
     d = std::clamp(d, -largest, largest);

@@ -18,7 +18,7 @@ struct Whiteness {
   double excess_sigma = 0.0;
 };
 
-// Over several runs with the same channels.
+// Tests residuals of several runs with the same channels.
 Whiteness whiteness(const std::vector<ChannelResiduals>& runs, const Thresholds::Noise& limits);
 
 // Indices of outliers of one channel: their deviation from the prediction by their neighbours is

@@ -1,4 +1,4 @@
-// Quadrature that estimates its error and goes on until it is small.
+// Quadrature that estimates its error and refines until it is small.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +18,7 @@ struct Integral {
   double error = 0.0;
 };
 
-// The size of the integral: of a number, or the largest of several.
+// Magnitude of an integral: of a number, or the largest of several numbers.
 inline double size_of(double value) {
   return std::abs(value);
 }
@@ -27,8 +27,8 @@ double size_of(const Eigen::ArrayBase<Derived>& values) {
   return values.abs().maxCoeff();
 }
 
-// The rule of Kronrod with seven nodes on [−1, 1], which contains Gauss's of three: exact for
-// polynomials of degree 11 and 5.
+// Kronrod's rule with seven nodes on [−1, 1], exact for polynomials of degree 11. It contains
+// Gauss's rule with three nodes, exact for degree 5.
 // Source: A. S. Kronrod, Nodes and Weights of Quadrature Formulas (1965); D. P. Laurie, Math. Comp.
 // 66 (1997), 1133–1145.
 inline constexpr std::array<double, 4> kronrod_node = {0.0, 0.434243749346802558,
@@ -36,9 +36,10 @@ inline constexpr std::array<double, 4> kronrod_node = {0.0, 0.434243749346802558
 inline constexpr std::array<double, 4> kronrod_weight = {
     0.450916538658474142, 0.401397414775962223, 0.268488089868333441, 0.104656226026467265};
 
-// ∫ f over [low, high], halved until the error is below `tolerance` (> 0), or `depth` times. `f`
-// gives a number or a fixed number of them (Eigen::Array). The error is the difference of the two
-// rules, made smaller as in QUADPACK because it is that of the worse one.
+// ∫ f over [low, high]. The interval is halved until the error is below `tolerance` (> 0), at most
+// `depth` times. `f` returns a number or a fixed number of them (Eigen::Array). The error estimate
+// is the difference of the two rules, reduced as in QUADPACK because it is the error of the less
+// accurate rule.
 // Source: R. Piessens et al., QUADPACK (1983), section 3.4.1.
 template <typename Function>
 auto integrate_adaptively(const Function& f, double low, double high, double tolerance,
@@ -70,8 +71,8 @@ auto integrate_adaptively(const Function& f, double low, double high, double tol
 }
 
 // ∫ f over [0, π] of a function that is even and periodic (and vanishes at both ends), by the
-// trapezoidal rule, doubled until the error is below `tolerance`: without kinks it converges
-// geometrically. integrate_adaptively() where it does not.
+// trapezoidal rule. The number of steps is doubled until the error is below `tolerance`. Without
+// kinks in f the rule converges geometrically; otherwise integrate_adaptively() is used.
 // Source: L. N. Trefethen, J. A. C. Weideman, SIAM Review 56 (2014), 385–458.
 template <typename Function>
 auto integrate_half_turn(const Function& f, double tolerance) {

@@ -1,5 +1,5 @@
-// Gauss collocation with eight points on [0, 1], and the Legendre polynomials behind it, all known
-// to the compiler.
+// Gauss collocation with eight points on [0, 1], and its Legendre polynomials, evaluated at compile
+// time.
 //
 // Source: E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed. (2006), II.1.
 #pragma once
@@ -55,8 +55,8 @@ constexpr std::array<T, points> legendre_integrals(const T& x) {
   return integral;
 }
 
-// The matrix μ_ij = a_ij / b_j of the method, with μ_ij + μ_ji = 1 to the last bit: with increments
-// h b_j f_j that keeps quadratic invariants (norm, energy and angular momentum of a free body) to
+// The matrix μ_ij = a_ij / b_j of the method, with μ_ij + μ_ji = 1 exactly. With increments h b_j
+// f_j it conserves quadratic invariants (norm, energy and angular momentum of a free body) to
 // rounding.
 // Source: M. Antoñana, J. Makazaga, A. Murua, "Reducing and monitoring round-off error propagation
 // for symplectic implicit Runge-Kutta schemes", Numer. Algorithms 76 (2017), section 3.2.
@@ -91,8 +91,8 @@ constexpr std::array<Row, points> make_projection() {
 }
 inline constexpr std::array<Row, points> projection = make_projection();
 
-// Columns j of the matrix that continues increments h b_j f_j of a step into a next step `ratio`
-// times as long: exact for polynomials of degree 7.
+// Columns j of the matrix that extrapolates the increments h b_j f_j of a step to a next step that
+// is `ratio` times as long. Exact for polynomials of degree 7.
 inline std::array<Row, points> continuation_columns(double ratio) {
   std::array<Row, points> column{};
   for (int i = 0; i < points; ++i) {
@@ -106,9 +106,9 @@ inline std::array<Row, points> continuation_columns(double ratio) {
   return column;
 }
 
-// Σ_j column_j x_j.
+// The product of a matrix, given by its columns, with x: Σ_j column_j x_j.
 inline Lanes times(const std::array<Row, points>& columns, const Lanes& x) {
-  // Two chains of additions, so that neither waits for the other.
+  // Two independent chains of additions, which the processor can overlap.
   Lanes even = Lanes(columns[0]) * x[0];
   Lanes odd = Lanes(columns[1]) * x[1];
   for (int j = 2; j < points; j += 2) {

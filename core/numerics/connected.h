@@ -1,4 +1,4 @@
-// Connected sets: points at one position, members that are joined pair by pair.
+// Connected sets: points at one position, and members that are joined in pairs.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace photorque {
 
-// For every point the number of one at the same position, the same for all that are there.
+// For every point the index of one point at the same position, equal for all points there.
 inline std::vector<uint32_t> welded(std::span<const Vec3> points) {
   std::vector<uint32_t> order(points.size()), one(points.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -26,7 +26,7 @@ inline std::vector<uint32_t> welded(std::span<const Vec3> points) {
   return one;
 }
 
-// The members 0 … count − 1 in sets, of which each is called by its lowest member.
+// Disjoint sets of the members 0 … count − 1. The root of a set is its lowest member.
 class DisjointSets {
  public:
   explicit DisjointSets(size_t count) : parent_(count) {

@@ -1,6 +1,6 @@
-// Numbers that carry their exact first derivatives with respect to a block of eight variables
-// (forward automatic differentiation), and the few functions that torque laws need beyond
-// arithmetic. Every function exists for Lanes and for DualLanes with the same meaning.
+// Numbers with exact first derivatives with respect to a block of eight variables (forward
+// automatic differentiation), and the few functions that torque laws need beyond arithmetic. Every
+// function exists for Lanes and for DualLanes with the same meaning.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,9 +10,8 @@
 namespace photorque {
 
 // Value and derivatives at eight instants. Partial k is the derivative with respect to the k-th
-// variable of the block that is being differentiated; which variables those are is the choice of
-// the caller that seeds them. Most numbers of a torque law depend on none of them: these constants
-// carry no partials, and operations on them do no work for any.
+// variable of the block, which the caller selects by seed(). Most numbers of a torque law depend on
+// none of these variables. Such constants have no partials, and operations on them compute none.
 class DualLanes {
  public:
   static constexpr int block = 8;
@@ -97,12 +96,12 @@ class DualLanes {
     const Lanes quotient = a.value * inverse;
     return chain(a, b, quotient, inverse, -quotient * inverse);
   }
-  // Factors that are constants need no derivatives.
+  // Constant factors have no derivatives.
   friend DualLanes operator*(double a, const DualLanes& b) { return chain(b, a * b.value, a); }
   friend DualLanes operator*(const DualLanes& a, double b) { return chain(a, a.value * b, b); }
   friend DualLanes operator/(const DualLanes& a, double b) { return a * (1.0 / b); }
   friend bool operator==(const DualLanes& a, const DualLanes& b) { return a.value == b.value; }
-  // a where x ≥ bound, b elsewhere; lane by lane, derivatives likewise.
+  // a if x ≥ bound, otherwise b, with derivatives, for each lane.
   friend DualLanes where_at_least(const DualLanes& x, double bound, const DualLanes& a,
                                   const DualLanes& b) {
     DualLanes r(where_at_least(x.value, bound, a.value, b.value));
@@ -120,10 +119,10 @@ class DualLanes {
   }
 
   bool varies_ = false;
-  Partials partials_;  // where it varies
+  Partials partials_;  // valid if `varies_`
 };
 
-// For plain values without derivatives, so that one formula is valid for both types.
+// chain() for plain values without derivatives, so that one formula is valid for both types.
 inline Lanes chain(const Lanes& /*x*/, const Lanes& f, const Lanes& /*slope*/) {
   return f;
 }
@@ -164,7 +163,7 @@ inline DualLanes atan2(const DualLanes& y, const DualLanes& x) {
   const Lanes square = x.value * x.value + y.value * y.value;
   return DualLanes::chain(y, x, atan2(y.value, x.value), x.value / square, -y.value / square);
 }
-// A function of one variable that is known by numbers (a table, an iteration): `f` returns its
+// A function of one variable that is computed from numbers (a table, an iteration). `f` returns its
 // value and its slope at one point as {value, slope}.
 template <class Function>
 Lanes from_values(const Lanes& x, const Function& f) {
@@ -181,7 +180,7 @@ DualLanes from_values(const DualLanes& x, const Function& f) {
   return DualLanes::chain(x, value, slope);
 }
 
-// The values without derivatives: for looking things up lane by lane.
+// The values without derivatives, for table look-ups lane by lane.
 inline const Lanes& values(const Lanes& x) {
   return x;
 }
@@ -197,8 +196,8 @@ using Mat3Of = Eigen::Matrix<T, 3, 3>;
 template <class T>
 using QuatOf = Eigen::Quaternion<T>;
 
-// |v|, never exactly zero (at least 1e-150), so that v/|v| and the derivatives of |v| to any power
-// stay finite at rest: they are 0 there.
+// |v| with a minimum of 1e-150, so that v/|v| and the derivatives of |v| to any power remain finite
+// at rest, where they are 0.
 template <class T>
 T length(const Vec3Of<T>& v) {
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + T(1e-300));

@@ -1,4 +1,4 @@
-// Long series of numbers, made shorter for pictures.
+// Thinning of long series of numbers for plots.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace photorque {
 
-// The places of about `most` values of a series: of every interval of it the lowest and the
-// highest, so that no peak is lost. All places where there are no more than `most`.
+// Indices of about `most` values of a series: the lowest and the highest value of every interval,
+// so that no peak is lost. All indices if there are at most `most` values.
 inline std::vector<size_t> lows_and_highs(std::span<const double> values, size_t most) {
   const size_t intervals = values.size() <= most ? values.size() : std::max<size_t>(1, most / 2);
   std::vector<size_t> kept;

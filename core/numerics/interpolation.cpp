@@ -10,7 +10,7 @@
 namespace photorque {
 namespace {
 
-// ∫ T_k up to x and up to a constant, for k = 0 … n − 1.
+// Antiderivatives of T_k at x, up to a constant, for k = 0 … n − 1.
 // Source: NIST DLMF 18.17.1 in the form ½ (T_{k+1}/(k+1) − T_{k−1}/(k−1)).
 std::vector<double> antiderivatives(size_t n, double x) {
   std::vector<double> t = {1.0, x}, result;
@@ -89,7 +89,7 @@ double cut(double slope, double chord) {
   return chord > 0.0 ? std::clamp(slope, 0.0, 3.0 * chord) : std::clamp(slope, 3.0 * chord, 0.0);
 }
 
-// All positive, and no value a hundred times its neighbour.
+// Whether all values are positive and none is more than a hundred times its neighbour.
 bool changes_steadily(std::span<const double> y) {
   constexpr double most = 100.0;
   for (size_t k = 0; k < y.size(); ++k) {

@@ -17,7 +17,7 @@ struct Reduced {
 };
 Reduced reduce(const Quad& x) {
   constexpr double two_over_pi = 0x1.45f306dc9c883p-1;
-  // Adding this leaves the nearest whole number in the low bits.
+  // Adding this leaves the nearest integer in the low bits.
   constexpr double to_integer = 0x1.8p52;
   const Quad shifted = x * two_over_pi + to_integer;
   const Quad n = shifted - to_integer;
@@ -49,7 +49,7 @@ Quad cos_kernel(const Quad& x) {
   return 1.0 - (0.5 * z - z * z * r);
 }
 
-// NaN goes either way.
+// Whether reduce() is accurate for all lanes. For NaN both methods return NaN.
 bool is_reducible(const Lanes& x) {
   return largest(larger_magnitude(x, 0.0)) < 1.5 * max_quarter_turns;
 }
@@ -111,7 +111,7 @@ Lanes cos(const Lanes& x) {
 }
 
 Lanes pow(const Lanes& x, double exponent) {
-  // The exponents of boundary layers and their derivatives.
+  // Fast paths for the exponents of boundary layers and their derivatives.
   if (exponent == 0.5) return sqrt(x);
   if (exponent == -0.5) return 1.0 / sqrt(x);
   if (exponent == 1.5) return x * sqrt(x);

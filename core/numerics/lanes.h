@@ -1,7 +1,7 @@
-// Eight numbers that are worked on as one: the value of a quantity at eight instants.
+// Eight numbers that are processed as one: the value of a quantity at eight instants.
 //
-// The propagator asks for the torque at the eight Gauss points of a step at once, so a law that is
-// written once for a scalar type runs on whole vector registers.
+// The propagator evaluates the torque at the eight Gauss points of a step at once. A law that is
+// written once for a scalar type therefore runs on whole vector registers.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace photorque {
 
 struct Lanes {
   static constexpr int count = 8;
-  // Rather than an array: they stay in registers.
+  // Two Quads instead of an array, because they stay in registers.
   Quad low;
   Quad high;
 
@@ -67,7 +67,7 @@ struct Lanes {
   friend Lanes operator/(const Lanes& a, const Lanes& b) {
     return {a.low / b.low, a.high / b.high};
   }
-  // All lanes equal; Eigen needs it.
+  // Whether all lanes are equal; Eigen requires this operator.
   friend bool operator==(const Lanes& a, const Lanes& b) {
     for (int i = 0; i < count; ++i) {
       if (a[i] != b[i]) return false;
@@ -76,7 +76,7 @@ struct Lanes {
   }
 };
 
-// `f` of every lane.
+// Applies `f` to every lane.
 template <class Function>
 Lanes each_lane(const Lanes& x, const Function& f) {
   return {Quad{f(x.low[0]), f(x.low[1]), f(x.low[2]), f(x.low[3])},
@@ -86,10 +86,10 @@ Lanes each_lane(const Lanes& x, const Function& f) {
 inline Lanes sqrt(const Lanes& x) {
   return {sqrt(x.low), sqrt(x.high)};
 }
-// Good to two units in the last place for |x| < 2.5e7, to the library's accuracy beyond.
+// Accurate to two units in the last place for |x| < 2.5e7, to the library's accuracy beyond.
 Lanes sin(const Lanes& x);
 Lanes cos(const Lanes& x);
-// Good to one unit in the last place.
+// Accurate to one unit in the last place.
 inline Lanes exp(const Lanes& x) {
   return {exp(x.low), exp(x.high)};
 }
@@ -97,7 +97,7 @@ inline Lanes log(const Lanes& x) {
   return {log(x.low), log(x.high)};
 }
 Lanes pow(const Lanes& x, double exponent);
-// Good to three units in the last place for finite numbers; 0 for two zeros of any sign.
+// Accurate to three units in the last place for finite numbers; 0 for two zeros of any sign.
 Lanes atan2(const Lanes& y, const Lanes& x);
 
 // a where x ≥ bound, b elsewhere; lane by lane.
@@ -109,7 +109,7 @@ inline Lanes max(const Lanes& a, const Lanes& b) {
   return {max(a.low, b.low), max(a.high, b.high)};
 }
 
-// The larger of |a| and |b|, lane by lane; |a| where b is NaN.
+// The larger of |a| and |b|, lane by lane; |a| if b is NaN.
 inline Lanes larger_magnitude(const Lanes& a, const Lanes& b) {
   return {max(abs(a.low), abs(b.low)), max(abs(a.high), abs(b.high))};
 }

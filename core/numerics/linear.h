@@ -1,5 +1,5 @@
-// Small dense systems. Eigen's decompositions cost every source that names them seconds of compile
-// time; here they are compiled once.
+// Small dense systems. Eigen's decompositions cost every source file that uses them seconds of
+// compile time; here they are compiled once.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,11 +14,11 @@ Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd&
 double squared_distance(const Eigen::VectorXd& x, const Eigen::MatrixXd& C);
 
 struct LeastSquares {
-  Eigen::MatrixXd solution;  // a column for each of B's
-  Eigen::Index rank = 0;     // of A
+  Eigen::MatrixXd solution;  // one column for each column of B
+  Eigen::Index rank = 0;     // rank of A
 };
-// The shortest X that makes |A X − B| least (Eigen::CompleteOrthogonalDecomposition). Pivots below
-// `threshold` of the largest count as zero; 0: rounding errors alone do.
+// The X of minimum norm that minimises |A X − B| (Eigen::CompleteOrthogonalDecomposition). Pivots
+// below `threshold` of the largest count as zero; 0: only rounding errors count as zero.
 LeastSquares least_squares(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
                            double threshold = 0.0);
 
@@ -26,6 +26,7 @@ struct SymmetricEigen {
   Eigen::VectorXd values;   // ascending; not finite where A is not
   Eigen::MatrixXd vectors;  // columns of unit length
 };
+// Eigenvalues and eigenvectors of a symmetric matrix.
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
 
 }  // namespace photorque

@@ -1,4 +1,4 @@
-// The value in the middle of some numbers.
+// The median of some numbers.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 namespace photorque {
 
-// The median; of an even count, the larger of the two in the middle. There must be a number.
+// The median; for an even count, the larger of the two middle values. `values` must not be empty.
 inline double upper_median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());

@@ -1,8 +1,8 @@
-// Four numbers in one vector register: the base of all arithmetic on several numbers at a time.
+// Four numbers in one vector register: the base of all arithmetic on several numbers at once.
 //
-// The compiler's own vectors, so that + − · / and comparisons are its operators and `mask ? a : b`
-// selects number by number. Eight at a time are Lanes (lanes.h), with derivatives DualLanes
-// (dual.h).
+// A Quad is a vector of the compiler: + − · / and comparisons are its operators, and `mask ? a : b`
+// selects number by number. Lanes (lanes.h) are eight numbers, DualLanes (dual.h) eight numbers
+// with derivatives.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,7 +36,7 @@ inline double sum_of(Quad x) {
   return (x[0] + x[1]) + (x[2] + x[3]);
 }
 
-// a · b + c, rounded once where the machine can.
+// a · b + c, rounded once on machines with fused multiply-add.
 inline Quad multiply_add(Quad a, Quad b, Quad c) {
 #ifdef __FMA__
   return reinterpret_cast<Quad>(_mm256_fmadd_pd(
@@ -53,7 +53,7 @@ inline bool any_of(QuadBits mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
 }
 
-// a where the mask holds, b elsewhere; for code that is written once for numbers and vectors.
+// a where the mask is set, otherwise b; for code that is written once for numbers and vectors.
 inline Quad select(QuadBits mask, Quad a, Quad b) {
   return mask ? a : b;
 }
@@ -64,7 +64,7 @@ inline double select(bool condition, double a, double b) {
 inline Quad abs(Quad x) {
   return reinterpret_cast<Quad>(bits_of(x) & std::numeric_limits<int64_t>::max());
 }
-// As std::max and std::min: a where one of them is NaN.
+// Like std::max and std::min, they return a if a or b is NaN.
 inline Quad max(Quad a, Quad b) {
   return a < b ? b : a;
 }
@@ -76,8 +76,8 @@ inline QuadBits is_finite(Quad x) {
   return abs(x) <= std::numeric_limits<double>::max();
 }
 
-// A function of Eigen's arrays, number by number: rounded correctly for the root, to one unit in
-// the last place for exp and log.
+// Applies a function of Eigen's arrays to each number. The square root is correctly rounded; exp
+// and log are accurate to one unit in the last place.
 template <class Function>
 Quad as_array(Quad x, const Function& function) {
   Eigen::Array4d array;
@@ -95,11 +95,12 @@ inline Quad log(Quad x) {
   return as_array(x, [](const auto& a) { return a.log(); });
 }
 
-// Four rows of four numbers become four columns.
+// The columns of a matrix of four rows of four numbers.
 struct FourColumns {
   Quad a, b, c, d;
 };
 
+// Transposes the rows a, b, c, d.
 inline FourColumns transposed(Quad a, Quad b, Quad c, Quad d) {
   const Quad ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6);
   const Quad ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);

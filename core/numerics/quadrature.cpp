@@ -49,7 +49,7 @@ std::span<const QuadratureNode> gauss_legendre(size_t n) {
 }
 
 // With c_0² = m and c_{n+1} = (a_n − b_n)/2 = c_n²/(4 a_{n+1}), E = K (1 − Σ 2^{n−1} c_n²). The
-// terms from n = 1 on, `rest`, are small for small m without a difference being taken.
+// terms from n = 1 on, `rest`, are computed without cancellation for small m.
 EllipticIntegrals complete_elliptic(double m, double complement) {
   double a = 1.0, b = std::sqrt(complement);
   double c = 0.5 * m / (1.0 + b);  // (1 − b)/2

@@ -9,8 +9,8 @@ namespace {
 
 using namespace sobol_matrices;
 
-// Contribution of each byte of the index: [dimension][byte][value]. The lowest byte is that of a
-// block.
+// Contribution of each byte of the index: [dimension][byte][value]. The lowest byte is the index
+// within a block.
 using ByteTables = std::array<std::array<std::array<uint32_t, 256>, 4>, sobol_dimensions>;
 constexpr ByteTables make_byte_tables() {
   ByteTables tables{};
@@ -65,7 +65,7 @@ uint32_t combine(const std::vector<uint32_t>& basis, uint32_t which) {
   return sum;
 }
 
-// Equations over the bits of an index, each with a pivot bit that no other has.
+// Equations over the bits of an index, each with a pivot bit that no other equation contains.
 struct Equations {
   std::vector<uint32_t> row, pivot;  // pivot: one bit set
 
@@ -103,7 +103,7 @@ SobolCells::SobolCells(int log2_points, const std::array<int, sobol_dimensions>&
   cell_basis_ = equations.pivot;
   uint32_t pivots = 0;
   for (const uint32_t pivot : equations.pivot) pivots |= pivot;
-  for (int k = 0; k < log2_points; ++k) {  // each free bit with the pivots that undo it
+  for (int k = 0; k < log2_points; ++k) {  // each free bit with the pivots that cancel it
     const uint32_t free = uint32_t{1} << k;
     if ((pivots & free) != 0) continue;
     uint32_t vector = free;

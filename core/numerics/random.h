@@ -1,5 +1,5 @@
-// Counter-based randomness: every number is a hash of its purpose, so that no order of work can
-// change it. Owen-scrambled Sobol points, in blocks and in cells.
+// Counter-based random numbers: every number is a hash of its purpose, so the order of computation
+// has no influence. Owen-scrambled Sobol points, in blocks and in cells.
 #pragma once
 
 #include <array>
@@ -46,9 +46,9 @@ inline constexpr int sobol_dimensions = 4;
 // Points per block; blocks start at multiples of this.
 inline constexpr uint32_t sobol_block = 256;
 
-// Which scrambled sequence: every different (seed, stream, group) gives an independent scrambling
-// of the same point set. `group` 0 keeps the order of the points (so blocks stay well distributed
-// among themselves); other groups also scramble the order and serve as padding.
+// Identifies a scrambled sequence: every (seed, stream, group) gives an independent scrambling of
+// the same point set. Group 0 keeps the order of the points, so that blocks remain well distributed
+// among themselves. Other groups also scramble the order and serve as padding.
 struct SobolStream {
   uint64_t seed = 0;
   uint64_t stream = 0;
@@ -60,8 +60,8 @@ struct SobolStream {
 void sobol_points(const SobolStream& stream, uint32_t first,
                   const std::array<uint32_t*, sobol_dimensions>& out);
 
-// Single points of a stream, any group. Holds the stream's scrambling ready: make one for many
-// points.
+// Single points of a stream, of any group. The constructor prepares the scrambling, so one object
+// should serve many points.
 class SobolSequence {
  public:
   explicit SobolSequence(const SobolStream& stream);
@@ -80,7 +80,8 @@ constexpr double sobol_fraction(uint32_t bits) {
   return (static_cast<double>(bits) + 0.5) * 0x1p-32;
 }
 
-// Sobol points cell by cell: neighbours of the unit hypercube together, without sorting.
+// Sobol points cell by cell: points that are neighbours in the unit hypercube are generated
+// together, without sorting.
 //
 // The leading bits of the coordinates of a Sobol point are linear in the bits of its index, over
 // the field of two elements. All indices whose points share given leading bits therefore form an
@@ -103,7 +104,8 @@ class SobolCells {
               const std::array<uint32_t*, sobol_dimensions>& out, uint32_t* index) const;
 
  private:
-  // Indices whose sums (exclusive or) are one index of every cell, and all indices of the first.
+  // Bases of subspaces over exclusive or: sums of `cell_basis_` give one index in every cell, and
+  // sums of `inner_basis_` all indices of the first cell.
   std::vector<uint32_t> cell_basis_, inner_basis_;
   // The first block of the first cell: indices, and points before scrambling, their bits reversed.
   std::array<uint32_t, sobol_block> block_index_;

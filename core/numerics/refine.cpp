@@ -37,7 +37,7 @@ class RotationTableBuilder {
   static constexpr int32_t lattice = 1 << 20;
   static constexpr int max_level = 12;
 
-  // half, lattice x and y, and the turn ψ in 2^20ths of the period.
+  // half, lattice x and y, and the turn ψ in units of 2^−20 of the period.
   using Key = std::tuple<int, int32_t, int32_t, int32_t>;
 
   struct Deviation {
@@ -48,7 +48,7 @@ class RotationTableBuilder {
     const double angle = options_.max_angle_rad;
     both_halves_ = angle > 0.5 * pi;
     table_.axis_from_lab_ = options_.axis_from_lab;
-    // Squares about the discs; a hair wider, so that the disc's rim is inside.
+    // Squares around the discs, slightly wider so that the rim of the disc is inside.
     table_.half_width_ = 1.0001 * radius_at(std::min(angle, 0.5 * pi));
     table_.twists_ = 2;
   }
@@ -91,8 +91,8 @@ class RotationTableBuilder {
     }
   }
 
-  // The difference of two samples over the allowed one: the tolerance, and 4.5 standard errors of
-  // their difference. The scatter of the table's own values is that of a sample.
+  // The difference of two samples relative to the allowed difference: the tolerance plus 4.5
+  // standard errors of the difference. The scatter of the table's own values is that of a sample.
   double excess(std::span<const double> value, const RotationSample& truth, double fraction) const {
     double worst = 0.0;
     for (size_t c = 0; c < truth.value.size(); ++c) {
@@ -105,7 +105,7 @@ class RotationTableBuilder {
     return worst;
   }
 
-  // Numbers of (0, 1) for the choice of attitudes.
+  // Random numbers in (0, 1) for the choice of attitudes.
   double uniform(uint64_t index, uint64_t dimension) const {
     return unit_interval(hash_words(options_.seed, 0x6174746974756465ull, index, dimension));
   }
@@ -121,8 +121,7 @@ class RotationTableBuilder {
     point.twist_rad = 2.0 * pi * uniform(index, 2);
     if (both_halves_ && uniform(index, 3) < 0.5) {
       point.half = 1;
-      // The part of the other half that is nearer to its pole than the largest angle allows is not
-      // visited.
+      // The part of the other half around its pole is beyond the largest angle and is not sampled.
       const double least = radius_at(pi - options_.max_angle_rad);
       if (radius < least) point.half = 0;
     }
@@ -133,7 +132,7 @@ class RotationTableBuilder {
 
   void find_symmetry() {
     report_progress("looking for symmetry");
-    constexpr double by[] = {1.0, 2.4};  // turns without a common measure
+    constexpr double by[] = {1.0, 2.4};  // angles without a common measure
     std::vector<Quat> attitudes;
     for (uint64_t i = 0; i < pilots; ++i) {
       RotationPoint point = random_point(i);
@@ -188,7 +187,8 @@ class RotationTableBuilder {
     return weights;
   }
 
-  // As many values of ψ as the pilots need.
+  // Doubles the number of values of ψ until the pilot attitudes are interpolated within half the
+  // allowed error.
   void find_twists() {
     for (size_t count = 4; count <= max_twists; count *= 2) {
       report_progress("refining over the yaw");
@@ -254,14 +254,14 @@ class RotationTableBuilder {
     return keys;
   }
 
-  // Whether a point of the square is an attitude that may be asked for.
+  // Whether a point of the square is an attitude within the largest angle.
   bool inside(int half, int32_t x, int32_t y) const {
     const double radius = std::hypot(coordinate(x), coordinate(y));
     if (half == 1) return radius <= radius_at(0.5 * pi);
     return radius <= radius_at(std::min(options_.max_angle_rad, 0.5 * pi));
   }
 
-  // Whether any point of a cell may be asked for.
+  // Whether a cell contains an attitude within the largest angle.
   bool reaches(const Cell& cell) const {
     const auto nearest = [&](int32_t from, int32_t width) {
       return coordinate(std::clamp(lattice / 2, from, from + width));
@@ -282,7 +282,7 @@ class RotationTableBuilder {
     for (size_t i = 0; i < keys.size(); ++i) known_.emplace(keys[i], samples[i]);
   }
 
-  // Gives a leaf its own nodes.
+  // Sets the nodes of a leaf.
   void fill(const Cell& cell) {
     Box& box = table_.boxes_[cell.box];
     box.node_x = box.x;
@@ -300,7 +300,7 @@ class RotationTableBuilder {
     }
   }
 
-  // The trigonometric polynomial through the values over ψ, as RotationTable keeps it.
+  // The trigonometric polynomial through the values over ψ, as stored by RotationTable.
   // Source: A. Zygmund, Trigonometric Series, ch. X (of an even count the last term is a cosine).
   void add_harmonics(const Cell& cell, size_t node) {
     const size_t count = table_.twists_;
@@ -342,7 +342,7 @@ class RotationTableBuilder {
     pending_ = leaves_;
   }
 
-  // Cuts a leaf in four; its parts go on with its polynomial until they have their own.
+  // Cuts a leaf into four parts, which use its polynomial until they have their own.
   std::vector<Cell> cut(const Cell& cell) {
     const auto first = static_cast<int32_t>(table_.boxes_.size());
     const Box parent = table_.boxes_[cell.box];
@@ -388,7 +388,7 @@ class RotationTableBuilder {
     return excess(value, known_.at(key), 1.0);
   }
 
-  // Level by level, the worst leaves first where not all can be afforded.
+  // Refines level by level. If `max_samples` does not suffice, the worst leaves are cut first.
   void refine() {
     while (!pending_.empty()) {
       std::set<Key> wanted;
@@ -430,7 +430,8 @@ class RotationTableBuilder {
     throw NumericalError("no leaf of the table of light over attitude");
   }
 
-  // New attitudes give the error. Leaves that fail are cut, and others checked then.
+  // Measures the error at new attitudes. Leaves that fail are cut, and further attitudes are
+  // tested.
   void check() {
     constexpr int rounds = 4;
     uint64_t next = 1000;
@@ -499,7 +500,7 @@ class RotationTableBuilder {
   bool both_halves_ = false;
   size_t evaluated_ = 0;
   std::map<Key, RotationSample> known_;
-  std::map<std::tuple<int, int32_t, int32_t>, size_t> index_;  // of the nodes among the values
+  std::map<std::tuple<int, int32_t, int32_t>, size_t> index_;  // place of a node's values
   std::vector<Cell> leaves_, pending_;
   std::vector<double> noise_squares_;
   std::vector<size_t> noise_counts_;

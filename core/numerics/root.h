@@ -1,5 +1,5 @@
-// Roots inside a bracket, by searches that cannot fail: bisection, Newton's method kept inside the
-// bracket, and for falling functions with known curvature a method of third order.
+// Roots inside a bracket, by methods that always converge: bisection, Newton's method limited to
+// the bracket, and a method of third order for falling functions with known curvature.
 #pragma once
 
 #include <algorithm>
@@ -19,11 +19,11 @@ struct RootBracket {
 
 struct BisectionEnd {
   int max_rounds = 200;
-  double relative_width = 0.0;  // of |high|
+  double relative_width = 0.0;  // fraction of |high|
 };
 
-// Halves [low, high], where `is_below(x)` is whether x lies below the root, until the bracket is as
-// narrow as `end` asks for or its ends are neighbouring numbers.
+// Halves [low, high] until the bracket is as narrow as `end` requires or its ends are neighbouring
+// numbers. `is_below(x)` returns whether x lies below the root.
 template <typename Predicate>
 RootBracket bisect(double low, double high, const Predicate& is_below, BisectionEnd end = {}) {
   for (int round = 0; round < end.max_rounds; ++round) {
@@ -38,11 +38,12 @@ RootBracket bisect(double low, double high, const Predicate& is_below, Bisection
 // The values of a function at x that newton_root() needs.
 struct NewtonStep {
   bool is_below;  // x lies below the root
-  double length;  // from x to where Newton's method leads; 0: x is the root
+  double length;  // Newton's step from x; 0: x is the root
 };
 
-// The root between `low` and `high` from the start x, by Newton's method; bisection whenever a step
-// leaves the bracket or is not half the one before. Ends with a step of at most `tolerance`·|x|.
+// The root between `low` and `high` by Newton's method from x. A step that leaves the bracket, or
+// is longer than half of the previous one, is replaced by bisection. Ends with a step of at most
+// `tolerance`·|x|.
 template <typename Function>
 double newton_root(double low, double high, double x, double tolerance, const Function& step_at) {
   double last_step = high - low;
@@ -64,22 +65,23 @@ double newton_root(double low, double high, double x, double tolerance, const Fu
 struct FunctionAt {
   double value = 0.0;
   double slope = 0.0;
-  double curvature = 0.0;  // 0 where it is not known: only the speed depends on it
-  double third = std::numeric_limits<double>::quiet_NaN();  // NaN where it is not known
-  // Whether the derivatives describe the function as far as the root; the search does not end
-  // before. On a straight part they do not show where it ends.
+  double curvature = 0.0;  // 0 if unknown: it affects only the speed
+  double third = std::numeric_limits<double>::quiet_NaN();  // NaN if unknown
+  // Whether the derivatives describe the function as far as the root. The search does not end while
+  // this is false, because derivatives on a straight part do not show where that part ends.
   bool close = true;
 };
 
-// One step towards the root of a number or of lanes: the inverse function's series as far as
-// derivatives are known.
+// One step towards the root, of a number or of lanes: the series of the inverse function up to the
+// known derivatives.
 template <class T>
 struct RootStep {
   T length;
-  T left;  // estimate of the error after it; ∞ without third derivative
+  T left;  // estimate of the remaining error; ∞ without third derivative
 };
 
-// With f″ where its term is small enough to be trusted: Chebyshev's method.
+// Chebyshev's method: Newton's step with the term of f″, if that term is small enough to be
+// accurate.
 // Source: J. F. Traub, Iterative Methods for the Solution of Equations (1964), section 5.1.
 template <class T>
 T second_order_length(const T& newton, const T& bend) {
@@ -88,6 +90,8 @@ T second_order_length(const T& newton, const T& bend) {
   return -newton * select(abs(bend) < 0.5, 1.0 + bend, 1.0 + T{});
 }
 
+// Step with derivatives up to the third one. If its terms are too large, second_order_length() is
+// used.
 template <class T>
 RootStep<T> third_order_step(const T& value, const T& slope, const T& curvature, const T& third) {
   using photorque::abs;
@@ -101,7 +105,7 @@ RootStep<T> third_order_step(const T& value, const T& slope, const T& curvature,
   const T bend = 0.5 * newton * curvature * inverse_slope;
   const T twist = newton * newton * third * inverse_slope / 6.0;
   const T q2 = max(bend * bend, abs(twist));
-  // The next term is of third order in q; third derivatives are good to 1e-3.
+  // The next term is of third order in q; third derivatives are accurate to 1e-3.
   const T left = abs(newton) * q2 * (sqrt(q2) + 2e-3);
   return {select(q2 < 0.09, -newton * (1.0 + bend + 2.0 * bend * bend - twist),
                  second_order_length(newton, bend)),
@@ -116,13 +120,13 @@ inline RootStep<double> root_step(const FunctionAt& f) {
           std::numeric_limits<double>::infinity()};
 }
 
-// The root of a falling function on [low, high], where it is ≥ 0 at low and ≤ 0 at high (rounding
-// aside). From `guess` (the middle where it is not finite), Newton's method with the terms of
-// second and third order; bisection whenever a step leaves the bracket or is not half the one
-// before. Ends with a step that is at most `tolerance`·|x|, and applies it: the error left is of
-// third order in it with the curvature, of second order without. Where third derivatives are known,
-// it must also be below 1e-12·|x| by estimate, so that `tolerance` may be large: the function is
-// then evaluated no more than needed.
+// The root of a falling function on [low, high], which is ≥ 0 at low and ≤ 0 at high (except for
+// rounding). The search starts from `guess`, or from the middle if that is not finite. It is
+// Newton's method with the terms of second and third order. A step that leaves the bracket, or is
+// longer than half of the previous one, is replaced by bisection. The search ends with a step of at
+// most `tolerance`·|x|, which is applied: the remaining error is of third order in this step with
+// the curvature, of second order without. If third derivatives are known, the estimated error must
+// also be below 1e-12·|x|. `tolerance` may then be large, which saves evaluations of the function.
 template <typename Function>
 double falling_root(double low, double high, double guess, double tolerance, Function&& function) {
   double x = std::isfinite(guess) ? std::max(low, std::min(guess, high)) : std::midpoint(low, high);

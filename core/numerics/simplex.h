@@ -13,9 +13,9 @@ struct Minimum {
   double value = 0.0;
 };
 
-// The downhill simplex of Nelder and Mead (The Computer Journal 7, 308, 1965), from `start` and the
-// points one `step` away along each axis, until the values of the corners are within `tolerance`.
-// Local; f may be infinite away from the start.
+// The downhill simplex of Nelder and Mead (The Computer Journal 7, 308, 1965). It starts from
+// `start` and the points one `step` away along each axis, and ends when the values at the corners
+// are within `tolerance`. The minimum is local; f may be infinite away from the start.
 template <typename Function>
 Minimum simplex_minimum(const Function& f, const Eigen::VectorXd& start,
                         const Eigen::VectorXd& step, double tolerance, int max_evaluations = 400) {
@@ -64,8 +64,9 @@ Minimum simplex_minimum(const Function& f, const Eigen::VectorXd& start,
   return corners.front();
 }
 
-// Standard errors where f is minus twice the logarithm of a likelihood, from its curvature at the
-// minimum over `step`; infinite where it has none.
+// Standard errors if f is −2 times the logarithm of a likelihood, from the curvature of f at the
+// minimum by differences with `step`. Infinite if f is not finite near the minimum or the variance
+// is not positive; about 32 for a parameter without curvature.
 template <typename Function>
 Eigen::VectorXd likelihood_errors(const Function& f, const Minimum& minimum, double step = 0.05) {
   const Eigen::Index n = minimum.at.size();
@@ -85,7 +86,7 @@ Eigen::VectorXd likelihood_errors(const Function& f, const Minimum& minimum, dou
     }
   }
   if (!curvature.allFinite()) return Eigen::VectorXd::Constant(n, INFINITY);
-  // A direction in which nothing changes does not make the others unknown.
+  // A direction in which f is constant must not affect the errors of the others.
   curvature.diagonal().array() += 1e-3;
   const Eigen::VectorXd variance = curvature.inverse().diagonal();
   return variance.unaryExpr([](double v) { return v > 0.0 ? std::sqrt(v) : INFINITY; });

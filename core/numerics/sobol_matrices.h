@@ -1,4 +1,4 @@
-// The generator matrices and the scrambling behind the Sobol points of random.h; for its files
+// The generator matrices and the scrambling of the Sobol points of random.h; for the implementation
 // only.
 #pragma once
 
@@ -32,7 +32,7 @@ constexpr uint32_t scramble_reversed(uint32_t x, uint32_t seed) {
 }
 
 #ifdef __AVX2__
-// Eight numbers at a time: half-bytes by table, then the order of the bytes.
+// Reverses the bits of eight numbers at once: half-bytes by a table, then the order of the bytes.
 inline __m256i reverse_bits(__m256i x) {
   const __m256i half = _mm256_set1_epi8(0x0f);
   const __m256i reversed = _mm256_setr_epi8(0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15, 0,
@@ -57,7 +57,7 @@ inline __m256i scramble_reversed(__m256i x, uint32_t seed) {
 }
 #endif
 
-// Scrambles a block of points and turns their bits round: reversed[i] ^ common → fractions.
+// Scrambles the points reversed[i] ^ common of a block and reverses their bits into fractions.
 inline void scramble_block(const uint32_t* reversed, uint32_t common, uint32_t seed,
                            uint32_t* fraction) {
 #ifdef __AVX2__

@@ -9,7 +9,7 @@
 namespace photorque {
 namespace {
 
-// Coefficients of order m: their number, and where they begin among those of one kind.
+// The number of coefficients of order m, and the index of the first one among those of one kind.
 Eigen::Index count_of(int degree, int m) {
   return degree - m + 1;
 }
@@ -19,9 +19,9 @@ Eigen::Index first_of(int degree, int m) {
   return first;
 }
 
-// P̄_lm at one elevation for all l from m to `degree`.
-// Source: S. A. Holmes, W. E. Featherstone, Journal of Geodesy 76 (2002), eqs. 11 to 13 (the
-// standard forward columns; cos^m falls below the smallest number only where it does not matter).
+// P̄_lm at one elevation for all l from m to `degree`. Source: S. A. Holmes, W. E. Featherstone,
+// Journal of Geodesy 76 (2002), eqs. 11 to 13 (the standard forward columns; cos^m underflows only
+// where it is negligible).
 Eigen::VectorXd legendre(int degree, int m, double elevation_rad) {
   const double sine = std::sin(elevation_rad), cosine = std::cos(elevation_rad);
   double sectorial = 1.0;
@@ -40,7 +40,7 @@ Eigen::VectorXd legendre(int degree, int m, double elevation_rad) {
   return p;
 }
 
-// The root of the area that a node of each ring stands for.
+// Square root of the area that a node of each ring represents.
 Eigen::VectorXd ring_weights(std::span<const double> elevation_rad) {
   constexpr double pole = 1.57079632679489661923;
   const size_t count = elevation_rad.size();
@@ -66,7 +66,7 @@ SphereSeries SphereSeries::fit(int degree, std::span<const double> azimuth_rad,
   series.degree_ = degree;
   series.coefficients_ = Eigen::MatrixXd::Zero(2 * kind, values.cols());
   for (int m = 0; m <= degree; ++m) {
-    // Azimuths that lie evenly all round keep the orders apart.
+    // Evenly spaced azimuths make the orders independent.
     Eigen::MatrixXd cosines = Eigen::MatrixXd::Zero(rings, values.cols()), sines = cosines;
     const double scale = (m == 0 ? 1.0 : 2.0) / static_cast<double>(around);
     for (Eigen::Index a = 0; a < around; ++a) {

@@ -14,10 +14,10 @@ namespace photorque {
 
 class SphereSeries {
  public:
-  // By least squares with weights for the area that each node stands for. `azimuth_rad`: evenly all
-  // round, each once, at least 2 · degree + 1; `elevation_rad`: rising, within ±π/2, more than
-  // `degree`. A row of `values` for each node, elevation by elevation within azimuth by azimuth; a
-  // column for each function.
+  // Least-squares fit, weighted by the area that each node represents. `azimuth_rad`: evenly spaced
+  // over a full turn, each once, at least 2 · degree + 1. `elevation_rad`: ascending, within ±π/2,
+  // more than `degree`. `values` has a row for each node, elevation by elevation within azimuth by
+  // azimuth, and a column for each function.
   static SphereSeries fit(int degree, std::span<const double> azimuth_rad,
                           std::span<const double> elevation_rad, const Eigen::MatrixXd& values);
 
@@ -25,11 +25,11 @@ class SphereSeries {
   Eigen::Index functions() const { return coefficients_.cols(); }
   // The mean over the sphere of the product of two functions' parts of one degree.
   double mean_product(int of_degree, Eigen::Index first, Eigen::Index second) const;
-  // The functions that the columns of `mix` make of these.
+  // Linear combinations of these functions, with the coefficients in the columns of `mix`.
   SphereSeries combined(const Eigen::MatrixXd& mix) const;
   // Multiplies a function's part of one degree.
   void scale(int of_degree, Eigen::Index function, double factor);
-  // All functions at every node of such a grid.
+  // All functions at every node of a grid, in the order of fit().
   Eigen::MatrixXd on_grid(std::span<const double> azimuth_rad,
                           std::span<const double> elevation_rad) const;
   // All functions in one direction.

@@ -1,4 +1,4 @@
-// Readings of something that is held constant for intervals of time.
+// Readings of a quantity that is constant over intervals of time.
 #pragma once
 
 #include <cmath>
@@ -6,8 +6,8 @@
 
 namespace photorque {
 
-// Puts the mean of its steady interval in the place of each value. An interval ends where a value
-// is further than `most` from the mean so far.
+// Replaces each value by the mean of its steady interval. An interval ends at a value that differs
+// by more than `most` from the mean so far.
 inline void hold_means(std::span<double> values, double most) {
   for (size_t begin = 0, end = 0; begin < values.size(); begin = end) {
     double sum = 0.0;

@@ -40,7 +40,7 @@ Quat rotation_at(const RotationPoint& point) {
   const Quat swing = Quat(1.0, 0.5 * point.y, -0.5 * point.x, 0.0).normalized();
   const Quat twist(std::cos(0.5 * point.twist_rad), 0.0, 0.0, std::sin(0.5 * point.twist_rad));
   const Quat half = twist * swing;
-  // Back by half a turn about x the other way.
+  // Undoes the half turn about x.
   return point.half == 0 ? half : half * Quat(0.0, -1.0, 0.0, 0.0);
 }
 
@@ -52,7 +52,7 @@ namespace {
 
 constexpr int side = RotationTable::side;
 
-// The polynomials through values at 0, 1, … degree that are 1 at one of them, and their slopes.
+// Lagrange polynomials of the nodes 0, 1, … degree at one position: their values and slopes.
 struct Lagrange {
   std::array<double, side> weight, slope;
 
@@ -72,10 +72,10 @@ struct Lagrange {
 };
 
 constexpr size_t max_twists = 64;
-constexpr int64_t most_repeats = 1000;  // in a turn
+constexpr int64_t most_repeats = 1000;  // maximum periods in a turn
 
-// 1, cos θ, sin θ, cos 2θ, … and their slopes by ψ, θ = fold · ψ: what the `count` numbers that are
-// kept over ψ multiply.
+// Basis functions 1, cos θ, sin θ, cos 2θ, … with θ = fold · ψ, and their derivatives with respect
+// to ψ. The `count` numbers that are stored over ψ are their coefficients.
 struct Harmonics {
   std::array<double, max_twists> weight, slope;
 
@@ -162,7 +162,8 @@ void RotationTable::at(const Quat& lab_from_body, size_t first, std::span<double
   const Place where = place(lab_from_body, nullptr);
   const Lagrange x(where.x), y(where.y);
   const Harmonics twist(where.twist_rad, twists_, fold_);
-  // Over the nodes first, all harmonics and channels in one run where all channels are wanted.
+  // Sums over the nodes first. If all channels are required, all harmonics and channels are one
+  // run.
   const bool all = values.size() == channels_;
   const size_t rows = all ? 1 : twists_, length = all ? twists_ * channels_ : values.size();
   constexpr size_t usual = 512;
@@ -221,7 +222,7 @@ void RotationTable::at(const Quat& lab_from_body, size_t first, std::span<double
       }
     }
   }
-  // The chart sees axis_from_lab ⊗ q, which is linear in q.
+  // The coordinates depend on axis_from_lab ⊗ q, which is linear in q.
   const Quat& a = axis_from_lab_;
   const std::array<std::array<double, 4>, 4> turned = {{{a.w(), -a.x(), -a.y(), -a.z()},
                                                         {a.x(), a.w(), -a.z(), a.y()},
@@ -294,13 +295,13 @@ bool RotationTable::read(const std::string& bytes) {
   for (const int32_t root : table.roots_) {
     if (root >= boxes) return false;
   }
-  // In numbers that cannot overflow for any bytes.
+  // These comparisons cannot overflow, whatever the bytes are.
   if (channels > table.values_.size()) return false;
   const uint64_t samples = table.values_.size() / (twists * channels);
   for (int64_t index = 0; index < boxes; ++index) {
     const Box& box = table.boxes_[static_cast<size_t>(index)];
     const int64_t children = box.children;
-    // Children come after their parents: a circle would never end.
+    // Children must follow their parents, because a search would never end in a cycle.
     if (children >= 0 && (children <= index || children + 4 > boxes)) return false;
     for (const uint32_t sample : box.sample) {
       if (sample >= samples) return false;

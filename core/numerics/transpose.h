@@ -1,4 +1,4 @@
-// Records ↔ columns, in vector registers.
+// Conversion of records into columns in vector registers.
 #pragma once
 
 #include <array>

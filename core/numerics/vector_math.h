@@ -12,8 +12,8 @@
 
 namespace photorque {
 
-// A 32-bit fixed-point fraction as a double in (0, 1), the same as sobol_fraction(): exact. Through
-// signed integers, which AVX2 can convert.
+// A 32-bit fixed-point fraction as a double in (0, 1), exact and equal to sobol_fraction(). It
+// converts signed integers, because AVX2 has no conversion of unsigned ones.
 inline double fraction_of(uint32_t bits) {
   return (static_cast<double>(static_cast<int32_t>(bits ^ 0x80000000u)) + 2147483648.5) * 0x1p-32;
 }
@@ -45,7 +45,7 @@ struct CirclePoint {
   double sin;
 };
 inline CirclePoint circle_point(uint32_t bits) {
-  // In (−1/2, 1/2) turns: the sign bit read as such.
+  // The bits are read as a signed integer, which gives (−1/2, 1/2) turns.
   const double x = (static_cast<double>(static_cast<int32_t>(bits)) + 0.5) * 0x1p-32;
   const double size = x < 0.0 ? -x : x;
   const double to_half = 0.5 - size;
@@ -53,15 +53,16 @@ inline CirclePoint circle_point(uint32_t bits) {
   return {sin_quarter_turn(0.25 - size), sin_quarter_turn(x < 0.0 ? -folded : folded)};
 }
 
-// Sine and cosine in single precision, twice as many at a time.
+// Sine and cosine in single precision, with twice as many numbers in a register.
 
-// A whole number as a float, rounded once. In halves, because AVX2 converts only signed integers.
+// An integer as a float, rounded once. It is converted in halves, because AVX2 converts only signed
+// integers.
 inline float single_of(uint32_t number) {
   return static_cast<float>(static_cast<int32_t>(number >> 16)) * 65536.0f +
          static_cast<float>(static_cast<int32_t>(number & 0xffffu));
 }
 
-// A 32-bit fixed-point fraction in (0, 1], relative error below 2e-7 but for the smallest.
+// A 32-bit fixed-point fraction in (0, 1], relative error below 2e-7 except for the smallest.
 inline float single_fraction(uint32_t bits) {
   return (single_of(bits) + 0.5f) * 0x1p-32f;
 }

@@ -1,4 +1,4 @@
-// Mistakes in the keys of a file, from their declarations alone.
+// Errors in the keys of a file, from the declarations of the keys alone.
 #include <algorithm>
 
 #include "core/settings/keys.h"
@@ -47,7 +47,7 @@ class Misreading {
     return all;
   }
 
-  // A value that no choice accepts is wrong in any case.
+  // Reports a value that no choice accepts: it is wrong whatever the choice.
   void check_as_any(const SettingsNode& value, const std::vector<const Key*>& possible,
                     const std::string& key, const std::string& full) {
     std::vector<InputError> first;
@@ -61,7 +61,7 @@ class Misreading {
     errors_.insert(errors_.end(), first.begin(), first.end());
   }
 
-  // Whether every choice that brings keys is made, so that all keys are known.
+  // Whether the table states every choice that has further keys, so that all its keys are known.
   static bool is_chosen(const SettingsNode::Table& written, const std::vector<const Key*>& known) {
     return std::ranges::all_of(known, [&](const Key* key) {
       const auto brings = [](const Key::Choice& choice) { return !choice.keys.empty(); };
@@ -176,7 +176,7 @@ class Misreading {
 
   void number(const SettingsNode& value, const Key& key, const std::string& written,
               const std::string& full) {
-    // In the unit that the user chose, as the readers print it.
+    // The number in the user's unit, as the readers print it.
     const KeyUnit unit = unit_of_key(written);
     const auto* whole = std::get_if<int64_t>(&value.value);
     const auto* real = std::get_if<double>(&value.value);
@@ -239,7 +239,7 @@ class Misreading {
     if (value.is_number()) return Key::a_number;
     if (value.is_array()) return Key::an_array;
     if (value.is_table()) return Key::a_table;
-    // Dates are read as their text.
+    // Dates are read as text.
     return is_text(value) ? unsigned{Key::a_text} | Key::a_date : unsigned{Key::a_flag};
   }
 

@@ -1,4 +1,4 @@
-// Declarations shared by the files of this room.
+// Declarations shared by the files of this folder.
 #pragma once
 
 #include <map>
@@ -9,11 +9,11 @@
 
 namespace photorque {
 
-// The keys that were read and requested: shared by all views of one root, so that finish() on the
-// root sees the reads of every part of the program.
+// The keys that were read and requested. All views of one root share it, so that finish() on the
+// root covers the reads of every part of the program.
 struct Settings::Log {
   std::set<const SettingsNode*> read;
-  std::map<const SettingsNode*, std::set<std::string>> asked;  // table → keys asked for
+  std::map<const SettingsNode*, std::set<std::string>> asked;  // table → requested keys
 
   void mark_all(const SettingsNode& node) {
     read.insert(&node);
@@ -25,18 +25,18 @@ struct Settings::Log {
   }
 };
 
-// Twelve significant digits, as people write numbers.
+// A number with at most twelve significant digits, without trailing zeros.
 std::string format_setting(double x);
 
-// The key of the same quantity as the user wrote it in the table; `key` where there is none.
+// The key of the same quantity as the user wrote it in the table; `key` if there is none.
 std::string as_written(const SettingsNode& table, std::string_view key);
 
-// "a number in (0, 90] deg": `range` is SI, `factor` the unit's.
+// "a number in (0, 90] deg": `range` is SI, `factor` the SI value of the unit.
 std::string describe_range(Range range, double factor, const std::string& unit);
 bool is_inside(double x, Range range);
 // "one of "a", "b"".
 std::string one_of(const std::vector<std::string>& choices);
-// The expectation for a word that is none of them, with the most similar.
+// The expected words in place of `instead_of`, with a suggestion of the most similar one.
 std::string one_of(const std::vector<std::string>& choices, const std::string& instead_of);
 // The keys that are expected in the place of an unknown one.
 std::string expected_keys(std::string_view key, const std::set<std::string>& known);

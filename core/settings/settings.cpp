@@ -76,7 +76,7 @@ std::string nearest(std::string_view word, const std::set<std::string>& candidat
   std::string best;
   size_t best_distance = std::max<size_t>(2, word.size() / 2) + 1;
   for (const auto& candidate : candidates) {
-    // A name without its unit is as near as one wrong letter.
+    // A missing unit counts as one wrong letter.
     const bool lacks_unit = candidate.starts_with(std::string(word) + "_");
     const size_t distance = lacks_unit ? 1 : edit_distance(word, candidate);
     if (distance < best_distance) {
@@ -104,7 +104,7 @@ std::string listed_names(std::set<std::string> names, std::string_view wanted) {
   return text;
 }
 
-// The most similar of the known ones, else the first of them all.
+// The most similar known key, otherwise a list of the first known keys.
 std::string expected_keys(std::string_view key, const std::set<std::string>& known) {
   constexpr size_t most = 12;
   if (const std::string likest = nearest(key, known); !likest.empty()) {

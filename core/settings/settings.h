@@ -1,4 +1,4 @@
-// Typed access to the user's keys, of files and of the command line.
+// Typed access to the user's keys, in files and on the command line.
 //
 // A reader (TOML, glTF extras, command line) fills a tree of SettingsNode; the program reads it
 // through Settings. Every value is converted to SI here and nowhere else, from the unit that its
@@ -70,15 +70,15 @@ struct UncertainVec3 {
 // range.
 class Settings {
  public:
-  // `name` is how messages call this table; empty for the root of a file.
+  // `name` is the name of this table in messages; empty for the root of a file.
   explicit Settings(std::shared_ptr<const SettingsNode> root, std::string name = "");
   explicit Settings(SettingsNode root = {}, std::string name = "")
       : Settings(std::make_shared<const SettingsNode>(std::move(root)), std::move(name)) {}
 
   bool has(std::string_view key) const;
 
-  // The value of a key of core/settings/typed_keys.h, within its range; its default, or
-  // `otherwise`, where the user did not write it.
+  // The value of a typed key (core/settings/typed_keys.h) within its range. If the user did not
+  // write it: its default, or `otherwise`.
   template <class TypedKey>
   auto get(const TypedKey& key) const {
     return key.read(*this);
@@ -93,7 +93,7 @@ class Settings {
   double number_or(std::string_view key, double otherwise_SI, Range range = {}) const;
   Uncertain uncertain(std::string_view key, Range range = {}) const;
   UncertainVec3 uncertain_vector(std::string_view key) const;
-  // A real number without a fraction, 1e8, counts as whole.
+  // A real number without a fractional part, such as 1e8, is accepted.
   int64_t integer(std::string_view key, int64_t low, int64_t high) const;
   int64_t integer_or(std::string_view key, int64_t otherwise, int64_t low, int64_t high) const;
   bool flag_or(std::string_view key, bool otherwise) const;
@@ -111,9 +111,9 @@ class Settings {
   std::vector<double> numbers(std::string_view key, Range range = {}) const;
   std::vector<std::string> texts(std::string_view key) const;
 
-  // A sub-table; throws when absent.
+  // A sub-table; throws InputError if absent.
   Settings table(std::string_view key) const;
-  // One without keys when absent.
+  // A sub-table; without keys if absent.
   Settings table_or_empty(std::string_view key) const;
   // The tables of an array of tables, `[[key]]`; empty when absent. A single table counts as one.
   std::vector<Settings> tables(std::string_view key) const;
@@ -124,7 +124,7 @@ class Settings {
 
   InputLocation where() const;
   const std::string& name() const { return name_; }
-  // The error for a value of this table that is wrong for a reason of the caller.
+  // Creates an error about a value of this table, for checks by the caller.
   InputError error(std::string_view key, const std::string& found,
                    const std::string& expected) const;
 
@@ -162,9 +162,9 @@ KeyUnit unit_of_key(std::string_view key);
 // The candidate nearest to `word` by edit distance, or empty if none is similar.
 std::string nearest(std::string_view word, const std::set<std::string>& candidates);
 
-// The names that a message offers instead of `wanted`: "perhaps \"b\", of \"a\", \"b\" and 7 more",
-// at most 12 of them, the nearest by nearest() first. Empty names are left out; "none" if there is
-// no other.
+// The names that a message suggests instead of `wanted`: "perhaps \"b\", of \"a\", \"b\" and 7
+// more", at most 12, with the nearest by nearest() first. Empty names are left out; "none" if there
+// is no other.
 std::string listed_names(std::set<std::string> names, std::string_view wanted);
 
 }  // namespace photorque

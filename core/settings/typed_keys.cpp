@@ -7,8 +7,8 @@
 namespace photorque {
 namespace {
 
-// An SI number in the unit of the key, without the last bits that the conversion leaves: 1.8 and
-// not 1.8000000000000003.
+// An SI number in the unit of the key, without the rounding error of the conversion: 1.8 instead of
+// 1.8000000000000003.
 SettingsNode in_unit_of(std::string_view key, double x_SI) {
   const double x = x_SI / unit_of_key(key).to_SI;
   return {std::isfinite(x) ? std::stod(format_setting(x)) : x};

@@ -1,13 +1,13 @@
-// One constant for each key: its reader, the schema and the documents share it.
+// Typed keys: one constant for each key, shared by its reader, the schema and the documents.
 //
 //   constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi}, "the body's z axis leans by this");
 //
-//   settings.get(tilt)            its value in SI; the default where the user did not write it
-//   settings.has(tilt)            a key is its name where a name is expected
+//   settings.get(tilt)            its value in SI; the default if the user did not write it
+//   settings.has(tilt)            a key converts to its name
 //   Key::table("attitude", {tilt, heading}, "how the platform stands")      declares both
 //
-// Defaults and ranges are SI. A key without a default is required, unless its traits say otherwise:
-// then it is read by get_or(), or by get() behind has().
+// Defaults and ranges are SI. A key without a default is required, unless its traits make it
+// optional. An optional key is read by get_or(), or by get() after has().
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace photorque {
 // Further properties of a key: the members of Key.
 struct KeyTraits {
   bool optional = false;          // the table can do without it
-  std::string_view usually = {};  // likewise: its default in words, where it is no constant
+  std::string_view usually = {};  // default in words, if it is not a constant; implies `optional`
   bool completes = false;
   bool has_error = false;
   bool several = false;  // Key::or_array; get() reads one, Settings::numbers() several
@@ -41,7 +41,7 @@ struct TypedKey {
 
   constexpr operator std::string_view() const { return name; }
 
-  // The key with another meaning or need.
+  // Copies of the key with another meaning, or optional.
   constexpr Self meaning(std::string_view sentence) const {
     return changed([=](Self& key) { key.what = sentence; });
   }
@@ -195,7 +195,7 @@ struct ChoiceKey : TypedKey<ChoiceKey<count>> {
     return otherwise ? settings.choice_or(this->name, names, *otherwise)
                      : settings.choice(this->name, names);
   }
-  // Declares it with the keys that a table has beside each word, in the words' order.
+  // Declares the choice with the further keys of each word, in the order of the words.
   Key bringing(const std::vector<std::vector<Key>>& keys) const {
     Key key = this->declared(Key::Type::choice);
     for (size_t i = 0; i < count; ++i) {
@@ -238,7 +238,7 @@ struct NumbersKey : TypedKey<NumbersKey> {
   operator Key() const;
 };
 
-// A value of several forms (Key::Form), which its reader takes apart.
+// A value of several forms (Key::Form), which its reader interprets.
 struct OtherKey : TypedKey<OtherKey> {
   unsigned forms;
 
@@ -249,7 +249,7 @@ struct OtherKey : TypedKey<OtherKey> {
   operator Key() const;
 };
 
-// Keys of which a name and a sentence are all.
+// Keys that have only a name and a sentence.
 template <class Self>
 struct PlainKey : TypedKey<Self> {
   constexpr PlainKey(std::string_view key, std::string_view sentence, const KeyTraits& own = {})

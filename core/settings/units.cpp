@@ -12,7 +12,7 @@ struct Unit {
   double to_SI;
 };
 
-// Longest suffix first where one ends in another ("_N_m" before "_m").
+// The longest matching suffix counts ("_N_m" before "_m").
 constexpr Unit units[] = {
     {"kg_m2", "inertia", 1.0},
     {"Wh_kg", "specific energy", 3600.0},

@@ -45,7 +45,7 @@ std::string one_of(const std::vector<std::string>& choices, const std::string& i
 double Settings::to_number(const SettingsNode& node, std::string_view key, double factor,
                            Range range) const {
   log_->read.insert(&node);
-  // Messages are in the user's own unit.
+  // Messages use the user's unit.
   const auto wrong = [&](const std::string& expected) {
     return InputError(node.where, full_name(key), describe(node), expected);
   };
@@ -62,8 +62,9 @@ double Settings::to_number(const SettingsNode& node, std::string_view key, doubl
   }
   const double x = written * factor;
   if (!is_inside(x, range)) throw wrong(in_range());
-  // Squares and products stay finite and different from zero, angles keep digits within a turn, and
-  // places stay within what single precision can trace. The Sun and planets may be beyond that.
+  // These limits keep squares and products finite and different from zero, angles accurate within a
+  // turn, and positions within the range of single precision. Distances in au (the Sun, planets)
+  // may be larger.
   constexpr double smallest = 1e-100;
   if (x != 0.0 && std::abs(x) < smallest) throw wrong("0 or a size of at least 1e-100 in SI units");
   const KeyUnit unit = unit_of_key(key);

@@ -46,7 +46,7 @@ std::string with_true_minus(const std::string& ascii) {
   return text;
 }
 
-// U+0080 to U+009F, which some terminals obey as they do an escape.
+// Whether the character is one of U+0080 to U+009F, which some terminals treat as escape sequences.
 bool is_high_control(std::string_view character) {
   return character.size() > 1 && character[0] == '\xC2' &&
          static_cast<unsigned char>(character[1]) < 0xA0;
@@ -130,7 +130,7 @@ std::string readable_number(double value, int significant) {
   if (std::isnan(value)) return "–";
   if (std::isinf(value)) return value > 0 ? "∞" : "−∞";
   if (value == 0.0) return "0";
-  // Rounded first, so that 99999.7 is judged as the 1.000e5 that it prints as.
+  // Rounded first, so that the exponent is that of the printed number: 99999.7 prints as 1.000e5.
   const std::string scientific = printed("%.*e", significant - 1, value);
   const size_t e = scientific.find('e');
   const int exponent = std::stoi(scientific.substr(e + 1));

@@ -1,4 +1,4 @@
-// Text for files and pictures: clean, and numbers as people and as programs read them.
+// Formatting of text and numbers for files and figures.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace photorque {
 
-// Values as std::printf() writes them.
+// Formats values like std::printf().
 [[gnu::format(printf, 1, 2)]] std::string printed(const char* format, ...);
 
-// The items as texts, `separator` between each two.
+// The items as texts, with `separator` between them.
 template <class Items, class Text = std::identity>
 std::string joined_text(const Items& items, std::string_view separator, const Text& text = {}) {
   std::string all;
@@ -24,7 +24,7 @@ std::string joined_text(const Items& items, std::string_view separator, const Te
 }
 
 // Valid UTF-8 without control characters: others become U+FFFD or a space. Names come from users'
-// files, and one bad byte would stop cairo from drawing and a JSON file from being read.
+// files, and one invalid byte would make cairo and JSON readers fail.
 std::string clean_text(std::string_view text);
 
 // The number of leading bytes of `text` (valid UTF-8, not empty) that make one character.

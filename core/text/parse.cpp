@@ -91,7 +91,7 @@ void require_text(std::string_view begin, const InputLocation& where) {
   constexpr size_t enough = 4096;
   begin = begin.substr(0, enough);
   const bool marked = begin.starts_with("\xff\xfe") || begin.starts_with("\xfe\xff");
-  // Most letters of it have one byte that is zero: always the first, or always the second.
+  // In UTF-16 most letters have one zero byte: always the first, or always the second.
   std::array<size_t, 2> zeros = {0, 0};
   for (size_t i = 0; i < begin.size(); ++i) zeros[i % 2] += begin[i] == '\0' ? 1 : 0;
   const auto [few, many] = std::minmax(zeros[0], zeros[1]);
@@ -198,7 +198,7 @@ NumberColumns read_number_columns(const std::filesystem::path& path,
   std::vector<std::string_view> cells;
   for (std::string_view line; lines.next(line);) {
     split_cells(line, ',', cells);
-    // Decimal commas, say, which would shift what follows them.
+    // For example decimal commas, which would shift the following cells.
     if (cells.size() > result.header.size()) {
       throw InputError(lines.where(), "", "a row of " + std::to_string(cells.size()) + " cells",
                        std::to_string(result.header.size()) +

@@ -59,8 +59,8 @@ class DataLines {
   InputLocation where_;
 };
 
-// A whole text as a finite number, the same in every locale; a leading plus is accepted. Nothing
-// for anything else, blanks included.
+// A whole text as a finite number, the same in every locale; a leading plus is accepted. Returns
+// nothing for any other text, also with blanks.
 std::optional<double> number_in(std::string_view text);
 
 // A number that is required: InputError at `where` under the key `what`.
@@ -94,7 +94,7 @@ std::vector<std::string> read_column_names(const std::filesystem::path& path);
 struct JsonExtent {
   uint64_t values =
       0;          // upper limit: every value but the first follows one of [ { , : outside a string
-  int depth = 0;  // of brackets within each other; libraries recurse once per level
+  int depth = 0;  // nesting depth of brackets; libraries recurse once per level
 };
 
 JsonExtent extent_of_json(std::string_view text);

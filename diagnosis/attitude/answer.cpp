@@ -135,9 +135,10 @@ void keep_predictive_explanation(const RecordedData& data, const Thresholds& lim
                                  : "the best explanation does not predict the held-out data";
 }
 
-// Searches with the noise level of the readings. If the explanation changes the noise estimate, the
-// search is repeated with it. That includes known physics that explains most of the residual but
-// not all: what rang before may have been taken for noise that is correlated.
+// Searches with the noise level of the readings. The noise is then estimated again about the
+// explanation if the nominal model fitted too badly for that, or if known physics explains most of
+// the residual: an unexplained oscillation may have been taken for correlated noise. If the
+// estimate changes, the search is repeated with it.
 Answer at_noise_of_readings(const NominalModel& nominal, RecordedData& data,
                             const DiagnoseOptions& options, Fit& nominal_fit, const Trial* near) {
   constexpr double most_left = 0.5;
@@ -163,8 +164,8 @@ bool law_is_far_better(const Answer& a, const Thresholds& limits) {
   return is_law && law < limits.discrepancy.max_fraction_of_law * known;
 }
 
-// Describes the unexplained residual by a refined law in time. A name beside it that is within its
-// error in this description is dropped.
+// Describes the unexplained residual by a refined law in time. Effects named in addition to this
+// law are dropped if they are not significant in the refined fit.
 void describe(const RecordedData& data, const DiagnoseOptions& options, Answer& a) {
   if (a.decision.finding != inference::Finding::unknown) return;
   Trial& chosen = a.trials[a.decision.chosen];
@@ -188,15 +189,16 @@ void leave_unexplained(inference::Decision& decision) {
   decision.because = "the residual is far above the noise of the readings";
 }
 
-// Whether the full search is worthwhile: on an air bearing, or if attitude or position is measured.
+// Whether the motion is measured well enough for a full search: on an air bearing, or if attitude
+// or position is measured.
 bool is_watched(const NominalModel& nominal, const RecordedData& data) {
   const Observation& seen = data.train.front();
   return nominal.model.platform.has_air_bearing() || seen.sees_attitude() ||
          (seen.has(Scalar::position_x) && seen.has(Scalar::position_y));
 }
 
-// A body that turns about three axes has so many uncertain parameters that names in the presence of
-// a residual are spurious. Other bodies are simple.
+// Whether the body turns about one axis or slides. A body that turns about three axes has so many
+// uncertain parameters that effects named in the presence of a residual are spurious.
 bool is_simple(const NominalModel& nominal) {
   return nominal.model.platform.turns_about_one_axis() || nominal.model.platform.slides();
 }
@@ -206,8 +208,8 @@ bool is_simple(const NominalModel& nominal) {
 Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOptions& options,
                Fit& nominal_fit) {
   const Thresholds& limits = options.limits;
-  // If a sparsely measured machine is far from its recording, a search at the noise of the readings
-  // only distorts the nominal model.
+  // If the nominal model of a sparsely measured machine is far from the recording, a search at the
+  // noise level of the readings only distorts the nominal model.
   const bool is_far = !is_watched(nominal, data) &&
                       !(nominal_fit.chi2_per_sample() < limits.diverged_chi2_per_sample);
   const Platform& platform = nominal.model.platform;
@@ -215,7 +217,7 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
   Answer fine;
   if (!is_far) {
     fine = at_noise_of_readings(nominal, data, options, nominal_fit, nullptr);
-    // About one axis an empirical law does not replace known laws: they are named beside it.
+    // For rotation about one axis, known laws are named in addition to an empirical law.
     const bool may_name = fine.decision.leaves_more ||
                           (turns_alone && fine.decision.finding == inference::Finding::unknown);
     if (!may_name || (!turns_alone && law_is_far_better(fine, limits)) || !is_simple(nominal)) {

@@ -16,14 +16,14 @@ namespace photorque {
 struct Answer {
   Candidates all;
   std::vector<Trial> trials;
-  // Computed before the held-out runs are used, because all explanations of a diverged run differ
-  // by chance.
+  // Variables on which the nominal model's residual depends. Computed before the held-out runs are
+  // used, because all explanations of a diverged run differ by chance.
   std::vector<Where::Dependence> depends_on;
   inference::Decision decision;
   // Whether the decision treated the unexplained residual as noise.
   bool rest_is_noise = false;
-  // Set if so and if effects are named: gains in prediction for the names of the chosen trial.
-  // `sigma`: standard errors by which a name improves the prediction of segments.
+  // Set if `rest_is_noise` and effects are named: the evidence for each name of the chosen trial.
+  // `sigma` is the improvement of the prediction of segments by a name, in standard errors.
   struct WithDiscrepancy {
     size_t segments = 0;
     std::vector<double> sigma;                     // for each candidate of the chosen trial
@@ -51,6 +51,7 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
 // R. Statist. Soc. A 140 (1977) 48).
 std::optional<double> simpler_by(const Trial& first, const Trial& second, const Answer& answer);
 
+// Reports the name of a step to `options.progress`, if that is set.
 void tell(const DiagnoseOptions& options, const std::string& what);
 
 }  // namespace photorque

@@ -21,8 +21,8 @@
 namespace photorque {
 namespace {
 
-// Location of the differences; empty if the nominal model cannot be propagated, as they then differ
-// from the start.
+// Locates the differences between the readings and the nominal model. Returns an empty location if
+// the nominal model cannot be propagated: the two then differ from the start.
 Where locate_differences(const Fit& nominal_fit, const RecordedData& data,
                          const Thresholds::Location& limits) {
   try {
@@ -148,7 +148,7 @@ void warn_of_weak_holdout(Diagnosis& d) {
   }
 }
 
-// Whether every run stays within the rotation that a suspension line can be twisted by.
+// Whether the body turns less in every run than a suspension line can be twisted.
 bool turns_little(const std::vector<Observation>& runs, const Vec3& axis) {
   constexpr double most_rad = 30.0 * 2.0 * pi;
   return std::ranges::all_of(runs, [&](const Observation& seen) {
@@ -173,8 +173,8 @@ NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
       data.train.begin(), data.train.end(),
       [&](const Observation& seen) { return seen.measures_attitude(stated.model.platform); });
   const Platform& platform = nominal.model.platform;
-  // A twisted line or a weight exerts a restoring torque, from which rates alone determine an
-  // angle.
+  // A twisted line or a weight exerts a restoring torque that depends on the angle, so rates alone
+  // determine the angle.
   const bool turns_alone = platform.turns_about_one_axis() && !platform.slides();
   const bool may_twist =
       turns_alone && std::abs(platform.axis.z()) > 0.5 && turns_little(data.train, platform.axis);

@@ -322,7 +322,7 @@ double value_of(const std::string& variable, const AttitudeModel& model,
   return state.time_s;
 }
 
-// The law at one state: its torque, and how that changes with each of its parameters.
+// Torque of the law at one state, and its derivatives with respect to the parameters.
 struct TorqueAndSlopes {
   Vec3 torque_N_m = Vec3::Zero();
   Eigen::Matrix3Xd slopes;

@@ -18,7 +18,7 @@ namespace photorque {
 std::string with_error(double value, double sigma);
 
 struct EmpiricalFormula {
-  std::string text;        // with standard errors of its constants; empty: there is no short one
+  std::string text;  // with standard errors of its constants; empty if there is no short formula
   std::string looks_like;  // weak evidence: physics that commonly has this form
 };
 

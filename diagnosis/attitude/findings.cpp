@@ -374,7 +374,7 @@ std::vector<std::string> contradicted_priors(const Trial& chosen,
   size_t shared = 0;
   for (const Free& f : chosen.fit.best.free) {
     if (f.per_run) continue;
-    if (shared == chosen.fit.parameters.shared.size()) break;  // has not been fitted
+    if (shared == chosen.fit.parameters.shared.size()) break;  // not fitted yet
     const inference::Parameter& p = chosen.fit.parameters.shared[shared++];
     const auto& found = chosen.disturbances;
     const bool is_found = std::find(found.begin(), found.end(), f.disturbance) != found.end();

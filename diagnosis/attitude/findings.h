@@ -49,6 +49,7 @@ std::vector<FittedParameter> refined_priors(const Trial& chosen);
 // table for it.
 FoundEffect as_fitted(const Trial& chosen, size_t disturbance);
 
+// One sentence that states the verdict, for the top of the report.
 std::string sentence_of(const Diagnosis& diagnosis);
 
 }  // namespace photorque

@@ -13,7 +13,7 @@ namespace photorque {
 
 namespace {
 
-// In units of the mean moment, except for `least_sigma` [standard errors].
+// Limits in units of the mean moment, except for `least_sigma` [standard errors].
 constexpr double least_difference = 0.1, most_error = 0.05, least_sigma = 5.0;
 
 struct OneRecording {
@@ -155,7 +155,7 @@ struct Factor {
 
 // Minimum over factors from 0.3 to 3: grid search, then golden section.
 Factor best_factor(const std::vector<Observation>& pieces) {
-  constexpr double widest = 1.1, step = 0.1;  // of the logarithm
+  constexpr double widest = 1.1, step = 0.1;  // in the logarithm of the factor
   double best = 0.0, least = INFINITY;
   for (double log = -widest; log < widest + 0.5 * step; log += step) {
     const double left = left_by(std::exp(log), pieces);

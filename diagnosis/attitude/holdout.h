@@ -11,6 +11,7 @@ namespace photorque {
 Fit propagate_model(const Fit& fitted, const std::vector<Observation>& runs,
                     const Thresholds& limits);
 
+// χ² per sample and RMS residual of each channel for two fits to the same held-out runs.
 Holdout compare_holdout(const Fit& before, const Fit& after, const std::vector<Observation>& runs);
 
 // Readings and models over time for plots, of run number `run` in two fits to equal runs.

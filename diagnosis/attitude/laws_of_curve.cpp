@@ -15,7 +15,7 @@ struct Curve {
   std::vector<double> time_s, angle_rad, rate_rad_s;
 };
 
-// A cubic through the readings about one instant: value and slope there.
+// Value and slope at one reading of a cubic fitted to `reach` readings on each side.
 std::pair<double, double> local_cubic(const AxisReadings& read, size_t at, size_t reach) {
   const size_t first = at - std::min(at, reach), last = std::min(read.row.size(), at + reach + 1);
   const auto count = static_cast<Eigen::Index>(last - first);
@@ -82,7 +82,7 @@ PlatformState state_at(const AttitudeModel& model, const Curve& curve, size_t i)
   return state;
 }
 
-// ∫ of the acceleration by the model's disturbances along the curve.
+// Time integral of the angular acceleration by the model's disturbances along the curve [rad/s].
 Eigen::VectorXd impulse_of(const AttitudeModel& model, const Curve& curve) {
   const Vec3& axis = model.platform.axis;
   const double inertia_kg_m2 = axis.dot(model.platform.inertia_kg_m2 * axis);
@@ -100,7 +100,7 @@ Eigen::VectorXd impulse_of(const AttitudeModel& model, const Curve& curve) {
   return sum;
 }
 
-// A law's strength, and the rates that a unit of its scale causes in each run.
+// Strength of a law, and the rates that a strength of one scale unit causes in each run [rad/s].
 struct Strength {
   size_t law = 0, parameter = 0;
   std::vector<Eigen::VectorXd> rates = {};
@@ -108,7 +108,8 @@ struct Strength {
   bool is_used = true;
 };
 
-// Fits the used strengths to the rates that nothing else explains, and one initial rate a run.
+// Fits the used strengths and one initial rate per run to the rates that the stated laws do not
+// explain.
 void solve(const std::vector<Eigen::VectorXd>& rates, std::vector<Strength>& strengths) {
   constexpr double alike = 1e-5;
   Eigen::Index rows = 0, columns = static_cast<Eigen::Index>(rates.size());

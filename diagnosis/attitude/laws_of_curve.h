@@ -1,5 +1,5 @@
-// Strengths of laws of rotation about one axis from the recorded curve alone, without a fit: a
-// start that is near the readings over the whole recording.
+// Strengths of laws of rotation about one axis, computed from the recorded curve without a fit.
+// They are a start that is near the readings over the whole recording.
 #pragma once
 
 #include <vector>
@@ -13,20 +13,21 @@ namespace photorque {
 //
 //   ω(t) = ω₀ + Σ_k s_k ∫ a_k(θ, ω) dt,
 //
-// is linear in the strengths s_k of the laws (accelerations a_k per unit) and in one ω₀ a run. A
-// strength beyond its physical bounds is zero, and the others are computed again.
+// is linear in the strengths s_k of the laws (accelerations a_k per unit) and in one ω₀ per run. A
+// strength beyond its physical bounds is set to zero, and the others are recomputed.
 struct LawsOfCurve {
   inference::Members<Start> members;  // with a strength that is not zero
   std::vector<RunStart> begins;
 };
 
-// `nominal`: its trial, whose parameters are used at the values that the experiment states.
-// `candidates`: indices of the laws. No members where a run has too few readings.
+// `nominal`: trial of the nominal model; its parameters are set to the values that the experiment
+// states. `candidates`: indices of the laws. The result has no members if a run has too few
+// readings.
 LawsOfCurve laws_of_curve(const Trial& nominal, const Candidates& all,
                           const std::vector<size_t>& candidates,
                           const std::vector<Observation>& runs);
 
-// The trial with its own parameters at the values that the experiment states.
+// The trial with its parameters set to the values that the experiment states.
 Trial as_stated(Trial nominal);
 
 }  // namespace photorque

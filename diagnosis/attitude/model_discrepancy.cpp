@@ -22,8 +22,8 @@ void use_noise(const NoiseLevels& noise, RecordedData& data) {
   }
 }
 
-// Counts the residual of a fit to the train runs as noise, which follows its size in `parts` parts;
-// 0: it is equal everywhere.
+// Treats the residual of a fit to the train runs as noise. Its level is estimated separately in
+// each of `parts` parts of a run; 0: one level for all runs.
 void use_rest(const Fit& fit, const NoiseLevels& own, Remainder remainder, size_t parts,
               RecordedData& data) {
   const std::vector<Prediction> residuals = residuals_of(fit, data.train);
@@ -119,7 +119,7 @@ class Contest {
   // The trial without names that no segment requires.
   Trial needed_of(const Trial& trial) { return pruned(contender(trial)).trial; }
 
-  // For each name of the winner, the gain in prediction over its absence [standard errors].
+  // Gain in prediction by each name of the winner, compared with its absence [standard errors].
   const std::vector<double>& sigma() const { return sigma_; }
 
   // The winner without one name and without names that are then superfluous.
@@ -179,9 +179,9 @@ class Contest {
            without.trial.candidates.empty() || halves_held_out(without, with);
   }
 
-  // Standard errors by which a name improves the prediction of segments; 0 if it worsens that of
-  // the held-out data. Held-out data whose χ² it halves confirm the segments: 1.67 standard errors
-  // then count as three.
+  // Improvement of the prediction of segments by a name [standard errors]; 0 if the name worsens
+  // the prediction of the held-out data. If the name halves the χ² of the held-out data, the
+  // improvement is multiplied by 1.8, so 1.67 standard errors count as three.
   double missed(const Contender& without, const Contender& with) const {
     constexpr double by_chance = 3.0, confirmed = 1.8;
     const double scatter = std::sqrt(2.0 * with.held_samples);
@@ -191,12 +191,13 @@ class Contest {
     return gain_sigma(without.chi2, with.chi2) * (halves_held_out(without, with) ? confirmed : 1.0);
   }
 
-  // Whether the segments do not show `one` to predict worse than `other`.
+  // Whether `one` predicts the segments not significantly worse than `other` does.
   bool is_as_good(const Contender& one, const Contender& other) const {
     return gain_sigma(one.chi2, other.chi2) < limits_.min_rival_sigma;
   }
 
-  // Drag by a power of the rate that is no whole number may stand for a sum of two that are.
+  // Whether the trial has a drag with a non-integer power of the rate. Such a drag may imitate a
+  // sum of two drags with integer powers.
   bool has_broken_power(const Trial& trial) const {
     return std::ranges::any_of(trial.candidates, [&](size_t c) {
       const auto power = braking_power(answer_.all[c], answer_.trials.front().fit.best.model);
@@ -204,8 +205,9 @@ class Contest {
     });
   }
 
-  // Whether `one` is to be preferred to `other` where both predict alike: without a broken power,
-  // with fewer names, the simpler of two kinds of one law (simpler_by()), the more likely.
+  // Whether `one` is preferred to `other` if both predict equally well. The criteria are, in this
+  // order: no non-integer power of a drag, fewer names, the simpler of two kinds of one law
+  // (simpler_by()), the larger evidence.
   bool is_simpler(const Contender& one, const Contender& other) const {
     const bool broken = has_broken_power(one.trial);
     if (broken != has_broken_power(other.trial)) return !broken;
@@ -259,7 +261,7 @@ class Contest {
     for (size_t i = 0; i < terms.size(); ++i) {
       if (i != which) members.push_back({terms[i], {}});
     }
-    // Without this candidate the others may move far.
+    // Removing this candidate may move the other parameters far.
     const inference::Effort growing{.windows = answer_.all.limits.fitting.diverged_windows};
     return domain_.assemble(trial, members, train_, growing);
   }
@@ -322,8 +324,8 @@ void choose(const Contender& won, const Contest& contest, Answer& a) {
   a.beside->tied = contest.tied(won);
 }
 
-// In place of a search: the nominal model and every set of friction and drag beside the other laws
-// of `found`, all fitted with the noise of `data`.
+// Replaces a search: the nominal model and every set of friction and drag laws combined with the
+// other laws of `found`, all fitted with the noise of `data`.
 Answer sets_of_laws(const Fit& nominal_fit, const Trial& found, const RecordedData& data,
                     const DiagnoseOptions& options, const Candidates& all) {
   Answer a;
@@ -339,8 +341,8 @@ Answer sets_of_laws(const Fit& nominal_fit, const Trial& found, const RecordedDa
   return a;
 }
 
-// The sets beside those of the other laws that the segments require: without them, all sets would
-// contain laws that stand for friction and drag.
+// Sets of friction and drag laws combined only with those other laws that the segments require.
+// Otherwise all sets would contain laws that imitate friction and drag.
 Answer sets_of_needed_laws(const Fit& nominal_fit, const Trial& laws, const RecordedData& data,
                            const NoiseLevels& own, const DiagnoseOptions& options,
                            const Candidates& all) {
@@ -356,7 +358,7 @@ Answer sets_of_needed_laws(const Fit& nominal_fit, const Trial& laws, const Reco
 // Sets the finding and its probability, corrected for as many tests as there are candidates.
 void decide_with_discrepancy(Answer& a) {
   a.rest_is_noise = true;
-  a.depends_on.clear();  // laws in place of the names
+  a.depends_on.clear();  // computed for laws, which the names replace
   a.decision.finding = inference::Finding::unknown;
   a.decision.beside_law.clear();
   const double least = *std::ranges::min_element(a.beside->sigma);
@@ -396,8 +398,9 @@ bool is_consistent_with_noise(const Fit& fit, const RecordedData& data) {
 std::optional<Answer> identify_with_discrepancy(const NominalModel& nominal, RecordedData& data,
                                                 const DiagnoseOptions& options, const Trial* laws) {
   const NoiseLevels own = data.train.front().noise;
-  // The residual of all laws together is no missing effect. That of the nominal model may be one:
-  // it must not count less where it is largest.
+  // The residual of all laws together contains no missing effect, so its noise level may vary over
+  // a run. The residual of the nominal model may be a missing effect. It must not get less weight
+  // where it is largest.
   const size_t parts = laws != nullptr ? options.limits.discrepancy.segments : 0;
   std::optional<Answer> best;
   use_noise(noise_from_spread(data.train, own), data);

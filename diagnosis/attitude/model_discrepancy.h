@@ -20,21 +20,21 @@ Candidates candidates_among(Among among, const NominalModel& nominal,
 // are both measured, each reveals errors of the other instrument independently of the torque.
 Among among_with_discrepancy(const NominalModel& nominal, const RecordedData& data);
 
-// Whether the machine has no torques but those of a textbook: no commands, fields, wheels or light.
+// Whether the machine has textbook torques only: no commands, fields, wheels or light.
 bool is_of_textbook(const Candidates& all);
 
-// One search and its decision with the noise of `data`. It starts from `near`, a trial with no more
-// candidates, unless that is null.
+// One search and its decision with the noise of `data`. It starts from the trial `near`, unless
+// that is null. The candidates of `near` must be among those searched.
 Answer searched(const NominalModel& nominal, const Fit& nominal_fit, const RecordedData& data,
                 const DiagnoseOptions& options, Among among, const Trial* near);
 
 // Searches for effects in the presence of an unexplained residual, which counts as noise. With the
 // noise of the readings alone, the residual would bias every uncertain parameter. The noise is
-// first the residual of the nominal model, then that of the best explanation, as long as effects
-// are named. Every name must predict segments, each from fits to others, better than its absence,
-// and must differ from zero by its error under correlated noise. `data` keeps the noise of the last
-// search. `laws`, if not null, is a fit of torques to the same runs: its residual is the first
-// noise, and each search starts from it. Returns nothing if no effect is named.
+// first the residual of the nominal model. As long as effects are named, it is then the residual of
+// the best explanation. Every name must improve the prediction of segments from fits to other
+// segments, and must differ significantly from zero under correlated noise. `data` keeps the noise
+// of the last search. `laws`, if not null, is a fit of torques to the same runs: its residual is
+// the first noise, and each search starts from it. Returns nothing if no effect is named.
 std::optional<Answer> identify_with_discrepancy(const NominalModel& nominal, RecordedData& data,
                                                 const DiagnoseOptions& options, const Trial* laws);
 

@@ -20,7 +20,7 @@ namespace photorque {
 
 namespace {
 
-// Minimum number of blocks of a segment: enough to determine its initial conditions and some more.
+// Minimum number of blocks of a segment: more than its initial conditions require.
 constexpr size_t min_segment_blocks = 12;
 
 // Warns of rows that are omitted where a file is cut into segments.
@@ -74,7 +74,7 @@ void report_unused_columns(const NamedRecording& r, const NominalModel& nominal,
   if (!names.empty()) warnings.push_back(r.name + ": columns that are not used: " + names);
 }
 
-// Warns of an assumed sequence of angles, which only rates could test.
+// Warns of an assumed sequence of angles if no rates are recorded that could test it.
 void warn_of_assumed_sequence(const NamedRecording& r, const Platform& platform,
                               std::vector<std::string>& warnings) {
   const MotionColumns columns(r.recording, platform, r.name);
@@ -84,10 +84,10 @@ void warn_of_assumed_sequence(const NamedRecording& r, const Platform& platform,
                      "; there are no rates to test it; [recording] angle_sequence states it");
 }
 
-// A sliding body under forces commanded in response to its position hardly moves. Over a whole run
-// a model without any force, even the commanded one, then fits best (closed-loop identification, L.
-// Ljung, System Identification, 2nd ed. 1999, section 13.4). Short segments with separate initial
-// conditions make the forces visible.
+// A sliding body whose commanded forces respond to its position hardly moves. Over a whole run the
+// best fit is then a model without any force, even without the commanded one (closed-loop
+// identification, L. Ljung, System Identification, 2nd ed. 1999, section 13.4). In short segments
+// with separate initial conditions the forces are identifiable.
 void split_commanded_runs(const std::string& name, const Platform& platform, size_t segments,
                           std::vector<Observation>& all, std::vector<std::string>& warnings) {
   std::vector<Observation> result;
@@ -131,8 +131,8 @@ void leave_out_block(int channel, size_t block, Observation& seen) {
   }
 }
 
-// A counter at rest repeats the same rounding error with every reading. Of a long sequence of
-// identical values only a few evenly spaced ones are kept, because they are not independent.
+// A counter at rest repeats the same rounding error in every reading, so its readings are not
+// independent. Only a few evenly spaced ones of a long sequence of identical values are kept.
 void thin_repetitions(Observation& seen) {
   constexpr size_t most = 10;
   constexpr double rounding = 1e-12;
@@ -410,7 +410,7 @@ bool find_and_use_noise(const Fit& near, const Thresholds& limits, RecordedData&
   if (robustified) findings = find_noise(data.train, residuals_of(near, data.train), limits.noise);
   const NoiseLevels before = data.train.front().noise;
   const bool changed = use_noise(findings, data);
-  // The pseudo-values of heavy tails belong to this noise.
+  // The pseudo-values of heavy tails are computed with this noise.
   if (changed && !robustified) data.noise_before = before;
   return changed || robustified;
 }

@@ -44,10 +44,10 @@ DataQuality quality_of(const std::vector<NamedRecording>& recordings,
 // that cannot be propagated has infinite χ², and the noise remains as stated.
 Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data);
 
-// Estimates the noise about an explanation near the readings if the nominal model left it open. The
-// noise that was estimated about the nominal model may contain effects that it lacks: it is
-// replaced if the readings are quieter or less correlated about the explanation. Returns whether it
-// changed.
+// Estimates the noise about an explanation near the readings if the nominal model left it
+// undetermined. Noise that was estimated about the nominal model may contain effects that the model
+// lacks. It is replaced if the readings are quieter or less correlated about the explanation.
+// Returns whether the noise changed.
 bool estimate_noise_again(const Fit& explained, const Thresholds& limits, RecordedData& data);
 
 // Gyro bias that drifts within a recording.

@@ -16,7 +16,7 @@ namespace {
 constexpr double knot_distance_s = 6.5;
 constexpr size_t most_knots = 64;
 constexpr double typical_torque_N_m = 5e-6;
-constexpr int highest_order = 9;  // of a torque with a period
+constexpr int highest_order = 9;  // maximum order of a periodic torque
 
 std::vector<double> even_knots(double duration_s, size_t count) {
   std::vector<double> at;
@@ -109,7 +109,7 @@ class Refinement {
     return exchange(trial, all_, which_, all_.size() - 1, start, runs, settings);
   }
 
-  // Fits finer and finer tables to averages, then the finest to all readings.
+  // Fits tables of increasing resolution to averages, then the finest table to all readings.
   Trial table(double duration_s) {
     const auto finest =
         std::clamp<size_t>(static_cast<size_t>(duration_s / knot_distance_s), 8, most_knots);
@@ -135,8 +135,8 @@ class Refinement {
 
   // Starts from the period that explains most of the values of a table.
   Trial periodic(const Trial& table);
-  // Tries the simple laws again that follow the values of a table best. A fit from a nominal motion
-  // far from the readings may have missed them.
+  // Tries the simple laws that follow the values of a table best. A fit that started from a nominal
+  // motion far from the readings may have missed them.
   void consider_simpler(const Trial& table, size_t laws);
 
   void consider(const Trial& trial) {

@@ -63,7 +63,7 @@ Trial without_superfluous(Trial trial, const AttitudeDomain& domain, const Candi
   return trial;
 }
 
-// Fits the needed laws to longer and longer pieces; short ones determine them roughly.
+// Fits the needed laws to pieces of increasing length. Short pieces give only rough values.
 Trial lengthened(const Trial& in_pieces, const inference::RunSet<AttitudeDomain>& pieces,
                  const AttitudeDomain& domain, const Candidates& all,
                  const std::vector<Observation>& runs) {
@@ -86,8 +86,8 @@ size_t most_readings(const std::vector<Observation>& runs) {
   return most;
 }
 
-// Pieces in which the nominal model stays near the readings; the shortest that determine their
-// initial conditions if it does in none of the usual ones.
+// Pieces in which the nominal model stays near the readings. If it diverges in all usual pieces,
+// the shortest pieces that determine their initial conditions are returned.
 std::pair<inference::RunSet<AttitudeDomain>, Trial> near_short_pieces(
     const AttitudeDomain& domain, const Trial& nominal, const std::vector<Observation>& runs,
     const Thresholds& limits) {
@@ -101,8 +101,8 @@ std::pair<inference::RunSet<AttitudeDomain>, Trial> near_short_pieces(
   return {std::move(pieces), std::move(parted)};
 }
 
-// The laws fitted over the whole recordings from their strengths by the curve, over growing windows
-// if the whole is not reached at once.
+// Fits the laws to the whole recordings, starting from their strengths along the recorded curve.
+// Growing windows are used if a direct fit does not converge.
 std::optional<Trial> fit_from_curve(const Trial& nominal, const std::vector<size_t>& laws,
                                     const AttitudeDomain& domain, const Candidates& all,
                                     const std::vector<Observation>& runs) {
@@ -123,7 +123,7 @@ std::optional<Trial> fit_from_curve(const Trial& nominal, const std::vector<size
   return best;
 }
 
-// All laws fitted to short pieces, then to longer ones, finally to the whole recordings.
+// Fits all laws to short pieces, then to longer ones, finally to the whole recordings.
 std::optional<Trial> fit_growing(const Trial& nominal, const inference::Members<Start>& members,
                                  const AttitudeDomain& domain, const Candidates& all,
                                  const RecordedData& data) {
@@ -141,7 +141,8 @@ std::optional<Trial> fit_growing(const Trial& nominal, const inference::Members<
       return domain.refit(laws, data.train, domain.initial_conditions_from_data(laws, data.train),
                           growing);
     };
-    // The whole leaves more than the pieces, but not that much more.
+    // The fit to the whole recordings has a larger residual than the fit to pieces, but at most by
+    // this factor.
     constexpr double alike = 100.0, useless = 0.01;
     const double near_whole = alike * std::max(1.0, all_laws.fit.chi2_per_sample());
     const auto is_near = [&] {
@@ -154,7 +155,7 @@ std::optional<Trial> fit_growing(const Trial& nominal, const inference::Members<
       if (!is_near() && !(found.fit.chi2 < useless * nominal.fit.chi2)) return std::nullopt;
     }
   } else {
-    // Fewer readings than that hardly determine as many laws.
+    // Fewer readings than this hardly determine so many laws.
     constexpr double fewest_readings = 20.0;
     const size_t readings = most_readings(data.train);
     std::erase_if(growing.windows, [&](double part) {
@@ -162,8 +163,8 @@ std::optional<Trial> fit_growing(const Trial& nominal, const inference::Members<
     });
     found = domain.assemble(nominal, members, data.train, growing);
   }
-  // Collinear laws with opposite signs explain hardly more than those within physics. With rates
-  // alone they also follow any slow change, so no law below two standard errors is kept.
+  // Collinear laws with opposite signs hardly fit better than laws within physical bounds. With
+  // rates alone they also follow any slow change, so no law below two standard errors is kept.
   if (!is_consistent_with_noise(found.fit, data)) {
     constexpr double hardly = 2.0;
     Trial fewer = without_superfluous(found, domain, all, data.train, sees_angle ? 0.0 : 2.0);
@@ -225,7 +226,7 @@ std::vector<Trial> fit_sets_of_brakes(const Trial& nominal, const Trial& found,
     const auto power = power_of(term.candidate);
     (power ? brakes[*power] : others.emplace_back()) = {term, {}};
   }
-  // Sets of powers; 1.5 is an empirical mean of 1 and 2, which no sum needs.
+  // Sets of powers. A power of 1.5 is an empirical mean of 1 and 2, so sums do not need it.
   std::vector<inference::Members<Start>> sets;
   for (const auto& [power, brake] : brakes) sets.push_back({brake});
   std::erase_if(brakes, [](const auto& b) { return b.first != std::round(b.first); });

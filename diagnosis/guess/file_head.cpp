@@ -14,7 +14,7 @@
 
 namespace photorque {
 
-// A clock with large integer steps does not count seconds.
+// A clock with large integer steps does not count in seconds but in milliseconds or microseconds.
 std::string clock_unit(const FileHead& head, size_t column) {
   std::vector<double> steps;
   for (size_t i = 1; i < head.rows.size(); ++i) {
@@ -30,7 +30,7 @@ std::string clock_unit(const FileHead& head, size_t column) {
 
 namespace {
 
-// Accepts a decimal comma if it cannot be the separator.
+// Reads a number, also with a decimal comma if the comma is not the separator.
 std::optional<double> number_of_cell(std::string_view cell, char separator) {
   const std::optional<double> number = number_in(cell);
   const size_t comma = cell.find(',');
@@ -61,7 +61,7 @@ struct NumberedLine {
   std::string text;
 };
 
-// The first lines of a file without comments.
+// The first lines of a file, without comment lines.
 std::vector<NumberedLine> first_lines(const std::filesystem::path& path,
                                       const std::vector<std::string>& header) {
   constexpr size_t most = 400;
@@ -76,8 +76,8 @@ std::vector<NumberedLine> first_lines(const std::filesystem::path& path,
   return first;
 }
 
-// The first table between these separators; without names if the line above it has not as many
-// cells.
+// The first table with this separator. It has no column names if the line above it has a different
+// number of cells.
 std::optional<FileHead> table_in(const std::vector<NumberedLine>& lines, char separator,
                                  size_t fewest_cells) {
   std::vector<std::string_view> cells, before;
@@ -103,8 +103,8 @@ std::optional<FileHead> table_in(const std::vector<NumberedLine>& lines, char se
   return std::nullopt;
 }
 
-// Names for a table without a header: the column that rises is the time, one beside it an angle,
-// two are coordinates; of more nothing is known.
+// Proposed names for a table without a header. The increasing column is the time. One other column
+// is an angle, two are coordinates; more columns get numbers.
 std::string proposed_names(const FileHead& table) {
   const size_t width = table.rows.front().size();
   size_t time = 0;

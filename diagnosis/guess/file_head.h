@@ -11,7 +11,7 @@ namespace photorque {
 struct FileHead {
   std::vector<std::string> header;
   std::vector<std::vector<double>> rows;
-  int line = 0, first_row_line = 0;  // of the file
+  int line = 0, first_row_line = 0;  // line numbers in the file
   size_t names_above = 0;            // cells of the line above the first row
 };
 

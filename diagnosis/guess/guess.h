@@ -25,11 +25,13 @@ std::string guess_experiment(const std::vector<std::filesystem::path>& recording
 void guess_motion(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings,
                   const RecordingOptions& reading);
 
-// Columns of a curve by the names of a curve's columns ("voltage_V", "current_mA").
+// Columns of a current-voltage curve: channel ("voltage_V", "current_mA") → column of the file.
 struct GuessedCurve {
-  std::map<std::string, std::string> columns;  // empty: there are not one voltage and one current
+  std::map<std::string, std::string> columns;  // empty: not exactly one voltage and one current
   std::string because = {};                    // the assumption, if there is one
 };
+// Adds the table [module] for current-voltage curves. Throws InputError if a file contains another
+// kind of recording.
 void guess_module(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings,
                   const std::filesystem::path& folder, const GuessedCurve& named,
                   RecordingOptions reading);

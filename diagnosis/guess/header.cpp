@@ -175,7 +175,7 @@ std::optional<HeaderUnit> ratio(const std::string& above, const std::string& bel
   return std::nullopt;
 }
 
-// "rad/s" of "Rad pro Sekunde": small letters, one blank between words, none about a slash.
+// A unit as plain text, "rad/s": lower case, one blank between words, no blanks at a slash.
 std::string plain_unit(std::string_view text) {
   std::string kept;
   for (const char c : lower(ascii_of(text, true))) {
@@ -202,7 +202,7 @@ std::optional<HeaderUnit> with_exponent(std::string plain) {
   const size_t blank = plain.rfind(' ');
   if (blank != std::string::npos) return ratio(plain.substr(0, blank), plain.substr(blank + 1));
   if (const auto unit = ratio("1", plain)) return unit;
-  // "rads-1"
+  // A unit without a separator: "rads-1".
   for (size_t k = plain.size(); k-- > 1;) {
     if (const auto unit = ratio(plain.substr(0, k), plain.substr(k))) return unit;
   }
@@ -212,7 +212,7 @@ std::optional<HeaderUnit> with_exponent(std::string plain) {
 }  // namespace
 
 std::optional<HeaderUnit> unit_written(std::string_view text) {
-  // One letter has two meanings, by its size.
+  // The case of these letters determines the unit.
   static const std::vector<std::pair<const char*, HeaderUnit>> cased = {
       {"T", {"T", "magnetic field"}},    {"uT", {"uT", "magnetic field"}},
       {"nT", {"nT", "magnetic field"}},  {"mT", {"", "magnetic field"}},
@@ -309,7 +309,7 @@ std::vector<std::string> words_of_header(std::string_view text) {
 
 namespace {
 
-// Without a slash or "in" at the end, which stood before the unit.
+// The name without a slash or "in" at its end, which precede the unit.
 std::string_view before_unit(std::string_view name) {
   name = trimmed(name);
   while (name.ends_with('/') || name.ends_with(',') || name.ends_with(':')) {
@@ -349,7 +349,7 @@ Brackets brackets_in(std::string_view text) {
   return result;
 }
 
-// The unit at the end of a name: the longest piece after a blank or a mark that is one.
+// Reads the unit at the end of a name: the longest piece after a blank or a mark that is a unit.
 bool take_last_words(std::string_view text, HeaderCell& cell, std::string& name) {
   constexpr std::string_view marks = " _,:;-|=";
   for (size_t i = 1; i < text.size(); ++i) {
@@ -375,7 +375,7 @@ bool take_after_slash(std::string_view text, HeaderCell& cell, std::string& name
     if (!unit && i != text.find('/')) continue;
     const bool is_derivative = rest.starts_with("dt") && text.find('/', i + 1) == text.npos;
     if (!unit && is_derivative) return false;
-    // The first piece stands for an unknown unit until a later one is known.
+    // The first piece is kept as an unknown unit until a later one is recognised.
     if (!unit) {
       cell.unit_text = rest;
       name = before_unit(text.substr(0, i));
@@ -392,7 +392,7 @@ bool take_after_slash(std::string_view text, HeaderCell& cell, std::string& name
 bool is_bare_unit(std::string_view text) {
   if (text.empty() || !unit_written(text)) return false;
   constexpr std::string_view brackets = "([{";
-  // Single letters are names of quantities, but for seconds.
+  // Single letters are names of quantities, except s for seconds.
   return text.size() > 1 ? brackets.find(text.front()) != std::string_view::npos ||
                                text.find(" / ") == std::string_view::npos
                          : text == "s";
@@ -419,7 +419,7 @@ HeaderCell read_header_cell(const std::string& in_file) {
     cell.unit = unit_written(brackets.inside);
     const size_t comma = brackets.inside.find_last_of(",;");
     if (!cell.unit && comma != std::string::npos) {
-      // "Gyroscope (x, rad/s)"
+      // The unit may follow a comma: "Gyroscope (x, rad/s)".
       cell.unit = unit_written(std::string_view(brackets.inside).substr(comma + 1));
       name += " " + brackets.inside.substr(0, comma);
     }

@@ -1,4 +1,4 @@
-// One cell of a header as people write it: the words of its name, and its unit.
+// One cell of a header: the words of its name, and its unit.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 namespace photorque {
 
 struct HeaderUnit {
-  // As in names of channels ("deg_s"); empty: a channel cannot be named in this unit.
+  // Suffix in names of channels ("deg_s"); empty: channels cannot have this unit.
   std::string suffix;
   // "time", "angle", "angular rate", "frequency" (Hz), "per second" (1/s: radians or revolutions),
   // "length", "speed", "acceleration", "angular acceleration", "magnetic field", "voltage",
@@ -26,8 +26,8 @@ struct HeaderCell {
   // "gyroADC[0]" → "gyro", "adc", "0"; "Ángulo θ" → "angulo", "theta".
   std::vector<std::string> words;
   std::optional<HeaderUnit> unit;
-  std::string unit_text;         // as written; with no `unit`: unknown
-  bool is_bare_unit = false;     // nothing but a unit, and no words
+  std::string unit_text;         // as written; if `unit` is empty, an unknown unit
+  bool is_bare_unit = false;     // the cell contains a unit only
   bool is_between_bars = false;  // "|omega|"
   // A unit of one letter after a blank or an underscore, which may be a subscript: "theta_s".
   bool may_be_subscript = false;

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t fewest_readings = 20;  // as of Observation
+constexpr size_t fewest_readings = 20;  // minimum for an Observation
 
 std::string digits(double value, int significant = 3) {
   return printed("%.*g", significant, value);
@@ -44,7 +44,7 @@ struct Machine {
   std::vector<Observation> runs;
   std::optional<AngleConvention>
       angles;  // convention of roll, pitch and yaw of the first recording
-  // The gyro axis whose rates are those about `platform.axis`, if that has another letter.
+  // Gyro axis whose rates are taken as those about `platform.axis`, if the two axes differ.
   std::optional<int> rate_from;
 
   bool has(const char* channel) const { return recordings.front().find(channel) != nullptr; }
@@ -123,8 +123,8 @@ void add_inertia(TomlDocument& document, SettingsNode::Table& table,
                  const std::vector<Observation>& runs) {
   const std::optional<FreeInertia> found = free_inertia(runs);
   Mat3 value = Mat3::Identity(), sigma;
-  // To first order the magnitude of the rate of a sphere is constant for any moments, so different
-  // moments are assumed.
+  // If all moments are equal, the magnitude of the rate is constant to first order and does not
+  // determine them. Different moments are therefore assumed.
   if (!runs.front().has_gyro) value.diagonal() << 1.0, 0.8, 0.6;
   sigma << 0, 0.2, 0.2, 0.2, 0.4, 0.2, 0.2, 0.2, 0.4;
   constexpr double worth_saying = 0.1;
@@ -205,8 +205,9 @@ RestoringLaw law_of_swing(const std::vector<Observation>& runs, const Vec3& axis
   return law;
 }
 
-// A swing that the rates about body axis `k` show. A weight acts about a level axis, a spring about
-// any: rates about another body axis are read as those about the axis of the platform.
+// Detects a swing in the rates about body axis `k` and sets the axis of the platform. A weight acts
+// about a level axis. For a spring the upright axis is assumed. If that is not axis `k`, the rates
+// about `k` are taken as those about the platform's axis. Returns whether there is a swing.
 bool infer_oscillation_from_rates(Machine& m, int k, const std::string& seen) {
   const Vec3 axis = Vec3::Unit(k);
   const bool swings = std::ranges::any_of(
@@ -249,8 +250,8 @@ void infer_one_axis(Machine& m) {
   if (law != RestoringLaw::spring) m.observe_as(Topology::one_axis, Vec3::UnitX());
 }
 
-// The axis about which a body swings that three rates show: nearly all of their square is along one
-// line, whose largest component is returned. Nothing if they are not, or if they do not swing.
+// The body axis that is nearest to the line along which nearly all of the squared rate lies.
+// Returns nothing if there is no such line.
 std::optional<int> axis_of_swing(const std::vector<Observation>& runs) {
   constexpr double across = 0.2;
   Mat3 squares = Mat3::Zero();
@@ -278,7 +279,7 @@ std::optional<int> only_axis(const std::vector<Observation>& runs) {
   }
   int axis = 0;
   const double most = squares.maxCoeff(&axis);
-  constexpr double across = 0.05;  // of the rate: a slightly misaligned gyro
+  constexpr double across = 0.05;  // fraction of the rate: a slightly misaligned gyro
   if (squares.sum() - most > across * across * most) return std::nullopt;
   return axis;
 }
@@ -356,7 +357,8 @@ void infer_machine(Machine& m) {
       "bearing (\"free\" for what is in orbit or thrown).";
 }
 
-// Without the velocity of a coordinate that is recorded as well: it is usually computed from it.
+// Removes the velocity of a coordinate that is also recorded: it is usually computed from the
+// coordinate.
 std::vector<GuessedColumn> without_computed_velocity(std::vector<GuessedColumn> columns) {
   for (const std::string axis : {"x", "y"}) {
     const bool has_place = std::ranges::any_of(
@@ -387,7 +389,7 @@ void add_columns(TomlDocument& document, const std::vector<GuessedColumn>& colum
   }
 }
 
-// The columns with the rates about body axis `k` as those about the one axis.
+// Renames the rates about body axis `k` to rates about the single axis of rotation.
 std::vector<GuessedColumn> with_rate_from(std::vector<GuessedColumn> columns, int k) {
   const std::string gyro = std::string("gyro_") + "xyz"[k];
   for (GuessedColumn& c : columns) {
@@ -396,7 +398,7 @@ std::vector<GuessedColumn> with_rate_from(std::vector<GuessedColumn> columns, in
   return columns;
 }
 
-// Throws InputError for a file without a time or without anything that moves.
+// Throws InputError for a file without a time or without a channel of motion.
 void require_motion(const fs::path& path, const std::vector<GuessedColumn>& columns,
                     const RecordingOptions& reading) {
   if (is_message(path, "AEM")) return;

@@ -25,7 +25,7 @@ bool is_one_of(const std::string& word, std::initializer_list<const char*> of) {
   return std::any_of(of.begin(), of.end(), [&](const char* w) { return word == w; });
 }
 
-// The words of a name, for questions about them.
+// The words of a column name, with tests on them.
 struct Words {
   std::vector<std::string> all;
 
@@ -44,7 +44,7 @@ struct Words {
   }
 };
 
-// x, y or z: a separate word, the last letter of another, or a number of three.
+// x, y or z: a separate word, the last letter of another word, or one of three numbers.
 std::string axis_of(const Words& words, const std::vector<Words>& siblings) {
   for (const std::string& word : words.all) {
     if (is_one_of(word, {"x", "y", "z"})) return word;
@@ -56,7 +56,7 @@ std::string axis_of(const Words& words, const std::vector<Words>& siblings) {
       return last;
     }
   }
-  // Numbers are axes if all three are there, from 0 or from 1.
+  // Numbers are axes if columns exist for all three, counted from 0 or from 1.
   for (size_t place = 0; place < words.all.size(); ++place) {
     if (!is_one_of(words.all[place], {"0", "1", "2", "3"})) continue;
     const auto has = [&](const char* number) {
@@ -72,14 +72,15 @@ std::string axis_of(const Words& words, const std::vector<Words>& siblings) {
   return "";
 }
 
-// A channel without its unit, the unit to assume if none is stated, and its assumption if there is
-// one besides.
+// A channel name without its unit, the unit to assume if none is stated, and a further assumption
+// for the user to confirm (empty: none).
 struct Meaning {
   std::string stem, usual_unit;
   std::string because = {};
 };
 
-// Whether a name says that it is no reading of a motion: an error, a target, an increment.
+// Whether the name denotes something other than a reading of motion: an error, a target, an
+// increment.
 bool is_of_another_kind(const Words& words) {
   return words.any_is({"err",     "error",  "errors",    "fehler", "errore",      "erreur",
                        "std",     "stdev",  "stddev",    "unc",    "incertitude", "variance",
@@ -104,7 +105,7 @@ bool is_rate(const Words& words) {
           words.all, [](const std::string& w) { return w.size() > 4 && w.ends_with("rate"); })) {
     return true;
   }
-  // A derivative: "theta dot", "d phi / dt"; a frequency of rotation.
+  // A rate is also a derivative ("theta dot", "d phi / dt") or a frequency of rotation.
   if (words.any_is({"dot", "dt", "ableitung", "derivative"}) && words.all.size() > 1) return true;
   return words.has_word_with_prefix({"freq", "frec", "frequ"}) &&
          words.has_word_with_prefix({"rot", "spin", "giro", "angul"});
@@ -153,7 +154,7 @@ std::vector<Meaning> meanings(const Words& words, const std::string& axis, const
        words.has_word_with_prefix({"pos", "coord", "koord", "place", "puck", "cent", "ort"}))) {
     all.push_back({axis, "m"});
   }
-  // The one coordinate of a body on a line, and a speed along it.
+  // The single coordinate of a body that moves on a line, and its speed.
   const bool is_long = !cell.unit || cell.unit->dimension == "length";
   if (!rate && !angle && axis.empty() && is_long &&
       (words.has_word_with_prefix({"posi", "displac", "distan", "abstand", "strecke", "auslenk",
@@ -188,7 +189,7 @@ std::vector<Meaning> meanings(const Words& words, const std::string& axis, const
       all.push_back({turn.stem, "rad"});
     }
   }
-  // Rates about body x, y and z of aircraft, and a speed in revolutions.
+  // p, q and r are the rates of an aircraft about body x, y and z; n is a rotational speed.
   const auto all_are = [&](const char* word) {
     return words.all == std::vector<std::string>{word};
   };
@@ -228,7 +229,7 @@ std::string quaternion_of(const std::vector<std::string>& words) {
   return "";
 }
 
-// The units of a quantity as messages list them.
+// Accepted units of a quantity, for messages.
 std::string units_for(const std::string& dimension) {
   return dimension == "time"           ? "s, ms, µs, min or h"
          : dimension == "angle"        ? "rad, mrad, deg (°), arcmin or arcsec"
@@ -248,11 +249,11 @@ std::string fitting_unit(const HeaderCell& cell, const std::string& dimension, c
   const HeaderUnit& unit = *cell.unit;
   if (unit.dimension == dimension) return unit.suffix;
   if (dimension != "angular rate") return "";
-  // "omega_rads"
+  // In a name such as "omega_rads" the unit is rad/s.
   if (cell.unit_text == "rads" || cell.unit_text == "degs") return unit.suffix + "_s";
   if (unit.dimension == "frequency") return unit.suffix;
   if (unit.dimension != "per second") return "";
-  // 1/s is of radians for ω, of revolutions for n.
+  // 1/s means rad/s for an angular frequency ω, and rev/s for a rotational speed n.
   if (words.has_word_with_prefix({"omega", "w", "gyr", "angul", "winkel"}) ||
       words.any_has({"kreisfreq"})) {
     return "rad_s";
@@ -263,10 +264,11 @@ std::string fitting_unit(const HeaderCell& cell, const std::string& dimension, c
              : "";
 }
 
-// A column with its guess, or the reason why a column that seems to be of a motion is none.
+// A column with its guess. If its name suggests a quantity of motion but its unit does not fit, the
+// channel is empty and `wrong_unit` is that unit.
 struct ReadColumn {
   GuessedColumn guess;
-  std::string stem, dimension, wrong_unit;  // where the unit is wrong
+  std::string stem, dimension, wrong_unit;  // `wrong_unit`: set if the unit does not fit
   bool by_unit = false;
 };
 
@@ -292,7 +294,8 @@ ReadColumn by_unit(const std::string& in_file, const HeaderCell& cell, const Wor
   return column;
 }
 
-// The unit of coordinates that state none: metres, or millimetres where one is beyond any table.
+// Unit of coordinates without a stated unit: metres, or millimetres if a value exceeds the size of
+// any table.
 std::string unit_of_coordinates(const FileHead& head, const std::vector<Words>& siblings,
                                 size_t place) {
   constexpr double longest_m = 20.0;
@@ -317,7 +320,7 @@ ReadColumn read_column(const FileHead& head, size_t place, HeaderCell cell,
   }
   const std::string axis = axis_of(words, siblings);
   const std::vector<Meaning> all = meanings(words, axis, cell);
-  // A unit within the name: "rpm_left", "timeMs".
+  // Some names contain a unit: "rpm_left", "timeMs".
   if (!cell.unit && cell.unit_text.empty() && !all.empty()) {
     for (const std::string& word : words.all) {
       const auto unit = word.size() > 1 && word != "min" ? unit_written(word) : std::nullopt;
@@ -336,7 +339,8 @@ ReadColumn read_column(const FileHead& head, size_t place, HeaderCell cell,
       const std::string unit = fitting_unit(cell, dimension_of(meaning), words);
       if (!unit.empty()) return as(meaning, unit, true);
     }
-    // An angle in rad/s or a rate in 1/s has no unit that can be meant.
+    // If the stated unit contradicts the quantity (an angle in rad/s, a rate in 1/s), no unit can
+    // be assumed.
     const auto is_of_turns = [](const std::string& dimension) {
       return dimension == "angle" || dimension == "angular rate" || dimension == "per second";
     };
@@ -374,8 +378,8 @@ bool is_taken(const std::vector<ReadColumn>& columns, const std::string& stem) {
   });
 }
 
-// Every channel occurs once: the first column with its name. A unit alone is a name if one column
-// has it and no other is named.
+// Keeps the first named column of each channel. A column that is recognised by its unit alone is
+// kept only if no other column has its channel.
 void keep_first_of_each(std::vector<ReadColumn>& columns) {
   for (size_t i = 0; i < columns.size(); ++i) {
     std::string& channel = columns[i].guess.channel;
@@ -401,7 +405,8 @@ bool is_motion(const std::string& channel) {
   return !channel.empty() && !begins(channel, {"t_", "frame", "accel_", "mag_"});
 }
 
-// The only speed of a wheel is the motion of a machine that turns about one axis.
+// If a wheel's speed is the only motion, it is taken as the rate of a machine that turns about one
+// axis.
 void read_lone_wheel(std::vector<ReadColumn>& columns) {
   ReadColumn* wheel = nullptr;
   for (ReadColumn& column : columns) {
@@ -527,7 +532,7 @@ GuessedCurve guess_curve(const std::filesystem::path& path,
     for (const auto& row : head.rows) {
       if (std::isfinite(row[currents[0]])) most = std::max(most, std::abs(row[currents[0]]));
     }
-    // Sunlight frees at most 0.07 A/cm² in one junction.
+    // Sunlight generates at most 0.07 A/cm² in one junction, so larger numbers are in mA/cm².
     unit = most > 0.5 ? "mA" : "A";
   }
   curve.columns["current_" + unit] = header_cell_text(head.header[currents[0]]);

@@ -56,7 +56,7 @@ bool can_show(const LightEffectKind& kind, const std::vector<FittedRun>& runs) {
 FittedRun prepared_run(LightRun run, const NominalLight& nominal) {
   FittedRun result;
   result.run = std::make_shared<const LightRun>(std::move(run));
-  // Includes the light reflected by every wall, which most trials lack.
+  // Includes the light reflected by every wall, which most trials do not contain.
   LightState with_walls = nominal.state;
   with_walls.walls.clear();
   for (size_t w = 0; w < result.run->lab().walls().size(); ++w) {
@@ -70,7 +70,7 @@ FittedRun prepared_run(LightRun run, const NominalLight& nominal) {
 
 FittedRun part_of(const FittedRun& whole, const std::vector<size_t>& rows,
                   const NominalLight& nominal) {
-  // In fewer rows the knots of a run over time lie elsewhere, so it is prepared again.
+  // The knots of a run over time depend on its rows, so the part is prepared from its recording.
   const bool is_scan = whole.run->recording().kind == LightRecording::Kind::scan;
   if (!is_scan) return prepared_run(whole.run->part(rows), nominal);
   FittedRun result;

@@ -20,6 +20,7 @@ struct FittedRun {
   std::shared_ptr<const Eigen::MatrixXd> prior_slopes;  // ∂(predicted/noise), one column per prior
 };
 
+// Prepares a recording for the fits of all trials.
 FittedRun prepared_run(LightRun run, const NominalLight& nominal);
 // Selects rows of a prepared run.
 FittedRun part_of(const FittedRun& whole, const std::vector<size_t>& rows,
@@ -27,7 +28,7 @@ FittedRun part_of(const FittedRun& whole, const std::vector<size_t>& rows,
 
 struct LightCandidate {
   LightEffectKind kind;
-  size_t index = 0;   // of the lamp, cell …
+  size_t index = 0;   // number of the lamp, cell …
   std::string label;  // "led_derated[3]", "unknown in position"
   // Variable of an empirical law; otherwise empty.
   std::string variable = {};
@@ -45,7 +46,7 @@ struct LightCandidate {
   bool has_strength() const;
   // Whether all fitted numbers are strengths and no scan is required.
   bool is_linear() const;
-  // Whether cell circuits make the readings nonlinear in it.
+  // Whether cell circuits make the readings a nonlinear function of its numbers.
   bool bends = false;
 };
 

@@ -26,7 +26,7 @@ std::vector<size_t> wired_cells(const ArrayWiring& wiring, bool of_string, size_
   return cells;
 }
 
-// The items that the index of a kind numbers.
+// Kind of items (lamps, cells, strings, …) that the index of an effect kind refers to.
 LightEffectKind::Index index_of(const std::string& kind) {
   static const std::vector<LightEffectKind> kinds = all_light_effect_kinds();
   const auto known = std::ranges::find(kinds, kind, &LightEffectKind::name);

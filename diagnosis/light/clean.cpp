@@ -25,7 +25,7 @@ std::vector<size_t> nearest_in_place(const LightRecording& r, size_t row) {
   return near;
 }
 
-// Rows before and after, of one sweep.
+// Rows before and after one row, within one sweep.
 std::vector<size_t> nearest_in_time(const LightRecording& r, size_t row) {
   std::vector<size_t> near;
   const size_t reach = neighbours / 2;

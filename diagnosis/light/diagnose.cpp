@@ -56,8 +56,9 @@ FittedRun observed(const LightLab& lab, const NominalLight& nominal, LightRecord
   return run;
 }
 
-// Rows to fit and rows to hold out if no holdout is given: the last part of a recording over time
-// or of sweeps. Of a scan every so many rows are held out, because its end is only a corner.
+// Rows to fit and rows to hold out if no holdout is given. Of a recording over time or of sweeps,
+// the last part is held out. Of a scan every n-th row is held out, because its last part is only a
+// corner of the receiver.
 std::pair<std::vector<size_t>, std::vector<size_t>> split(const LightRun& run, double fraction) {
   std::vector<size_t> fitted, held;
   const size_t rows = run.rows();
@@ -72,7 +73,8 @@ std::pair<std::vector<size_t>, std::vector<size_t>> split(const LightRun& run, d
   return {fitted, held};
 }
 
-// Fitted and held-out data must each have several readings: any model explains one.
+// Requires several readings in the fitted and in the held-out data: any model explains a single
+// one.
 void require_enough(const LightData& data, const std::string& first) {
   constexpr size_t fewest_fitted = 8, fewest_held = 2;
   size_t fitted = 0, held = 0;

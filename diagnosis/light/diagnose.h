@@ -22,7 +22,7 @@ struct LightDiagnoseOptions {
   int threads = 0;  // 0: all
   // Limits per recording; longer ones are thinned to every n-th row.
   size_t max_rows = 5000, max_scan_rows = 12000;
-  double holdout_fraction = 0.25;  // of each recording, if no holdout is given
+  double holdout_fraction = 0.25;  // fraction of each recording, if no holdout is given
   Thresholds limits;
   std::function<void(const std::string&)> progress;  // called at each step; may be empty
 };

@@ -25,7 +25,7 @@ inference::CandidateTraits traits_of_light(const LightCandidate& c) {
   return traits;
 }
 
-// Sums over all recordings.
+// Normal sums over all recordings, for the trial and the further terms `more`.
 inference::NormalSums sums_of(const LightTrial& at, const LightCandidates& all,
                               const std::vector<inference::Term<LightStart>>& more,
                               const std::vector<FittedRun>& runs) {

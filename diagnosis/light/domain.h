@@ -51,7 +51,7 @@ class LightDomain {
   // Rows are never averaged, because neighbours receive different light: a long run over time is
   // thinned to every n-th row.
   Runs average(const Trial& about, const Runs& runs, size_t count) const;
-  // A wrong model of light is wrong everywhere, so it is no nearer in pieces.
+  // A wrong model of light is wrong in every part of a recording, so shorter parts do not help.
   Runs cut(const Runs&, size_t) const { return {}; }
   double excess_sigma(const Trial& trial, const Runs& runs) const;
 

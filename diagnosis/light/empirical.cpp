@@ -47,7 +47,8 @@ LightCandidate over_the_receiver(int most) {
   return light_law("position", "unknown in position", std::move(basis));
 }
 
-// A wave over the receiver in any direction; in cycles over half of its width and height.
+// A wave over the receiver in any direction, in cycles over half of its width and half of its
+// height.
 LightCandidate ripple() {
   LightCandidate c;
   c.variable = "position";
@@ -129,7 +130,7 @@ struct Extent {
   double half() const { return 0.5 * (high - low); }
 };
 
-// Powers of a variable, centred, up to `most`.
+// Powers 1 to `most` of a variable that is scaled to −1 … 1.
 std::vector<Basis> powers(double SampleConditions::*variable, const Extent& e, int most) {
   std::vector<Basis> basis;
   for (int k = 1; k <= most; ++k) {
@@ -212,7 +213,8 @@ struct WaveSums {
   }
 };
 
-// Adds a place whose reading changes by `change` errors per strength and deviates by `off` errors.
+// Adds a place whose reading changes by `change` standard errors per strength and deviates by `off`
+// standard errors.
 void add_place(double u, double v, double change, double off, WaveSums& sums) {
   std::array<double, along_v> cos_v, sin_v;
   for (int n = 0; n < along_v; ++n) {
@@ -235,7 +237,7 @@ void add_place(double u, double v, double change, double off, WaveSums& sums) {
   }
 }
 
-// The fall of χ² with cosine and sine of one wave.
+// Fall of χ² by fitting the cosine and sine of one wave.
 double gain_of(const WaveSums& sums, size_t k) {
   const double a = 0.5 * (sums.square + sums.twice_re[k]),
                b = 0.5 * (sums.square - sums.twice_re[k]), c = 0.5 * sums.twice_im[k];

@@ -67,7 +67,7 @@ ShadedRegion shaded_region(const LightTrial& trial, const LightCandidates& all, 
     return places.signals(state, places.fields(state, nullptr));
   };
   const std::vector<double> shaded = light(trial), open = light(without);
-  constexpr double visible = 0.5;  // of the deepest shadow
+  constexpr double visible = 0.5;  // fraction of the deepest shadow
   ShadedRegion region;
   for (size_t i = 0; i < shaded.size(); ++i) {
     if (open[i] > 0.0) region.darkest = std::min(region.darkest, shaded[i] / open[i]);

@@ -20,6 +20,7 @@ struct LightAnswer {
 std::vector<FoundEffect> found_light_effects(const LightAnswer& answer,
                                              const std::vector<FittedRun>& runs);
 
+// The best trial of every set of names, best first, relative to the nominal model.
 std::vector<Alternative> light_alternatives(const LightAnswer& answer);
 
 // Variables on which the nominal residuals depend, strongest first, by the fraction of the χ² above
@@ -28,7 +29,8 @@ std::vector<Where::Dependence> light_dependences(const LightTrial& about,
                                                  const LightCandidates& all,
                                                  const std::vector<FittedRun>& runs);
 
-// The array with the cells that the found effects concern; nothing without any.
+// The array with the cells that the found effects concern. Nothing without an array or without
+// effects.
 std::optional<DrawnArray> drawn_array(const LightLab& lab, const std::vector<FoundEffect>& effects);
 
 // Parameters with a prior, after the fit.
@@ -50,6 +52,7 @@ std::vector<inference::Checks::Place> other_light_places(const LightTrial& trial
 // sweeps, every row.
 RecordingSeries light_series(const LightAnswer& answer, const FittedRun& run, bool is_held_out);
 
+// One sentence that states the verdict, for the top of the report.
 std::string light_sentence(const Diagnosis& diagnosis);
 
 }  // namespace photorque

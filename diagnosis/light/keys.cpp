@@ -9,7 +9,8 @@ namespace {
 constexpr int64_t most = 1'000'000'000;
 
 Key key_of(const EffectParameter& parameter) {
-  // Two kinds may have a name in common but different ranges.
+  // Two kinds may have a key of equal name but with different ranges, so the meaning contains the
+  // range.
   const std::string range = range_of(parameter);
   const std::string meaning = parameter.meaning + (range.empty() ? "" : ", " + range);
   if (parameter.count > 1) {

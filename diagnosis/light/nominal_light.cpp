@@ -41,7 +41,7 @@ LightPrior prior_of(const UncertainKey& key, size_t component, const LightPrior:
     try {
       return side_of(reread(assignment_of(key, values)), errors);
     } catch (const InputError&) {
-      // One side may be out of range; if both are, the value can have no error.
+      // One side may be out of range. If both sides are, the value cannot be varied.
       if (refused) {
         throw InputError({itself.lab->experiment().file.path.string()}, key.path,
                          readable_number(key.value[component], 6) + " with a sigma of " +

@@ -21,13 +21,13 @@ namespace photorque {
 struct LightPrior {
   std::string key;            // "source[0].power_W"
   std::vector<double> value;  // all values of the key in its unit, before any fit
-  size_t component = 0;       // index of the uncertain one
-  double sigma = 1.0;         // of the uncertain one
+  size_t component = 0;       // index of the uncertain value
+  double sigma = 1.0;         // standard deviation of the uncertain value
   static constexpr double part = 0.1;
   struct Side {
     std::shared_ptr<const LightLab> lab;
     LightState state;
-    double errors = 0.0;  // shift in errors: −part, part, or 0
+    double errors = 0.0;  // shift in standard deviations: −part, part, or 0
   };
   Side low, high;
 };
@@ -42,12 +42,12 @@ struct NominalLight {
 };
 
 // `reread` reads the experiment of the lab again with one more key assigned. The lab must outlive
-// the result. Throws InputError for an error of a value that can have no other value.
+// the result. Throws InputError if an uncertain value cannot be varied in either direction.
 NominalLight nominal_light(const LightLab& lab, const std::vector<UncertainKey>& uncertain,
                            const std::function<Experiment(const std::string&)>& reread);
 
-// Key of the prior on the tilt of the body in the light, among the refined ones; no experiment has
-// it.
+// Key of the prior on the tilt of the body in the light, among the refined priors. Experiments do
+// not have this key.
 constexpr const char* tilt_prior = "attitude_bias.bias_deg";
 
 // Adds a prior on the rotation of the body relative to its recorded attitude, as a rotation vector

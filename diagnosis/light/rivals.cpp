@@ -11,8 +11,8 @@
 namespace photorque {
 namespace {
 
-// χ² of the effect of the first of `terms` at the numbers x that the strengths of each other term
-// cannot reproduce. The first entry is the χ² of the whole effect.
+// For the effect of the first of `terms` with the numbers x: the part of its χ² that the strengths
+// of each other term cannot reproduce. The first entry is the χ² of the whole effect.
 Eigen::VectorXd distinct_chi2(const LightTrial& about, const LightCandidates& all,
                               const std::vector<inference::Term<LightStart>>& terms,
                               const std::vector<FittedRun>& runs, const std::vector<double>& x) {
@@ -57,8 +57,8 @@ Eigen::VectorXd distinct_chi2(const LightTrial& about, const LightCandidates& al
   return left;
 }
 
-// Equivalent for an effect without parameters whose fit is `own`: excess of χ² over that fit if
-// each of `others` replaces it.
+// Like distinct_chi2(), for an effect without parameters whose fit is `own`: excess of χ² over that
+// fit if each of `others` replaces the effect.
 Eigen::VectorXd distinct_chi2_of_switch(const LightTrial& own, const LightTrial& without,
                                         const LightCandidates& all,
                                         const std::vector<size_t>& others,
@@ -125,7 +125,8 @@ std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
   std::set<std::string> rivals;
   for (size_t k = 0; k < others.size(); ++k) {
     const LightCandidate& c = all[others[k]];
-    // Limit of the irreproducible χ², which is of first order; large effects are nonlinear.
+    // Limit of the irreproducible χ². It grows with the gain, because χ² is of first order but
+    // large effects are nonlinear.
     constexpr double beyond = 10.0, of_all = 0.02;
     const double gain = left[0];
     if (left[static_cast<Eigen::Index>(k) + 1] > beyond * within + of_all * gain) continue;

@@ -41,7 +41,7 @@ std::vector<LeftOfRun> left_of(const LightTrial& parent, const LightCandidates& 
   return left;
 }
 
-// The fall of χ² if only the strengths of a law are freed.
+// Predicted fall of χ² if only the strengths of a law are fitted.
 double gain_alone(const LightCandidate& c, const std::vector<double>& start,
                   const std::vector<LeftOfRun>& left) {
   std::vector<size_t> strengths;

@@ -14,7 +14,8 @@ struct LeftOfRun {
   SignalSlopes slopes;
 };
 
-// For each candidate the few starts with the largest predicted gains; none without a gain.
+// For each candidate the few starts with the largest predicted gains; empty if no gain is
+// predicted.
 std::vector<std::vector<LightStart>> starts_from_scan(const LightTrial& parent,
                                                       const LightCandidates& all,
                                                       const std::vector<size_t>& candidates,

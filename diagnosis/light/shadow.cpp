@@ -11,11 +11,11 @@ namespace {
 // A ray from a lamp to a place of a scan, which may cross the carved plane.
 struct CarvingRay {
   size_t place;
-  double light;  // of the lamp, in errors of the reading
+  double light;  // light of the lamp, in standard errors of the reading
   Vec3 from, to;
 };
 
-// Light on the scans and its deficit, in errors.
+// Light on the scans and its deficit, in standard errors.
 struct CarvingData {
   std::vector<CarvingRay> rays;
   std::vector<double> missing;  // per place
@@ -104,9 +104,9 @@ class CarvedPlane {
     return best;
   }
 
-  // The element that explains most if partly transparent. Its light need not be missing altogether:
-  // a box smaller than the apertures has no umbra. grown() enlarges it as long as that explains
-  // more.
+  // The partly transparent element that explains most. A box smaller than the apertures has no
+  // umbra, so only a part of the light through its element is missing. grown() enlarges the element
+  // as long as that explains more.
   CarvedBox best_element() const {
     std::vector<double> with(cells * cells, 0.0), square(cells * cells, 0.0);
     for (const Hit& h : hits_) {
@@ -185,7 +185,7 @@ class CarvedPlane {
     return r;
   }
 
-  // The fall of χ² for a rectangle with the best opacity.
+  // The box over a rectangle with its best opacity, and its fall of χ².
   CarvedBox explained(const Rectangle& r) const {
     std::vector<double> hidden(data_.missing.size(), 0.0);
     for (const Hit& h : hits_) {

@@ -74,8 +74,8 @@ bool names_tilt(const Diagnosis& motion) {
   return std::ranges::find(motion.effects, of_motion, &FoundEffect::kind) != motion.effects.end();
 }
 
-// The tilt by the motion alone, with the light's information subtracted from `both`, the result of
-// motion and light. Nothing if `both` is hardly more precise than the light.
+// The tilt determined by the motion alone: the information of the light is subtracted from `both`,
+// the result of motion and light. Returns nothing if `both` is hardly more precise than the light.
 std::optional<Tilt> beside(const Tilt& both, const Tilt& light) {
   constexpr double better = 0.7;
   if (!(both.sigma_rad.array() < better * light.sigma_rad.array()).any()) return std::nullopt;
@@ -91,7 +91,8 @@ std::optional<Tilt> beside(const Tilt& both, const Tilt& light) {
   return alone;
 }
 
-// Light is linear only in a small tilt, so a larger tilt is fitted again about its estimate.
+// The light is a linear function of small tilts only, so a larger tilt is fitted again about its
+// estimate.
 Diagnosis light_with_any_tilt(const LightRecorded& light) {
   constexpr double small_rad = 0.004;
   Tilt any{Vec2::Zero(), Vec2::Constant(any_tilt_rad)};
@@ -121,7 +122,7 @@ Disturbance tilt_prior_disturbance(const NominalModel& nominal, const Tilt& tilt
 
 // Adds the tilt to the effects of both domains if it is significant.
 void add_tilt(const std::optional<Tilt>& tilt, Diagnosis& motion, Diagnosis& light) {
-  // No experiment states its prior.
+  // Experiments do not state a prior on the tilt.
   const auto is_tilt = [](const FittedParameter& p) {
     return p.key == tilt_prior || p.key.ends_with(std::string("].") + tilt_key);
   };
@@ -167,7 +168,8 @@ Vec3 turn(const Quat& from, const Quat& to) {
   return angle * by.axis();
 }
 
-// Cubic interpolation with slopes from the neighbouring points; nothing outside or in a gap.
+// Cubic interpolation with slopes from the neighbouring points. Returns nothing outside the
+// recorded time or in a gap.
 std::optional<Quat> between(const std::map<double, Quat>& all, double time_s, double max_gap_s) {
   const auto exact = all.find(time_s);
   if (exact != all.end()) return exact->second;

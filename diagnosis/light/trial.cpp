@@ -95,8 +95,8 @@ Eigen::VectorXd slope_by(const LightCandidates& all, const std::vector<size_t>& 
   double& b = high[place.member][place.number];
   a = std::max(a - n.step, std::min(n.lowest, a));
   b = std::min(b + n.step, std::max(n.highest, b));
-  // Slopes only determine the step of a fit; χ² decides whether it is accepted. Light from walls
-  // therefore stays unchanged.
+  // Slopes only determine the step of a fit; χ² decides whether the step is accepted. The light
+  // from walls is therefore not recomputed.
   const LightRun::KnownLight near{&at.state, &at.fields, &at.light};
   const auto signals = [&](const LightState& state) {
     return run.run->signals_of(

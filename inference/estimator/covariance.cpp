@@ -10,7 +10,7 @@
 namespace photorque::inference {
 namespace {
 
-constexpr double rounding = 1e-14;  // of the information on a unit diagonal, per parameter
+constexpr double rounding = 1e-14;  // limit of the information on a unit diagonal, per parameter
 
 // Inverse conditional standard error of each parameter; 1 without information.
 Eigen::VectorXd scale_of(const Eigen::MatrixXd& information) {

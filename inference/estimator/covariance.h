@@ -28,8 +28,8 @@ struct Covariance {
 // singular values of J).
 Covariance covariance_of(const Eigen::MatrixXd& information);
 
-// The inverse of the information as it stands, for problems whose priors make it positive definite:
-// always finite, and large where only a prior determines a combination.
+// The plain inverse of the information, for problems whose priors make it positive definite. It is
+// always finite, and large if only a prior determines a combination.
 Eigen::MatrixXd posterior_of(const Eigen::MatrixXd& information);
 
 // ln |A| of a positive definite matrix whose rows have different units. Pivots are limited to at

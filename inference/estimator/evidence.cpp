@@ -49,7 +49,7 @@ double log_strength_evidence(const Strengths& s, const Eigen::MatrixXd& covarian
     }
     return -0.5 * (log_determinant(sum) + squared_distance(theta, sum));
   };
-  // Optimises the width effect by effect, the others at their best width.
+  // Optimises the prior width of each effect in turn, with the other widths at their best values.
   for (const bool last : {false, true}) {
     for (size_t c = 0; c < effects; ++c) {
       std::vector<double> value;
@@ -73,7 +73,7 @@ double expected_chi2_per_sample(const Fit& train, const Fit& joint) {
   if (known.rows() != of_all.rows()) return unknown;
   const double held = static_cast<double>(joint.samples - train.samples);
   const double carried = posterior_of(known).cwiseProduct(of_all - known).sum();
-  // Each matrix belongs to the end of another fit, so a difference of zero may come out negative.
+  // The two matrices are from different fits, so a difference of zero may be slightly negative.
   return 1.0 + std::max(0.0, carried) / held;
 }
 

@@ -49,8 +49,9 @@ bool leaves_bounds(const Parameter& p, double step) {
   return (p.value <= p.lowest && step < 0.0) || (p.value >= p.highest && step > 0.0);
 }
 
-// Damped step with those parameters fixed that are on a bound and whose step would leave it. Fixing
-// one may push another out, so the rest is solved again until none is.
+// Damped step within the bounds. Parameters on a bound that the step would leave are held fixed.
+// Holding one may move another out of its bounds, so the step is solved again until none leaves
+// them.
 Eigen::VectorXd step_within_bounds(const SumsOfRuns& sums, const Parameters& parameters,
                                    const Eigen::VectorXd& damped, double damping) {
   std::vector<Eigen::Index> held;
@@ -110,7 +111,7 @@ constexpr double gain_in_first_windows = 1.0;
 // Factor by which the χ² of a fit that reached the iteration limit may exceed the useful limit.
 constexpr double still_falling = 4.0;
 // Limit of χ² over the useful limit at the start of whole runs. Beyond it predictions are off by a
-// thousand standard errors, and no gradient leads back.
+// thousand standard errors, and the gradient does not lead to the minimum.
 constexpr double off_course = 1e6;
 
 class Fitter {

@@ -34,7 +34,7 @@ struct Options {
   // A window has converged when the predicted gain of the next step is below the larger of these
   // limits. In units of χ²: a parameter is then within √min_gain standard errors of the minimum.
   double min_gain = 0.01;
-  double min_gain_fraction = 1e-6;  // of χ²; negligible in a bad fit
+  double min_gain_fraction = 1e-6;  // fraction of χ²; negligible in a bad fit
   // Whether to continue with untested steps as long as their predicted gains fall. χ² resolves
   // parameters only to 1e-7 of their errors; its gradient is more precise.
   bool polish = false;
@@ -50,9 +50,9 @@ struct Options {
   double initial_damping = 1e-9;  // λ, ≥ 0
   double min_damping = 0.0;       // ≥ 0; fixes undetermined combinations at their values
   double max_damping = 1e9;       // beyond it no step lowers χ²
-  // D is the largest diagonal met in a window instead of the present one (J. J. Moré, Lecture Notes
-  // in Mathematics 630 (1978) 105). A parameter whose slopes vanish on the way, such as the rate of
-  // an exponential that has decayed, then does not diverge.
+  // D is the largest diagonal so far in a window instead of the present one (J. J. Moré, Lecture
+  // Notes in Mathematics 630 (1978) 105). A parameter whose slopes vanish on the way, such as the
+  // rate of an exponential that has decayed, then does not diverge.
   bool keep_largest_scale = false;
 
   // Converges to double precision, for problems whose evaluation costs next to nothing.
@@ -76,17 +76,18 @@ struct Fit {
   double chi2 = infinity;       // including the priors
   double data_chi2 = infinity;  // excluding the priors
   int64_t samples = 0;
-  std::vector<double> run_chi2;  // of each run, excluding the priors
+  std::vector<double> run_chi2;  // one per run, excluding the priors
   std::vector<int64_t> run_samples;
   ArrowMatrix hessian;  // H at the final point, of all parameters in their order
   Eigen::Index first_shared = 0;
   bool converged = false;
-  Termination termination = Termination::not_evaluable;  // of the last window
-  int iterations = 0;                                    // of all windows
+  Termination termination = Termination::not_evaluable;  // termination of the last window
+  int iterations = 0;                                    // total of all windows
 
   double chi2_per_sample() const { return data_chi2 / static_cast<double>(samples); }
-  // Data χ² over the degrees of freedom, without priors: 1 where the noise is as stated. Standard
-  // errors times its root rest on the scatter instead. 0 without degrees of freedom.
+  // Data χ² per degree of freedom, without priors: 1 if the noise is as stated, 0 without degrees
+  // of freedom. Standard errors multiplied by its square root are based on the scatter of the data
+  // instead of the stated noise.
   double variance() const;
   // Standard errors of all parameters from the scatter of the data, √(variance · covariance),
   // independent of the stated noise; infinite where undetermined.
@@ -98,8 +99,8 @@ struct Fit {
   Eigen::MatrixXd shared_posterior() const;
 };
 
-// `start` is a point of the model. Does not throw if the model cannot be evaluated there: χ² is
-// then infinite.
+// Fits the parameters of the model, starting from `start`, a point of the model. Does not throw if
+// the model cannot be evaluated there: χ² is then infinite.
 Fit fit(const ForwardModel& model, const Eigen::VectorXd& start, const Options& options = {});
 
 }  // namespace photorque::inference

@@ -45,10 +45,11 @@ class ForwardModel {
 struct Evaluation {
   SumsOfRuns sums;                   // χ² is infinite where the model cannot be evaluated
   double data_chi2 = infinity;       // excluding the priors
-  std::vector<double> run_chi2;      // of each run
-  std::vector<int64_t> run_samples;  // of each run
+  std::vector<double> run_chi2;      // one per run
+  std::vector<int64_t> run_samples;  // one per run
 };
 
+// Evaluates all runs and the priors at a point. χ² is infinite if a run cannot be evaluated.
 Evaluation evaluate(const ForwardModel& model, const Eigen::VectorXd& at, const Request& request);
 
 // Forward models whose residuals are a plain function of the values of their parameters.

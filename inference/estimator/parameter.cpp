@@ -20,9 +20,9 @@ class BoundedStep {
         step_(Eigen::VectorXd::Zero(at.size())) {}
 
   // Active-set iteration. Each turn fixes one parameter on the bound that it violates, or releases
-  // one whose release lowers χ². At first the worst one is chosen, which is fast but may cycle;
-  // after 3 n turns the first one, which terminates for certain (K. G. Murty, Opsearch 11 (1974)
-  // 123).
+  // one whose release lowers χ². At first the worst one is chosen, which is fast but may cycle.
+  // After 3 n turns the first one is chosen, which guarantees termination (K. G. Murty, Opsearch 11
+  // (1974) 123).
   Eigen::VectorXd run() {
     constexpr Eigen::Index most_turns = 1000;
     for (Eigen::Index turn = 0; turn < most_turns; ++turn) {

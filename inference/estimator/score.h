@@ -28,7 +28,8 @@ struct Score {
 Score solve_score(const Eigen::MatrixXd& S, const Eigen::VectorXd& s,
                   const Eigen::VectorXd& before);
 
-// S and s of all parameters after the first `fitted` ones of some sums (priors included).
+// S and s of all parameters after the first `fitted` ones, which are projected out; priors are
+// included.
 struct Projected {
   Eigen::MatrixXd information;
   Eigen::VectorXd gradient;

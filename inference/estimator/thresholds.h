@@ -15,8 +15,8 @@ namespace photorque {
 struct Thresholds {
   // Noise of the readings, and residual structure.
   struct Noise {
-    // Neighbours per mean. Structure that is longer than this shows in the means; white noise does
-    // not.
+    // Number of neighbouring residuals per mean. Longer residual structure raises the means; white
+    // noise does not.
     size_t neighbours = 20;
     // Minimum number of differences of a channel to measure its noise: error of 20 %.
     size_t min_differences = 50;
@@ -67,11 +67,11 @@ struct Thresholds {
     std::vector<double> first_windows = {0.05, 0.2, 1.0};
     std::vector<double> diverged_windows = {0.06, 0.25, 1.0};
     std::vector<double> added_windows = {0.1, 0.4, 1.0};
-    // Iterations of a fit: of a first try; of a second chance, enough to show whether it reaches
+    // Maximum iterations: of a first fit; of a repeated fit, enough to test whether it reaches
     // another local minimum; of a leader, which must converge.
     int trial_iterations = 12, brief_iterations = 10, patient_iterations = 60;
-    // Relative fall of χ² per step below which a bad fit stalls. χ² of such leaders differs by
-    // thousands; this is some tens.
+    // Relative fall of χ² per step below which a bad fit counts as stalled. It is equivalent to
+    // some tens in χ², whereas the χ² of such leaders differ by thousands.
     double creep = 5e-4;
     // Maximum ratio of χ² at a predicted start to that of the trial behind the prediction.
     double max_start_growth = 10.0;
@@ -93,7 +93,8 @@ struct Thresholds {
     // Minimum gain beyond one per parameter, of a candidate scored on all recordings including the
     // held-out ones.
     double min_joint_gain = 14.0;
-    // Cost per parameter in the ranking of subsets: χ² of 95 % for one is 3.8.
+    // Cost per parameter in the ranking of subsets: the 95 % quantile of χ² for one parameter is
+    // 3.8.
     double cost_per_parameter = 4.0;
     // Minimum power of a line in the spectrum of the residuals, where noise has 1 in each of nine
     // channels: a sum of nine exponentials exceeds it once in 600,000 frequencies.
@@ -116,7 +117,7 @@ struct Thresholds {
     size_t min_readings_of_piece = 10;
     // Maximum number of fits to averages or pieces that are repeated on all readings.
     size_t max_refits_of_averages = 4, max_refits_of_pieces = 6;
-    // Sets of candidates that a forecast keeps per size for enlargement.
+    // Beam width: sets of candidates of each size that a forecast keeps for enlargement.
     size_t beam = 40;
     // Residual structure of a single effect [sigma] below which it does not mimic a fast one.
     double explained_sigma = 3.0;
@@ -124,7 +125,8 @@ struct Thresholds {
     // best forecast within which a set is fitted.
     int max_rounds = 6;
     size_t max_fits_of_round = 6;
-    // Maximum sets without an empirical law, with any predicted gain, if the best trial has one.
+    // Maximum sets without an empirical law, with any predicted gain, if the best trial has such a
+    // law.
     size_t max_known_fits_of_round = 3;
     double forecast_within = 12.0;
   } search;
@@ -138,16 +140,17 @@ struct Thresholds {
     double worth_a_fit = 10.0;
   } leaders;
 
-  // Weighing with the held-out data.
+  // Limits of the weighing with the held-out data.
   struct HeldOut {
     size_t max_leaders = 12;
     // Difference in log evidence to the best within which an explanation is a leader: odds of 3e6
     // to 1, which the held-out recordings can reverse.
     double within = 15.0;
-    // Maximum candidates that are added because only all recordings together show them.
+    // Maximum candidates that are added because they are significant only on all recordings
+    // together.
     size_t max_effects = 4, max_empirical = 2;
-    // Maximum χ² per sample that counts as noise where the train runs have it too: the noise level
-    // is known to a few per cent.
+    // Maximum χ² per sample that counts as noise if the train runs reach it too: the noise level is
+    // known to a few per cent.
     double max_noise = 1.15;
   } held_out;
 
@@ -180,7 +183,7 @@ struct Thresholds {
     double min_periods = 3.0;
   } objection;
 
-  // The verdict.
+  // Limits of the verdict.
   struct Decision {
     // Minimum log evidence over the nominal model to report an explanation: odds of 90 to 1, in
     // addition to the prior odds against each name. An empirical law must exceed the best physics
@@ -191,8 +194,8 @@ struct Thresholds {
     // Minimum of |value|/error of the clearest number of a named effect. Three independent numbers
     // of that significance have one above 2.3; where all are below, only a combination is known.
     double min_component_sigma = 2.2;
-    // Log odds by which such an explanation must be better than every other one: the total of a
-    // free body's inertia cannot be known, that the stated one is wrong can.
+    // Log odds by which such an explanation must be better than every other one. Example: the scale
+    // of a free body's inertia is not identifiable, but an error of the stated inertia is.
     double min_log_odds_of_combination = 20.0;
     // Maximum excess of the held-out runs over the predictive distribution of an accepted model
     // [sigma].
@@ -204,8 +207,8 @@ struct Thresholds {
     // above which the name is rejected.
     double max_held_out_growth = 1.5;
     // Minimum log evidence that a known effect must add to an empirical law to be named. An effect
-    // may absorb the error of an inaccurate law, and an error that is not detected as structure is
-    // worth some tens.
+    // may absorb the error of an inaccurate law, and an undetected error may contribute some
+    // tens.
     double min_log_odds_beside_law = 100.0;
     // Maximum ratio of the held-out χ² to that of the nominal model for an empirical law to be
     // accepted.

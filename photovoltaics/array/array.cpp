@@ -37,7 +37,7 @@ struct PreparedArray {
   CellCover cover;
   std::vector<double> area_m2 = {};
   double total_area_m2 = 0.0;
-  double temperature_K = 0.0;            // of the members below
+  double temperature_K = 0.0;            // temperature of the members below
   std::vector<double> factor_A_W = {};   // per band
   std::vector<double> cell_factor = {};  // per cell, relative to a cell without override
   CellTables tables = {};

@@ -1,4 +1,4 @@
-// From light on a receiver to the power of the solar array on it.
+// Power of a solar array from the light on its receiver.
 #pragma once
 
 #include <span>
@@ -11,10 +11,10 @@
 
 namespace photorque {
 
-// Result of the array in the light of a trace. Standard errors come from leaving out one replicate
-// of the light after the other (Quenouille, Tukey), not from the powers of single replicates: a
-// single replicate's map is √R times noisier than their mean, and noise between cells in series
-// lowers the power, so that single replicates are biased.
+// Result of the array in the light of a trace. Standard errors are jackknife errors (Quenouille,
+// Tukey): each replicate of the light is left out in turn. The powers of single replicates would be
+// biased: the map of a single replicate is √R times noisier than the mean map, and noise between
+// cells in series lowers the power.
 struct ArrayResult {
   Estimate power_W;  // at the maximum power point
   Estimate voltage_V;
@@ -29,28 +29,28 @@ struct ArrayResult {
   Estimate efficiency_of_cells;  // sum_of_cells_W / power_on_cells_W
   Estimate mismatch_loss;        // 1 − power_W / sum_of_cells_W: uneven light, and diodes
   double area_of_cells_m2 = 0.0;
-  Estimate temperature_K;      // of the cells: steady state, or as stated
+  Estimate temperature_K;      // cell temperature: steady state, or as stated
   double power_per_K_W = 0.0;  // d power_W/dT of the cells, in the same light
 
   std::vector<double> cell_light_W;  // per cell, cell = row · columns + column
   std::vector<double> cell_area_m2;
-  std::vector<Vec2> cell_centre_m;  // of CellPlaces, or empty
+  std::vector<Vec2> cell_centre_m;  // places of CellPlaces, or empty
   std::vector<double> cell_photocurrent_A;
   CellStates cells;                // at the maximum power point
-  std::vector<ArrayPoint> maxima;  // all local ones, by rising voltage
+  std::vector<ArrayPoint> maxima;  // all local maxima, by rising voltage
   std::vector<ArrayPoint> curve;   // short to open circuit
   int columns = 0, rows = 0;
 };
 
-// `responsivity_A_W` of each band of the light: see band_responsivity_A_W(). Where `design.heat`
-// is stated, the cells are in the steady state of this light at their maximum power point; standard
-// errors include how the temperature follows the light.
-// Throws InputError when the cells do not fit on the grid or cover none of the surface.
+// Evaluates the array in this light. `responsivity_A_W`: one per band of the light, see
+// band_responsivity_A_W(). If `design.heat` is stated, the cells are in the steady state of this
+// light at their maximum power point, and standard errors include the response of the temperature
+// to the light. Throws InputError if the cells do not fit on the grid or cover none of the surface.
 ArrayResult evaluate_array(const ArrayDesign& design, const ArrayLight& light,
                            std::span<const double> responsivity_A_W);
 
-// The light and currents of the cells alone, without the network: the mean over the replicates and,
-// where there are several, its standard errors. Same errors as above.
+// Light and photocurrents of the cells, without the network: means over the replicates and, for
+// several replicates, standard errors. cell_currents() throws InputError like evaluate_array().
 struct CellCurrents {
   std::vector<double> photocurrent_A, photocurrent_error_A;
   Estimate power_on_cells_W;
@@ -63,11 +63,12 @@ CellCurrents cell_currents(const ArrayDesign& design, const ArrayLight& light,
 // "pv"; maps of irradiance, photocurrent, operating voltage and operating power per cell.
 Product array_product(const ArrayResult& result);
 
-// Photocurrents of cells at `from_K`, at `to_K`: each by the slope of its model.
+// Converts photocurrents from the temperature `from_K` to `to_K`, by the slope of each cell's
+// model.
 std::vector<double> warmed(const ArrayDesign& design, std::vector<double> photocurrent_A,
                            double from_K, double to_K);
 
-// Photocurrents to curve, a step of evaluate_array(). Cells of equal area share a table.
+// Diode laws of the cells, a step of evaluate_array(). Cells of equal area share a law.
 CellTables cell_tables(const ArrayDesign& design, std::span<const double> cell_area_m2,
                        double largest_photocurrent_A);
 

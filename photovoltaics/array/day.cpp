@@ -84,7 +84,8 @@ class PowerSurface {
   std::array<std::array<double, lights>, temperatures> power_W_{};
 };
 
-// One step of the battery; returns the served part of the load.
+// One step of the battery. Returns the fraction of the missing energy that it delivers; 1 without a
+// deficit.
 double step_battery(const Battery& battery, double surplus_W, double step_s, double* charge_J) {
   if (surplus_W >= 0.0) {
     *charge_J =

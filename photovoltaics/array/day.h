@@ -1,4 +1,4 @@
-// A day of the array and its battery: the cells warm up, the lamps fade, the battery empties.
+// Simulation of a day: the cells become warm, the lamps lose light, the battery is discharged.
 #pragma once
 
 #include <optional>
@@ -9,14 +9,15 @@
 
 namespace photorque {
 
-// Light of the lamps over that when switched on: (1 − depth (1 − e^{−t/τ})) (1 − k ΔT(t)), the
-// first factor as measured on a lamp, the second from its junctions' rise of temperature
-// ΔT(t) = rise (1 − e^{−t/τ_h}) and the roll-off k of its data sheet. Both are 1 by default.
+// Light of the lamps relative to that when they are switched on: (1 − depth (1 − e^{−t/τ})) (1 − k
+// ΔT(t)). The first factor is measured on a lamp. The second one follows from the rise of its
+// junction temperature, ΔT(t) = rise (1 − e^{−t/τ_h}), and the roll-off k of its data sheet. Both
+// are 1 by default.
 struct LampDroop {
   double depth = 0.0;  // in [0, 1)
   double time_constant_s = 600.0;
   double roll_off_1_K = 0.0;  // k ≥ 0, k · rise < 1; red LEDs lose about 0.5 % per kelvin
-  double rise_K = 0.0;        // at the end, ≥ 0
+  double rise_K = 0.0;        // final rise, ≥ 0
   double rise_time_constant_s = 300.0;
 
   double light_at(double time_s) const;
@@ -25,12 +26,12 @@ struct LampDroop {
 
 struct Battery {
   double capacity_J = 360.0 * 3600.0;  // > 0
-  double charge = 1.0;                 // at the start, as a fraction of the capacity, in [0, 1]
-  double charge_efficiency = 0.97;     // stored over delivered to it, in (0, 1]
-  double discharge_efficiency = 0.97;  // delivered over taken out of store, in (0, 1]
+  double charge = 1.0;                 // initial charge as a fraction of the capacity, in [0, 1]
+  double charge_efficiency = 0.97;  // stored energy over energy delivered to the battery, in (0, 1]
+  double discharge_efficiency = 0.97;  // delivered energy over that taken from it, in (0, 1]
 };
 
-// Every efficiency is in (0, 1].
+// Settings of a day; every efficiency is in (0, 1].
 struct DaySettings {
   LampDroop droop;
   Battery battery;
@@ -38,27 +39,28 @@ struct DaySettings {
   double tracker_efficiency = 1.0;
   double load_W = 25.0;
   double duration_s = 86400.0;
-  double step_s = 30.0;  // at most; a whole number of steps make the duration
+  double step_s = 30.0;  // maximum; the duration is a whole number of steps
   bool lamps_on = true;
 };
 
-// The history, one entry per step and one for the start, and its sums.
+// History with one entry per step and one for the start, and its sums.
 struct DayResult {
   std::vector<double> time_s, temperature_K, array_W, charge_J;
   double final_temperature_K = 0.0;
   double array_energy_J = 0.0, load_energy_J = 0.0;
-  std::optional<double> empty_after_s;  // when the load is first not served
+  std::optional<double> empty_after_s;  // time at which the load is first not served
   double mean_array_W = 0.0;
 };
 
-// The temperature of the cells follows design.heat from its start_K; `array` is of cells at
-// design.temperature_K, where they stay without heat. The power between a few temperatures and
-// light levels is interpolated bilinearly: good to 1e-3.
+// The temperature of the cells follows design.heat from its start_K. `array` is the result at
+// design.temperature_K, which is constant without heat. The power is interpolated bilinearly
+// between a few temperatures and light levels, with an error of 1e-3.
 DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const DaySettings& settings);
 
-// The table `[array.day]`.
+// Reads the table `[array.day]`.
 DaySettings read_day(const Settings& day);
 
+// Final temperature and charge, mean power, the table "day" and the plot "day_history".
 Product day_product(const DayResult& day);
 
 }  // namespace photorque

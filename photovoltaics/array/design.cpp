@@ -38,14 +38,14 @@ ArrayWiring::String bypassed_string(const Rows& rows, const RegularWiring& optio
   return string;
 }
 
-// One level of a regular circuit: so many like parts in series or in parallel.
+// One level of a regular circuit: `count` equal parts in series or in parallel.
 struct Level {
   CellGroup::Join join = CellGroup::Join::series;
   size_t count = 1;
   bool bypassed = false;  // a bypass diode beside each part
 };
 
-// "series 3 bypass", "parallel 2".
+// Reads a level such as "series 3 bypass" or "parallel 2".
 Level read_level(const Settings& array, const std::string& text) {
   const std::vector<std::string_view> words = words_of(text);
   Level level;
@@ -64,7 +64,7 @@ Level read_level(const Settings& array, const std::string& text) {
   return level;
 }
 
-// The cells cut into equal parts, level by level.
+// The circuit of the cells, which are cut into equal parts level by level.
 CellGroup circuit_of(std::span<const int> cells, std::span<const Level> levels,
                      const Diode& bypass) {
   if (levels.empty()) return {cells[0]};
@@ -118,8 +118,8 @@ Diode read_diode(const Settings& array, const Kinds& kinds, const TableKey& tabl
   return diode;
 }
 
-// Cells by index, each a whole number in range and used once; whatever else was written is an
-// error.
+// Reads the key `wiring`. Every cell must be an integer in range and occur only once; anything else
+// is an error.
 class WiringReader {
  public:
   WiringReader(const Settings& array, int cells, const Diode& bypass)
@@ -148,7 +148,7 @@ class WiringReader {
     return *array;
   }
 
-  // A cell; or a list, whose members are joined in parallel and in series by turns.
+  // Reads a cell, or a list whose members are joined in parallel and in series alternately.
   CellGroup read_group(const SettingsNode& node, CellGroup::Join join, int depth) {
     constexpr int deepest = 32;
     if (!node.is_array()) return {read_cell(node)};
@@ -234,7 +234,7 @@ ArrayWiring read_wiring(const Settings& array, const ArrayDesign& design) {
   return regular_wiring(design.columns, design.rows, options);
 }
 
-// Single numbers of a cell replaced; they belong to its reference area, if that was stated.
+// Replaces single numbers of a cell model. They refer to its reference area, if that is stated.
 CellModel replaced(CellModel model, const Settings& s, bool area_is_stated) {
   CellParameters& p = model.reference;
   p.saturation_1_A = s.get_or(cell_key::saturation_1, p.saturation_1_A);
@@ -294,7 +294,7 @@ CellModel stated_for(double area_m2, CellModel model) {
   return model;
 }
 
-// In the order of their cells.
+// The overrides in the order of their cells.
 std::vector<CellOverride> read_overrides(const Settings& array, const ArrayDesign& design) {
   std::vector<CellOverride> overrides;
   if (!array.has(array_key::cell_override)) return overrides;

@@ -17,40 +17,40 @@ namespace photorque {
 // errors of the power small.
 inline constexpr Range series_ohm_range{0.0, 1e6, false, false};
 
-// A cell that is not like the others.
+// A cell that differs from the others.
 struct CellOverride {
   int index = 0;
   CellModel model;
-  double photocurrent_factor = 1.0;  // of the photocurrent of its light
+  double photocurrent_factor = 1.0;  // factor on the photocurrent by the light
 };
 
 // The array on one receiver: places, wiring and models of its cells.
 struct ArrayDesign {
   int columns = 0;                   // cells along u of the receiver's grid
-  int rows = 0;                      // and along v; cell = row · columns + column
+  int rows = 0;                      // cells along v; cell = row · columns + column
   std::optional<CellPlaces> places;  // instead of equal rectangles over the whole grid
   double gap_m = 0.0;                // between neighbouring cells
   double margin_m = 0.0;
   ArrayWiring wiring;
   CellModel cell;
   std::vector<CellOverride> overrides;  // in the order of their cells, each once at most
-  // At which the cells and their photocurrents are computed; where `heat` is stated a reference
-  // that evaluate_array() replaces with the steady state.
+  // Temperature at which the cells and their photocurrents are computed. If `heat` is stated, it is
+  // only a reference that evaluate_array() replaces by the steady state.
   double temperature_K = 298.15;
   std::optional<CellHeat> heat = {};    // none: the cells stay at temperature_K
-  double rated_temperature_K = 358.15;  // above it a warning
+  double rated_temperature_K = 358.15;  // warning above it
   QuantumEfficiency efficiency;
   std::optional<CellFront> front;  // over the surface's own optics
 
   int cells() const { return columns * rows; }
-  // The override of a cell; null where it has none.
+  // The override of a cell; null if it has none.
   const CellOverride* override_of(size_t cell_index) const;
 };
 
-// Regular wiring: the cells, taken serpentine-wise along columns (v) or rows (u) of the grid, are
-// cut into `strings` equal strings and these into substrings of `bypass_every` cells, the last one
-// shorter if need be. With `cross_tied` cells of equal place in all strings are tied in parallel
-// and there is one string of such rows.
+// Regular wiring. The cells are taken in a serpentine along columns (v) or rows (u) of the grid and
+// cut into `strings` equal strings. These are cut into substrings of `bypass_every` cells; the last
+// one may be shorter. With `cross_tied`, cells at equal positions of all strings are connected in
+// parallel, and there is one string of such rows.
 struct RegularWiring {
   bool along_columns = true;
   int strings = 1;
@@ -61,9 +61,9 @@ struct RegularWiring {
 };
 ArrayWiring regular_wiring(int columns, int rows, const RegularWiring& options);
 
-// Reads the keys of array_design_keys() in the table `[array]`; `places` in place of `cells`, see
-// read_cell_places(). Throws InputError for values out of range, and for a wiring or overrides that
-// name a cell twice.
+// Reads the keys of array_design_keys() in the table `[array]`. `places` replaces the key `cells`;
+// see read_cell_places(). Throws InputError for values out of range, and for a wiring or overrides
+// that contain a cell twice.
 ArrayDesign read_array_design(const Settings& array, std::optional<CellPlaces> places = {});
 
 }  // namespace photorque

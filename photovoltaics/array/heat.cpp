@@ -67,7 +67,7 @@ CellPlate::CellPlate(const CellHeat& heat, double area_m2)
     : heat_(heat), side_m_(std::sqrt(area_m2)) {}
 
 double CellPlate::natural_convection_W_m2_K(double temperature_K) const {
-  constexpr double heat_capacity_J_kg_K = 1007.0;  // of dry air from 250 to 400 K within 0.7 %
+  constexpr double heat_capacity_J_kg_K = 1007.0;  // dry air from 250 to 400 K, within 0.7 %
   const double film_K = 0.5 * (temperature_K + heat_.air_K);
   const double density = dry_air_density_kg_m3(heat_.air_pressure_Pa, film_K);
   const double viscosity = dry_air_viscosity_Pa_s(film_K);
@@ -104,11 +104,11 @@ double CellPlate::temperature_at_loss_K(double loss) const {
   });
 }
 
-// The root of T − L⁻¹(α E − P(T)/A) by secants inside a bracket; electric power is between nothing
-// and all of the light that is absorbed.
+// The root of T − L⁻¹(α E − P(T)/A) by the secant method inside a bracket. The electric power is
+// between zero and the absorbed light.
 double CellPlate::steady_K(double light_W_m2,
                            const std::function<double(double)>& electric_W_m2) const {
-  // The last secant leaves an error of second order in this.
+  // The last secant step leaves an error of second order in this tolerance.
   constexpr double tolerance = 1e-6;
   const double absorbed_W_m2 = heat_.absorptance * light_W_m2;
   const auto within = [](double kelvin) {
@@ -140,7 +140,7 @@ CellPlate::Step CellPlate::step(double from_K, double heating_W_m2, double step_
   Step step{from_K, 0.0};
   double left_s = step_s;
   for (int part = 1; left_s > 0.0; ++part) {
-    // Linear about the start of the part: exact for a linear loss.
+    // The loss is linearised at the start of the part, which is exact for a linear loss.
     const double loss = loss_W_m2(step.end_K), slope = loss_slope_W_m2_K(step.end_K);
     const double rest_W_m2 = heating_W_m2 - loss;
     const double longest_s = std::min(most_decay * heat_.capacity_J_m2_K / slope,

@@ -1,5 +1,5 @@
 // Temperature of the cells of an array: a plate that absorbs light, delivers electric power, and
-// gives off heat by convection and radiation.
+// loses heat by convection and radiation.
 #pragma once
 
 #include <functional>
@@ -10,10 +10,11 @@
 
 namespace photorque {
 
-// Cells are computed at no other temperatures: colder or hotter ones as at these.
+// Range of temperatures at which cells are computed. Colder or hotter cells are computed at its
+// limits.
 inline constexpr double coldest_cell_K = 100.0, hottest_cell_K = 1000.0;
 
-// Around the array, where `[array.thermal]` does not state otherwise.
+// Surroundings of the array, unless `[array.thermal]` states others.
 struct Surroundings {
   double air_K = 293.15;
   double air_pressure_Pa = 101325.0;
@@ -22,43 +23,44 @@ struct Surroundings {
 
 // One temperature T for all cells. Per area of the cells, with n faces:
 //   C dT/dt = α E − P/A − n (h (T − T_air) + ε σ (T⁴ − T_s⁴))
-// α E is the absorbed light, P the electric power. Where h is not stated it is that of natural
-// convection at a vertical plate as high as the square of all cells (S. W. Churchill, H. H. S. Chu,
-// Int. J. Heat Mass Transfer 18 (1975) 1323, eq. 9; 15 % of h over all Rayleigh numbers), with the
-// properties of dry air at the mean of T and T_air. Conduction into the platform is left out.
+// α E is the absorbed light, P the electric power. If h is not stated, it is that of natural
+// convection at a vertical plate whose height is the side of a square with the area of all cells
+// (S. W. Churchill, H. H. S. Chu, Int. J. Heat Mass Transfer 18 (1975) 1323, eq. 9; 15 % of h over
+// all Rayleigh numbers), with the properties of dry air at the mean of T and T_air. Conduction into
+// the platform is neglected.
 struct CellHeat {
   double air_K = 293.15;  // T_air
   double air_pressure_Pa = 101325.0;
-  double surroundings_K = 293.15;                // T_s, that the faces radiate to
+  double surroundings_K = 293.15;                // T_s, to which the faces radiate
   std::optional<double> convection_W_m2_K = {};  // h of each face; none: natural convection
   double emissivity = 0.84;                      // ε of each face
   double absorptance = 0.93;                     // α of the light that falls on the cells
   int faces = 2;                                 // n
   double capacity_J_m2_K = 2000.0;               // C: a cell with 1 mm of glass has about 2 kJ/m²K
-  double start_K = 293.15;                       // at the start of a run over time
+  double start_K = 293.15;                       // initial temperature of a run over time
 
   // "both faces in still air of 293.15 K, emissivity 0.84"
   std::string in_words() const;
 };
 
-// The balance of a plate of one area.
+// The heat balance of a plate of a given area.
 class CellPlate {
  public:
   CellPlate(const CellHeat& heat, double area_m2);
 
-  // Given off by all faces, per area of the cells; rises with the temperature.
+  // Heat lost by all faces, per area of the cells; increases with the temperature.
   double loss_W_m2(double temperature_K) const;
   double loss_slope_W_m2_K(double temperature_K) const;
-  // Where it is `loss_W_m2`, within [1 K, hottest_cell_K].
+  // The temperature at which the loss is `loss_W_m2`, within [1 K, hottest_cell_K].
   double temperature_at_loss_K(double loss_W_m2) const;
 
-  // The temperature in light of an irradiance for good. `electric_W_m2` is the power delivered per
-  // area over the temperature, no steeper than the loss. Within [coldest_cell_K, hottest_cell_K]
-  // and good to 1e-8 of the value.
+  // The steady-state temperature at a constant irradiance. `electric_W_m2` returns the delivered
+  // power per area at a temperature; its slope must not exceed that of the loss. The result is
+  // within [coldest_cell_K, hottest_cell_K], with a relative error of 1e-8.
   double steady_K(double light_W_m2, const std::function<double(double)>& electric_W_m2) const;
 
-  // A time of constant heating α E − P/A; second order in the time, and at rest in the steady
-  // state.
+  // A step of constant heating α E − P/A. The error is of second order in the step and vanishes in
+  // the steady state.
   struct Step {
     double end_K = 0.0;
     double given_off_J_m2 = 0.0;
@@ -72,9 +74,9 @@ class CellPlate {
   double side_m_;
 };
 
-// Reads `[array.thermal]` of the table `[array]`. What is not stated is that of `around`; in a
-// vacuum there is no convection, and the faces radiate to deep space (2.725 K). InputError for a
-// plate that can give off no heat.
+// Reads `[array.thermal]` of the table `[array]`. Values that are not stated are those of `around`.
+// In a vacuum there is no convection, and the faces radiate to deep space (2.725 K). Throws
+// InputError for a plate that cannot lose heat.
 CellHeat read_cell_heat(const Settings& array, const Surroundings& around);
 
 }  // namespace photorque

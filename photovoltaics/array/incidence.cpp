@@ -8,7 +8,8 @@
 namespace photorque {
 namespace {
 
-// Straight lines between so many steps are off by 1e-7 where K bends most (grazing, index 1.5).
+// Linear interpolation with this many steps has an error of 1e-7 where K bends most (grazing, index
+// 1.5).
 constexpr size_t cosine_steps = 4096;
 constexpr double min_cosine = 1e-9;
 

@@ -13,30 +13,30 @@
 
 namespace photorque {
 
-// Bins: for every bin of a grid and every band the incident power [W], index bin · bands + band;
-// and after all of them, in the same order, the sum of power × K, K as in cell/front.h.
-// Only the ratio of the two counts, so that it may be applied to light that was found in another
-// way.
+// The bins contain, for every bin of a grid and every band, the incident power [W] at index bin ·
+// bands + band, and after all of them, in the same order, the sum of power × K, with K as in
+// cell/front.h. Only the ratio of the two is used, so it can be applied to light that was computed
+// by another method.
 //
 // A surface whose own optics depend on the angle (glass: raytrace/surfaces/bsdf.h) has K =
-// absorbed(θ)/ absorbed(0) of these; no second front may be laid over it.
+// absorbed(θ)/absorbed(0). It must not have a second front.
 class IncidenceReceiver final : public Receiver {
  public:
-  // With `front`, every surface of the grid has it; without, each has its own optics.
-  // `wavelength_m` is the mean one of each band. InputError, under `where`, for a front over a
-  // surface that has its own.
+  // `front`, if given, applies to every surface of the grid; otherwise each surface has its own
+  // optics. `wavelength_m`: the mean wavelength of each band. Throws InputError, located at
+  // `where`, for a front on a surface whose own optics depend on the angle.
   IncidenceReceiver(const Scene& scene, const SurfaceGrid& grid,
                     const std::optional<CellFront>& front, std::span<const double> wavelength_m,
                     const InputLocation& where = {});
 
   size_t bins() const override { return 2 * half_; }
   void score(const Hits& hits, std::span<double> sums) const override;
-  // Nothing: its result is ArrayLight::entry.
+  // Empty: the result of this receiver is ArrayLight::entry.
   Product product(const BinSums&) const override { return {}; }
 
  private:
   using Modifier = std::function<double(double cosine, size_t band)>;
-  // K of each band over even steps of the cosine from 0 to 1, straight in between.
+  // K of each band at equal steps of the cosine from 0 to 1, with linear interpolation.
   struct Table {
     std::vector<double> values;
     double at(double cosine, size_t band) const;

@@ -10,7 +10,7 @@ std::vector<Key> diode_keys(double drop_V) {
   return {drop.with_default(drop_V), saturation, ideality, series};
 }
 
-// The keys that replace the `usual` values of the cells.
+// Keys that replace the `usual` values of the cells.
 std::vector<Key> cell_keys(std::string_view usual) {
   using namespace cell_key;
   std::vector<Key> keys;

@@ -1,4 +1,4 @@
-// The keys of [array] that this room reads.
+// The keys of [array] that are read in this folder.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace photorque {
 
-// The greatest number of cells of an array.
+// Maximum number of cells of an array.
 inline constexpr int most_cells = 100000;
 
 inline constexpr double bypass_drop_V = 0.5;
@@ -170,13 +170,13 @@ inline constexpr NumberKey bifaciality(
     "(IEC TS 60904-1-2): about 0.7 for PERC, 0.85 for TOPCon, 0.92 for heterojunction");
 }  // namespace array_key
 
-// read_array_design() and read_cell_places().
+// Keys of read_array_design() and read_cell_places().
 std::vector<Key> array_design_keys();
-// read_trackers().
+// Keys of read_trackers().
 std::vector<Key> tracker_keys();
-// read_cell_heat().
+// Keys of read_cell_heat().
 std::vector<Key> thermal_keys();
-// read_day().
+// Keys of read_day().
 std::vector<Key> day_keys();
 
 }  // namespace photorque

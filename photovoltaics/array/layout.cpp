@@ -129,8 +129,9 @@ class Search {
     return places_[i].string == places_[j].string && places_[i].substring == places_[j].substring;
   }
 
-  // Every assignment once: cells in turn go to each substring with room, but of substrings of equal
-  // size that are still empty only to the first, and of equal strings that are empty likewise.
+  // Visits every assignment once. Each cell in turn is added to every substring with room. Of
+  // several empty substrings of equal size, and of several empty equal strings, only the first one
+  // is used.
   template <typename Visit>
   bool visit_assignments(std::vector<std::vector<std::vector<int>>>& filled, size_t next,
                          Visit&& visit) {

@@ -8,7 +8,7 @@
 namespace photorque {
 namespace {
 
-constexpr double min_drop_V = 1e-9;  // stands for none
+constexpr double min_drop_V = 1e-9;  // replaces a drop of zero
 
 size_t cells_in(const ArrayWiring::String& string) {
   size_t count = 0;
@@ -25,7 +25,7 @@ bool of_one_kind(const ArrayWiring& shape, const CellTables& tables) {
          });
 }
 
-// Equal pieces that all substrings can be cut into, and their diode.
+// Size of equal pieces into which all substrings can be cut, and their diode.
 struct PieceShape {
   size_t size = 0;
   Diode bypass;
@@ -57,7 +57,7 @@ PieceShape pieces_of(const ArrayWiring& shape) {
   return piece;
 }
 
-// k diodes in a row.
+// k diodes in series as one diode.
 Diode times(Diode diode, double k) {
   diode.drop_V *= k;
   diode.ideality *= k;
@@ -142,7 +142,7 @@ double sorted_bound_W(const ArrayWiring& shape, const CellTables& tables,
                       const std::vector<double>& light_A) {
   const PieceShape piece = pieces_of(shape);
   std::vector<ArrayCurve> curves = brightest_in_series(shape, tables, light_A);
-  // A drop of min_drop_V stands for diodes without drop. Its voltage is added again, so that the
+  // A drop of min_drop_V replaces a drop of zero. Its voltage is added again, so that the
   // bound holds.
   const size_t count = shape.cells().size() / piece.size;
   const auto pieces = static_cast<double>(count);

@@ -12,7 +12,7 @@ namespace {
 // Overlap of [low, high] with the cells of a regular division of [start, end] into `count`.
 struct Overlap {
   int index;
-  double fraction;  // of the division's cell
+  double fraction;  // fraction of the division's cell
 };
 
 std::vector<Overlap> overlaps(double low, double high, double start, double end, int count) {

@@ -1,4 +1,4 @@
-// Light on a grid, gathered by the cells that lie on it.
+// Light on a grid, and its sums over the cells on the grid.
 #pragma once
 
 #include <span>
@@ -14,12 +14,12 @@ namespace photorque {
 struct ArrayLight {
   int width = 0;
   int height = 0;
-  double u_low = 0, u_high = 1, v_low = 0, v_high = 1;  // outer edges; metres, or of a texture
+  double u_low = 0, u_high = 1, v_low = 0, v_high = 1;  // outer edges [m], or texture coordinates
   int bands = 1;
-  std::vector<double> area_m2;  // of surface per bin (without bands)
+  std::vector<double> area_m2;  // surface area per bin (without bands)
   BinSums power_W;
-  // Sums of an IncidenceReceiver over the same grid, as many replicates; without bins, all light
-  // enters the cells as perpendicular light does.
+  // Sums of an IncidenceReceiver over the same grid, with the same number of replicates. Without
+  // bins, all light counts as perpendicular.
   BinSums entry = {};
 };
 
@@ -27,11 +27,11 @@ struct ArrayLight {
 ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums,
                        const BinSums& entry = {});
 
-// Adds `fraction` of the light on the back of the same surface. It enters as perpendicular light.
-// InputError unless the grids are alike.
+// Adds `fraction` of the light on the back of the same surface. It counts as perpendicular. Throws
+// InputError unless the grids are equal.
 void add_back_light(ArrayLight& light, const ArrayLight& back, double fraction);
 
-// The whole of a grid of given irradiance, exactly known: one replicate, one band.
+// Light of a known irradiance on a whole grid, without error: one replicate, one band.
 ArrayLight array_light(int width, int height, double u_length_m, double v_length_m,
                        std::span<const double> irradiance_W_m2);
 
@@ -40,8 +40,8 @@ struct CellRectangle {
   double u_low = 0, u_high = 0, v_low = 0, v_high = 0;
 };
 
-// columns × rows equal rectangles, `gap` between neighbours and `margin` around them all, in units
-// of the grid's coordinates; row-major, as bins. Throws InputError when gaps and margins leave no
+// columns × rows equal rectangles, with `gap` between neighbours and `margin` around all, in units
+// of the grid's coordinates; row-major, as bins. Throws InputError if gaps and margins leave no
 // cell.
 std::vector<CellRectangle> cell_rectangles(const ArrayLight& light, int columns, int rows,
                                            double gap, double margin);
@@ -55,8 +55,8 @@ struct BinPart {
 // The parts of a grid's bins in a rectangle.
 std::vector<BinPart> parts_of_rectangle(const CellRectangle& cell, const ArrayLight& light);
 
-// Which bins each cell covers, and by what fraction of the bin. Light is taken as even within a
-// bin.
+// The bins that each cell covers, with the covered fraction of each. The light is assumed to be
+// uniform within a bin.
 class CellCover {
  public:
   CellCover(const ArrayLight& light, std::span<const CellRectangle> cells);

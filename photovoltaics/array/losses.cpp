@@ -9,7 +9,7 @@ namespace photorque {
 
 namespace {
 
-// Differences within the rounding of sums are no loss.
+// Removes differences that are due to the rounding of sums.
 double without_rounding(double power_W, double next_W) {
   constexpr double rounding = 1e-12;
   return std::abs(power_W - next_W) < rounding * std::abs(next_W) ? next_W : power_W;
@@ -60,7 +60,7 @@ Product loss_product(const std::vector<LossStage>& stages) {
   Product product;
   Table table = Table::of("losses", "From the light to the load");
   Plot plot{"loss_waterfall", "From the light to the load", "", "power [W]"};
-  // A bar from one power to another, its name under it.
+  // Adds a bar from one power to another, with its name below it.
   const auto add_bar = [&](const std::string& label, double from_W, double to_W,
                            Plot::Colour colour) {
     const auto place = static_cast<double>(plot.curves.size() + 1);

@@ -1,4 +1,4 @@
-// Where the power went between the lamps' plug and the load, and how even the light was.
+// Power losses between the supply of the lamps and the load, and uniformity of the light.
 #pragma once
 
 #include <optional>
@@ -13,23 +13,24 @@ namespace photorque {
 // Results of the trace and efficiencies of the devices around the array.
 struct LossInputs {
   double emitted_W = 0.0;                      // light that leaves the lamps' optics
-  double on_receiver_W = 0.0;                  // of it on the whole receiver
+  double on_receiver_W = 0.0;                  // part of it on the whole receiver
   double photon_V = 1.7;                       // mean energy of a photon over the elementary charge
   double quantum_efficiency = 1.0;             // mean external
-  std::optional<double> wall_plug_efficiency;  // of the lamps, light over electric power
+  std::optional<double> wall_plug_efficiency;  // lamps: light over electric power
   std::optional<double> collimator_efficiency;
   std::optional<double> tracker_efficiency;
   std::optional<double> converter_efficiency;
 };
 
 struct LossStage {
-  std::string name;      // of the power
-  double power_W = 0.0;  // that is left
+  std::string name;      // name of the power
+  double power_W = 0.0;  // remaining power
   std::string loss;      // cause of the difference to the previous stage
 };
 
-// From the plug, or from the light where the lamps' efficiency is not known, to the load. Powers
-// fall from stage to stage; the ratios multiply to the whole.
+// Stages from the electric power of the lamps, or from their light if their efficiency is unknown,
+// to the load. The power falls from stage to stage, and the ratios multiply to the total
+// efficiency.
 std::vector<LossStage> loss_waterfall(const ArrayResult& array, const LossInputs& inputs);
 
 // Table "losses", the plot "loss_waterfall" and one quantity per stage.
@@ -46,16 +47,16 @@ Uniformity uniformity(const ArrayResult& array, std::span<const int> cells);
 // Table "uniformity": the whole array, then each string.
 Table uniformity_table(const ArrayResult& array, const ArrayWiring& wiring);
 
-// The maximum power of `design` when every cell gets `light_factor` ≥ 0 times the light that it
-// gets in `array`, whose photocurrents are of cells at `array_K`.
+// The maximum power of `design` if every cell receives `light_factor` ≥ 0 times its light in
+// `array`. The photocurrents of `array` refer to cells at `array_K`.
 double array_power_W(const ArrayDesign& design, const ArrayResult& array, double array_K,
                      double light_factor);
 
-// Relative change of the power per change of one thing.
+// Relative change of the power per change of one input.
 struct ArraySensitivity {
   std::string change;     // "temperature + 1 K"
   double power_W = 0.0;   // with the change
-  double relative = 0.0;  // to the power without
+  double relative = 0.0;  // relative to the power without the change
 };
 std::vector<ArraySensitivity> sensitivities(const ArrayDesign& design, const ArrayResult& array);
 

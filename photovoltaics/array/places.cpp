@@ -16,12 +16,13 @@ namespace {
 
 using FacePiece = std::vector<SurfaceFace>;
 
-// A corner as a number; corners within rounding (1e-7 of the extent) are one.
+// Numbers corners. Corners that differ by rounding only (1e-7 of the extent) have one number.
 class CornerNames {
  public:
   explicit CornerNames(double extent_m) : step_m_(std::max(1e-7 * extent_m, 1e-12)) {}
   int of(const Vec3& at_m) {
-    // The neighbouring boxes too, for corners that rounding put on either side of a boundary.
+    // Neighbouring boxes are searched too, for corners that rounding put on either side of a
+    // boundary.
     const std::array<int64_t, 3> box = {nearest(at_m.x()), nearest(at_m.y()), nearest(at_m.z())};
     for (int64_t i = -1; i <= 1; ++i) {
       for (int64_t j = -1; j <= 1; ++j) {
@@ -40,7 +41,7 @@ class CornerNames {
   std::map<std::array<int64_t, 3>, int> names_;
 };
 
-// The faces of one instance, by shared edges.
+// Groups the faces of one instance that are connected by shared edges.
 std::vector<FacePiece> connected_pieces(const std::vector<SurfaceFace>& faces) {
   double extent_m = 0.0;
   for (const SurfaceFace& face : faces) {
@@ -97,8 +98,8 @@ FoundCell found_cell(const FacePiece& piece, const Scene& scene, const SurfaceGr
   return cell;
 }
 
-// The place of each number among the distinct ones, and how many of these there are; numbers closer
-// than `apart` are one.
+// The rank of each number among the distinct numbers, and the count of these. Numbers closer than
+// `apart` count as equal.
 std::pair<std::vector<int>, int> ranks(const std::vector<double>& numbers, double apart) {
   const std::vector<size_t> order =
       sorted_indices(numbers.size(), [&](size_t a, size_t b) { return numbers[a] < numbers[b]; });
@@ -111,7 +112,8 @@ std::pair<std::vector<int>, int> ranks(const std::vector<double>& numbers, doubl
   return {rank, last + 1};
 }
 
-// Sorts cells that stand in columns and rows, one at every crossing; {count, 1} if they do not.
+// Sorts cells on a lattice of columns and rows, with one cell at every crossing, and returns
+// {columns, rows}; {count, 1} if they are not on a lattice.
 std::pair<int, int> sort_lattice(std::vector<FoundCell>& cells) {
   std::vector<double> u, v;
   Vec2 least = Vec2::Constant(1e300);

@@ -112,7 +112,7 @@ Product array_product(const ArrayResult& result) {
   if (result.entry_known) {
     product.quantities.push_back({"power_entering_cells_W", result.power_entering_W});
   }
-  // Cells anywhere have no picture in columns and rows.
+  // Cells at arbitrary places cannot be drawn in columns and rows.
   if (!result.cell_centre_m.empty() && result.rows == 1 && result.columns > 1) return product;
   const auto& cells = product.tables[2].columns;
   product.maps = {

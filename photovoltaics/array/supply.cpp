@@ -48,7 +48,8 @@ double LampOutput::at(double time_s) const {
 
 namespace {
 
-// Curves are known at these temperatures and taken linearly in between: 3e-5 of the power.
+// Curves are computed at multiples of this temperature step and interpolated linearly, with an
+// error of 3e-5 of the power.
 constexpr double temperature_step_K = 5.0;
 
 double lit(const std::vector<double>& photocurrent_A) {
@@ -181,7 +182,8 @@ void PowerSupply::take(double time_s, double step_s, double potential_W) {
   }
   const Battery& battery = *design_.battery;
   const double surplus_W = efficiency * potential_W - design_.load_W;
-  // Until the battery is full or empty, and then as much as is needed or there is.
+  // The first part of the step ends when the battery is full or empty. In the rest, the array
+  // supplies what the load needs, or the load receives what the array supplies.
   double first_s = step_s, array_J = 0.0, load_J = 0.0, into_J = 0.0, out_J = 0.0;
   const double before_J = stored_J_;
   const bool charges = surplus_W >= 0.0;

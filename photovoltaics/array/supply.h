@@ -1,5 +1,5 @@
-// The power system of a platform in light that changes: array, tracker, converter, battery, load
-// and the temperature of the cells, step by step, with every joule accounted for.
+// The power system of a platform in changing light: array, tracker, converter, battery, load and
+// the temperature of the cells, step by step, with a complete energy balance.
 //
 //   light on the cells = reflected + electric + heat given off + stored in the cells
 //   electric           = lost in the converter + load + into the battery − out of the battery
@@ -17,20 +17,20 @@
 
 namespace photorque {
 
-// When lamps are switched on and off.
+// Times at which the lamps are switched on and off.
 struct LampSchedule {
   bool on_at_start = true;
-  std::vector<double> time_s;  // rises strictly; at each of them the state changes
+  std::vector<double> time_s;  // strictly ascending; the state changes at each of them
 };
 
-// Light over that at full power of cold lamps. What LampDroop says of the time since a lamp was
-// switched on follows from two lags of first order, which recover while the lamp is off, with the
-// same time constants. At the start the lamps are cold.
+// Light relative to that of cold lamps at full power. The dependence of LampDroop on the time since
+// switching on is modelled by two first-order lags. They recover with the same time constants while
+// the lamp is off. At the start the lamps are cold.
 class LampOutput {
  public:
   LampOutput(const LampDroop& droop, const LampSchedule& schedule, double start_s);
 
-  // At and after start_s; at a switch the value after it.
+  // The relative light at a time ≥ start_s; at a switch the value after it.
   double at(double time_s) const;
   const std::vector<double>& switches_s() const { return switches_s_; }
 
@@ -50,15 +50,15 @@ class LampOutput {
 // Parts of the power system. The temperature of the cells follows array.heat.
 struct SupplyDesign {
   ArrayDesign array;
-  std::vector<double> cell_area_m2;  // per cell of the wiring
-  double max_photocurrent_A = 0.0;   // of any cell that will be asked for, at array.temperature_K
-  std::optional<Battery> battery = {};  // none: all power of the array is taken
+  std::vector<double> cell_area_m2;     // per cell of the wiring
+  double max_photocurrent_A = 0.0;      // largest one of any cell, at array.temperature_K
+  std::optional<Battery> battery = {};  // none: all power of the array is used
   double converter_efficiency = 1.0;    // between the array and battery and load, in (0, 1]
   double load_W = 0.0;                  // at the battery's terminals
   std::optional<Tracker> tracker = {};  // none: the best point at every step
 };
 
-// A sum of many small terms without their rounding.
+// Compensated sum of many small terms.
 // Source: A. Neumaier, ZAMM 54 (1974) 39.
 class EnergySum {
  public:
@@ -76,20 +76,20 @@ class EnergySum {
 // Energies since the start [J], each added up separately.
 struct SupplyEnergies {
   EnergySum on_cells;   // light
-  EnergySum reflected;  // of it, by CellHeat::absorptance; 0 where the cells' temperature is stated
+  EnergySum reflected;  // by CellHeat::absorptance; 0 if the cells' temperature is stated
   EnergySum given_off;  // heat, by convection and radiation
   EnergySum array;      // electric, from the array
-  EnergySum best;       // the array's available energy at its best point
-  EnergySum converter;  // lost there
+  EnergySum best;       // energy available at the best point of the array
+  EnergySum converter;  // lost in the converter
   EnergySum load;       // served
-  EnergySum unserved;   // of the load, without supply
-  EnergySum into_battery, out_of_battery;  // at its terminals
+  EnergySum unserved;   // load without supply
+  EnergySum into_battery, out_of_battery;  // at the battery's terminals
   EnergySum battery_loss;
 };
 
 // The relative closure of each balance: its error over the throughput.
 struct SupplyClosure {
-  double cells = 0.0;  // 0 where the cells' temperature is stated
+  double cells = 0.0;  // 0 if the cells' temperature is stated
   double bus = 0.0;
   double battery = 0.0;
   double largest() const { return std::max({cells, bus, battery}); }
@@ -102,31 +102,30 @@ struct SupplyEvent {
 
 class PowerSupply {
  public:
-  // With `stored_J` in the battery (if there is one), the cells at CellHeat::start_K.
+  // The battery, if there is one, starts with `stored_J`; the cells start at CellHeat::start_K.
   PowerSupply(SupplyDesign design, double stored_J);
 
-  // The light that holds during a step: photocurrents of the cells at array.temperature_K, and all
-  // light on them.
+  // Light during a step: photocurrents of the cells at array.temperature_K, and all light on them.
   struct Light {
     std::vector<double> photocurrent_A;
     double on_cells_W = 0.0;
   };
-  // One step. `judge` compares with the best point of the array, which takes longer; in between,
-  // the last ratio to the light holds.
+  // Computes one step. `judge`: whether the best point of the array is computed, which is slow.
+  // Otherwise its last ratio to the light is used.
   void step(double time_s, double step_s, const Light& light, bool judge = true);
 
-  // State after the last step; changing values are means over it.
+  // State after the last step; varying values are means over it.
   struct State {
     double array_W = 0.0;    // delivered
     double best_W = 0.0;     // at the best point of the array
-    double voltage_V = 0.0;  // of the array, as the tracker has it
+    double voltage_V = 0.0;  // array voltage set by the tracker
     double load_W = 0.0;     // served
     double battery_W = 0.0;  // d/dt of the battery's energy
     double light_W = 0.0;    // on the cells
   };
   const State& state() const { return state_; }
-  double temperature_K() const { return temperature_K_; }  // now
-  double stored_J() const { return stored_J_; }            // now
+  double temperature_K() const { return temperature_K_; }  // at the end of the last step
+  double stored_J() const { return stored_J_; }            // at the end of the last step
   const SupplyEnergies& energies() const { return energies_; }
   const std::vector<SupplyEvent>& events() const { return events_; }
   SupplyClosure closure() const;
@@ -148,7 +147,7 @@ class PowerSupply {
   std::map<int, CellTables> tables_;  // by temperature, see tables_at()
   std::optional<TrackerControl> control_;
   bool full_, empty_;
-  double best_per_light_ = 0.0;  // best power over light on the cells, when last judged
+  double best_per_light_ = 0.0;  // best power over light on the cells, when last computed
   State state_;
   SupplyEnergies energies_;
   std::vector<SupplyEvent> events_;

@@ -52,7 +52,7 @@ const ArrayPoint& best_of(const std::vector<ArrayPoint>& maxima) {
   return *std::ranges::max_element(maxima, {}, &ArrayPoint::power_W);
 }
 
-// The voltages a tracker may set: those of the array in the brightest light of the history.
+// Range of voltages of a tracker: up to the largest open-circuit voltage of the history.
 double range_V(const ArrayWiring& wiring, const CellTables& tables, const LightHistory& light) {
   double most = 0.0;
   for (const auto& currents : light.photocurrents_A) {

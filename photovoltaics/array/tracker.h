@@ -1,4 +1,4 @@
-// Maximum power point trackers on an array whose light changes.
+// Maximum power point trackers of an array in changing light.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace photorque {
 
-// Photocurrents of every cell over time, straight between the instants and constant outside them.
+// Photocurrents of every cell over time, linear between the instants and constant outside them.
 struct LightHistory {
-  std::vector<double> time_s;                        // rises strictly, at least one
-  std::vector<std::vector<double>> photocurrents_A;  // per instant, as the wiring's cells
+  std::vector<double> time_s;                        // strictly ascending, at least one
+  std::vector<std::vector<double>> photocurrents_A;  // per instant and cell of the wiring
 
   std::vector<double> at(double time_s) const;
 };
@@ -21,22 +21,21 @@ struct LightHistory {
 // voltage.
 struct Tracker {
   enum class Kind {
-    // Keep stepping while the power rises, else turn round.
+    // Steps on while the power rises, otherwise reverses.
     perturb_and_observe,
-    // Step towards dI/dV = −I/V (K. H. Hussein et al., IEE Proc. 142, 59 (1995)); stands still
-    // there.
+    // Steps towards dI/dV = −I/V and stops there (K. H. Hussein et al., IEE Proc. 142, 59 (1995)).
     incremental_conductance,
-    // Perturb and observe; at the start, and whenever the power has changed by `rescan_fraction`
-    // since the last sweep, sweep the whole range and continue at the best point.
+    // Perturb and observe. At the start, and whenever the power has changed by `rescan_fraction`
+    // since the last sweep, it sweeps the whole range and continues at the best point.
     global_scan,
-    // Sweep the whole range every `sweep_every_s` and stay at the best voltage between.
+    // Sweeps the whole range every `sweep_every_s` and keeps the best voltage in between.
     periodic_sweep,
   };
   Kind kind = Kind::perturb_and_observe;
   double period_s = 0.1;        // between two decisions, > 0
-  double step_fraction = 0.01;  // of the range of voltages
-  double start_fraction = 0.8;  // of the range, the start of all but the scanning kinds
-  int sweep_points = 40;        // of one sweep, one period each
+  double step_fraction = 0.01;  // fraction of the range of voltages
+  double start_fraction = 0.8;  // initial fraction of the range, except for the scanning kinds
+  int sweep_points = 40;        // points of one sweep, one period each
   double sweep_every_s = 60.0;
   double rescan_fraction = 0.05;
 };
@@ -44,9 +43,9 @@ std::string name_of(Tracker::Kind kind);
 
 struct TrackerRun {
   Tracker tracker;
-  double efficiency = 1.0;  // energy over that at the global maximum
+  double efficiency = 1.0;  // energy over the energy at the global maximum
   double energy_J = 0.0, best_energy_J = 0.0;
-  double false_maximum_s = 0.0;  // on the slope of another maximum than the global one
+  double false_maximum_s = 0.0;  // time on the slope of a maximum other than the global one
   double duration_s = 0.0;
   std::vector<double> time_s, voltage_V, power_W, best_W, best_V;
 };

@@ -1,4 +1,4 @@
-// Decisions of a maximum power point tracker, one measurement after the other.
+// Decisions of a maximum power point tracker, one per measurement.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace photorque {
 
-// The state of one tracker between decisions. `range_V` is the highest voltage that it may set.
+// State of one tracker between decisions. `range_V` is the highest voltage that it may set.
 class TrackerControl {
  public:
   TrackerControl(const Tracker& tracker, double range_V)
@@ -25,7 +25,7 @@ class TrackerControl {
 
   double voltage_V() const { return voltage_V_; }
 
-  // Takes the measurement at voltage_V() and decides the next voltage.
+  // Processes the measurement at voltage_V() and sets the next voltage.
   void observe(const ArrayPoint& now) {
     since_sweep_s_ += tracker_.period_s;
     if (sweep_point_ > 0) {
@@ -72,13 +72,14 @@ class TrackerControl {
       return;
     }
     if (change_W < 0.0) direction_ = -direction_;
-    // No current: beyond the open circuit, or in the dark. The search continues from below.
+    // No current: beyond the open circuit, or in the dark. The search continues at lower voltages.
     if (now.current_A <= 0.0) direction_ = -1.0;
     move(direction_);
   }
 
-  // The largest of three powers in a row is that at the maximum, wherever the steps around it fall.
-  // It is compared with its value just after the last sweep.
+  // Whether the light has changed since the last sweep. The largest of three successive powers is
+  // that at the maximum, wherever the steps are relative to it. It is compared with its value just
+  // after the last sweep.
   bool light_changed(double power_W) {
     recent_W_[settled_ % 3] = power_W;
     const double max_W = *std::ranges::max_element(recent_W_);

@@ -12,7 +12,8 @@
 namespace photorque {
 namespace {
 
-// Newton's steps on a convex function that rises, from above its root.
+// Solves y + e^y = L by Newton's method. The function is convex and increasing, and the start is
+// above the root.
 double omega_solved(double L) {
   double y = L > 1.0 ? std::log(L) : L;
   for (int i = 0; i < 100; ++i) {
@@ -23,11 +24,11 @@ double omega_solved(double L) {
   return y;
 }
 
-// Nodes at L = s − from, s from 2 on, evenly within every octave of s: the binary form of s counts
-// them.
+// Table with nodes at L = s − from for s ≥ 2, evenly spaced within every octave of s. The bits of s
+// give the index of a node.
 class OmegaTable {
  public:
-  static constexpr double from = 34.0;  // e^y is nothing beside 1 below
+  static constexpr double from = 34.0;  // below the table e^y is negligible compared with 1
   static constexpr int nodes_log2 = 9, shift = 52 - nodes_log2, octaves = 12;
 
   OmegaTable() {
@@ -76,7 +77,8 @@ class OmegaTable {
              6.0 * p - 3.0 * q + r}};
   }
 
-  // w + ln w = L, w = e^y: each step multiplies the digits by three.
+  // Solves w + ln w = L beyond the table, with w = e^y. Each step triples the number of correct
+  // digits.
   static double beyond(double L) {
     const double start = std::log(L);
     double w = L - start + start / L;
@@ -112,7 +114,8 @@ DiodeVoltage solved_diode_voltage(const CellCurve& curve, double dark_A) {
           (3.0 * d.curvature_A_V2 * d.curvature_A_V2 * slope - d.third_A_V3) * slope * cube};
 }
 
-// D″ rises through zero once and D′ is least there; without breakdown D′ falls to the shunt's.
+// D′ has its minimum where D″ rises through zero. Without breakdown it tends to the conductance of
+// the shunt.
 double largest_diode_slope_ohm(const CellCurve& curve) {
   const CellParameters& p = curve.parameters();
   if (p.breakdown_fraction == 0.0) return p.shunt_ohm;

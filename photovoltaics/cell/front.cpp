@@ -30,7 +30,7 @@ constexpr FlagKey cosine_twice(
     "applied again; for the figures of the paper ([paper.md](paper.md)), not for real cells");
 }  // namespace cover_key
 
-// Amplitudes reflected on the way from a medium of index n and cosine c into another.
+// Reflected amplitudes at the boundary between a medium of index n, with cosine c, and another one.
 struct BoundaryAmplitudes {
   double across, within;  // electric field across and within the plane of incidence
 

@@ -1,4 +1,4 @@
-// Fraction of light that enters the front of a cell, by the angle of incidence.
+// Fraction of light that enters the front of a cell, as a function of the angle of incidence.
 //
 // A cell's external quantum efficiency is measured in perpendicular light and includes the
 // reflection at normal incidence. The dependence on the angle is a separate factor, the incidence
@@ -13,27 +13,27 @@
 
 namespace photorque {
 
-// A thin clear film on the glass: interference in it, none in the glass.
+// A thin clear film on the glass. Interference occurs in the film but not in the glass.
 struct FilmCoating {
   double index = 1.38;          // ≥ 1
   double thickness_m = 132e-9;  // > 0
 };
 
-// Either clear glass, unpolarised light, the cell right behind it without further reflection, or a
-// table.
+// Either clear glass with the cell directly behind it (unpolarised light, no further reflection),
+// or a table.
 struct CellFront {
   double index = 1.5;  // ≥ 1
   std::optional<FilmCoating> coating;
-  // In place of both: T by angle, straight in between and down to zero at 90 deg.
+  // Instead of both: T as a function of the angle, linear in between and zero at 90 deg.
   std::vector<double> angle_rad;      // ascending from 0
-  std::vector<double> transmittance;  // as many, in [0, 1], first > 0
-  // In place of all these: T = cos θ. The light on a cell holds the cosine already; with this it
+  std::vector<double> transmittance;  // one per angle, in [0, 1], first > 0
+  // Instead of all of these: T = cos θ. The light on a cell already contains the cosine, which then
   // counts twice, as in equation 29 of the paper.
   bool cosine_twice = false;
 
-  // T at a cosine in [0, 1] of the angle of incidence; the wavelength counts for a coating alone.
+  // T at a cosine in [0, 1] of the angle of incidence. The wavelength affects a coating only.
   double transmitted(double cosine, double wavelength_m) const;
-  // K; 1 in perpendicular light.
+  // The modifier K, which is 1 at normal incidence.
   double modifier(double cosine, double wavelength_m) const {
     return transmitted(cosine, wavelength_m) / transmitted(1.0, wavelength_m);
   }
@@ -43,7 +43,7 @@ struct CellFront {
 // Source: M. Born and E. Wolf, Principles of Optics, 7th ed., section 1.6.4.
 double film_reflectance(double cosine, const FilmCoating& film, double index, double wavelength_m);
 
-// Reads the table `[array.cover]`, and the keys of it.
+// Reads the table `[array.cover]`, and declares its keys.
 CellFront read_cell_front(const Settings& cover);
 std::vector<Key> cell_front_keys();
 

@@ -23,7 +23,7 @@ CellModel single_diode(double open_circuit_V, double short_circuit_A, double ser
   return {p, 1e-4, silicon_gap_eV, silicon_gap_slope_1_K, 0.0};
 }
 
-// With the gap of another semiconductor and its slope.
+// The model with the band gap of another semiconductor and its slope.
 CellModel of_gap(CellModel model, double gap_eV, double gap_slope_1_K) {
   model.gap_eV = gap_eV;
   model.gap_slope_1_K = gap_slope_1_K;

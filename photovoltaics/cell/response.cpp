@@ -145,7 +145,7 @@ std::vector<std::string> light_outside(const QuantumEfficiency& efficiency,
   for (const WeighedSpectrum& one : spectra) {
     const BandValues parts = band_fractions(one.spectrum, Bands{{0.0, from_m, to_m, longest_m}});
     const double outside = parts[0] + parts[2];
-    // Current of the light beyond the table, if the efficiency at its ends held there.
+    // Current by the light beyond the table, if the efficiency there equalled that at its ends.
     const double cut_off =
         parts[0] * efficiency.efficiency.front() + parts[2] * efficiency.efficiency.back();
     if (outside < nearly_all && cut_off < noticeable) continue;

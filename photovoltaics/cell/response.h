@@ -1,4 +1,4 @@
-// From light to photocurrent.
+// Conversion of light into photocurrent.
 #pragma once
 
 #include <optional>
@@ -11,8 +11,8 @@
 
 namespace photorque {
 
-// Electrons collected per photon that falls on the cell (external: reflection is included), by
-// wavelength; straight between the points, zero outside them.
+// Electrons collected per photon that falls on the cell (external: reflection is included), as a
+// function of wavelength; linear between the points, zero outside them.
 struct QuantumEfficiency {
   std::vector<double> wavelength_m;  // ascending, at least two
   std::vector<double> efficiency;    // in [0, 1]
@@ -39,7 +39,7 @@ QuantumEfficiency quantum_efficiency_of(std::string_view cell, std::optional<dou
 // Ampere per watt at one wavelength: EQE λ q/(h c).
 double responsivity_A_W(const QuantumEfficiency& efficiency, double wavelength_m);
 
-// A spectrum and how much radiant power has it, in any unit.
+// A spectrum with its radiant power, in any unit.
 struct WeighedSpectrum {
   Spectrum spectrum;
   double power = 1.0;
@@ -51,9 +51,8 @@ struct WeighedSpectrum {
 BandValues band_responsivity_A_W(const QuantumEfficiency& efficiency, const Bands& bands,
                                  std::span<const WeighedSpectrum> spectra);
 
-// One line for each spectrum that gives less current than it may because the table does not reach
-// it: nearly all of its light is outside, or the table ends well above zero and cuts some of it
-// off.
+// One line for each spectrum that may give too little current because the table does not cover it:
+// nearly all of its light is outside, or the table ends well above zero and cuts off some of it.
 std::vector<std::string> light_outside(const QuantumEfficiency& efficiency,
                                        std::span<const WeighedSpectrum> spectra);
 

@@ -14,7 +14,7 @@ double scale_of(const CellCurve& curve) {
   return std::exp2(std::floor(std::log2(curve.dark(0.0).slope_S * scale_V)));
 }
 
-// {slope, curvature} of one cell after the other.
+// Stores {slope, curvature} cell by cell.
 void store(Quad slope_ohm, Quad curvature_V_A2, JunctionState* states) {
   static_assert(sizeof(JunctionState) == 2 * sizeof(double));
   const Quad low = __builtin_shufflevector(slope_ohm, curvature_V_A2, 0, 4, 1, 5);

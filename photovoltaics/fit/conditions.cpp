@@ -28,13 +28,13 @@ struct Task {
   SweepNoise noise;
   ShuntLaw law = ShuntLaw::constant;
   double first_A = 1.0;         // approximate photocurrent of the first curve
-  double brightest_A = 1.0;     // and the largest one
-  double reference_K = 298.15;  // of the shared values
+  double brightest_A = 1.0;     // largest photocurrent
+  double reference_K = 298.15;  // temperature of the shared values
   bool fits_gap = false;
   bool holds_shared = false;      // fits the photocurrents only
   double misfit = 0.0;            // error of the model, as a fraction of the photocurrent
   double variance = 0.0;          // per degree of freedom, in units of the noise alone
-  std::vector<VectorXd> error_A;  // of each reading of each curve
+  std::vector<VectorXd> error_A;  // one per reading of each curve
 
   // c of in_light(): PVsyst's 5.5 at the largest photocurrent.
   double shunt_exponent() const { return 5.5 * first_A / brightest_A; }
@@ -67,7 +67,7 @@ Circuit circuit_of(const Task& task, Index run, const VectorXd& x) {
     c.shunt_S *= light;
     c.shunt_by_light = -1.0;
   } else if (task.law == ShuntLaw::exponential) {
-    // R_sh over that of the first curve, as in_light() has it.
+    // R_sh relative to that of the first curve, by the law of in_light().
     const double exponent = task.shunt_exponent(), full = std::exp(-exponent);
     const double in_dark = std::exp(s[dark]), base = (1.0 - in_dark * full) / (1.0 - full);
     const double fallen = std::exp(-exponent * light);
@@ -85,7 +85,8 @@ struct Reading {
   Eigen::Matrix<double, 1, 1 + shared_count> by;
 };
 
-// As point_of_curve() of fit.cpp: 0 = I_L − I₀ (e^{V_d/a} − 1) − G V_d − I with V_d = V + I R_s.
+// The equation of point_of_curve() in fit.cpp: 0 = I_L − I₀ (e^{V_d/a} − 1) − G V_d − I with V_d =
+// V + I R_s.
 Reading reading_of(const Circuit& c, const CellCurve& cell, const IvSweep& sweep, size_t i) {
   const double voltage_V = sweep.voltage_V[i];
   const double light_A = c.photocurrent_A * (sweep.light.empty() ? 1.0 : sweep.light[i]);
@@ -202,7 +203,7 @@ VectorXd start_of(const Task& task) {
   return at;
 }
 
-// Squares of a curve's residuals, of the current over its photocurrent, summed; at its values.
+// Sum of the squared residuals of a curve, each relative to its photocurrent.
 double relative_squares(const Task& task, Index run, const VectorXd& at) {
   const Circuit c = circuit_of(task, run, values_of(at, run));
   const CellCurve cell = c.cell();
@@ -239,7 +240,7 @@ inference::Fit best_fit(Task& task, const VectorXd& start, std::vector<OutlierRe
     for (const CurveAt& curve : task.curves) check_sweep(curve.sweep);
     fit = fit_rounds(task, fit.at, 4);
   }
-  // Residuals far beyond the noise are the model's, which is off alike at all voltages.
+  // Residuals far beyond the noise are errors of the model, which have one size at all voltages.
   constexpr double far = 3.0;
   task.variance = fit.variance();
   if (!std::isfinite(fit.chi2) || task.variance < far * far) return fit;
@@ -356,7 +357,7 @@ ConditionsFit described(const Task& task, const inference::Fit& fit,
     result.model.reference.shunt_light_A = first.photocurrent_A;
   }
   if (task.law == ShuntLaw::exponential) {
-    // By the photocurrent of the first curve as fitted, which differs from that at the start.
+    // Refers to the fitted photocurrent of the first curve, which differs from the initial one.
     const double times = std::exp(s[dark]) / std::exp(s[shunt]);
     result.model.reference.shunt_dark_ohm = times;
     result.model.reference.shunt_exponent =
@@ -386,8 +387,8 @@ ConditionsFit described(const Task& task, const inference::Fit& fit,
   return result;
 }
 
-// The curves that one diode may describe, and in `result` the others; the irradiance of readings
-// stays where it helps.
+// The curves that one diode may describe; `omitted` receives the others. The irradiance of single
+// readings is kept for curves that fit better with it.
 std::vector<CurveAt> described_curves(std::span<const CurveAt> curves, const SweepNoise& noise,
                                       std::vector<size_t>& kept,
                                       std::vector<ConditionsFit::Omitted>& omitted) {
@@ -405,7 +406,8 @@ std::vector<CurveAt> described_curves(std::span<const CurveAt> curves, const Swe
     scatter.push_back(std::sqrt(own.variance));
     ideality.push_back(own.diode.scale_V.value / curve.temperature_K);
   }
-  // The reference is put first: the brightest, where it is twice as bright.
+  // Puts the reference first: the brightest curve, if it is more than twice as bright as the first
+  // one.
   const auto by_light = [&] {
     constexpr double far_brighter = 2.0;
     const auto light = [&](size_t k) { return sweep_ends(all[k].sweep).short_circuit_A; };
@@ -472,7 +474,7 @@ ConditionsFit fit_conditions(std::span<const CurveAt> curves, const SweepNoise& 
   if (!shunt_law && range > far_apart && task.curves.size() >= enough) {
     others.push_back(ShuntLaw::exponential);
   }
-  std::vector<double> predicted;  // by the best law
+  std::vector<double> predicted;  // predicted by the best law
   if (!others.empty()) predicted = predicted_squares(task, start);
   for (const ShuntLaw law : others) {
     Task other = task;

@@ -1,4 +1,4 @@
-// Readings of a curve that do not belong to it: spikes, and runs in changing light.
+// Readings that do not belong to a curve: spikes, and runs in changing light.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,7 +24,8 @@ std::vector<size_t> order_of(const IvSweep& sweep) {
   });
 }
 
-// A single reading off both neighbours, which agree with each other and with those beyond.
+// Removes single readings that differ from both neighbours, which agree with each other and with
+// the readings beyond them. Returns their number.
 size_t take_spikes(IvSweep& sweep) {
   const std::vector<size_t> order = order_of(sweep);
   const double scale_A = std::ranges::max(sweep.current_A);
@@ -79,7 +80,7 @@ UnsteadyLight take_unsteady_light(IvSweep& sweep, double noise) {
   if (flat.size() < 12) return {};
   const auto volts = [&](size_t k) { return sweep.voltage_V[flat[k]]; };
   const auto amperes = [&](size_t k) { return sweep.current_A[flat[k]]; };
-  // The falling line through two of the readings that most readings agree with.
+  // The falling line through two readings with which most readings agree.
   const double scale_A = std::ranges::max(sweep.current_A), close_A = 3.0 * noise * scale_A;
   const double steepest_S = 0.1 * scale_A / (0.6 * open_V);
   size_t most = 0;
@@ -109,7 +110,7 @@ UnsteadyLight take_unsteady_light(IvSweep& sweep, double noise) {
   for (size_t k = 0, end = 0; k < flat.size(); k = end + 1) {
     for (end = k; end < flat.size() && std::abs(off_A(end)) > close_A;) ++end;
     if (end - k < shortest) continue;
-    // With the edges, which go over into the line.
+    // Includes the edges of the run, which merge into the line.
     const double sign = off_A(k + (end - k) / 2) < 0.0 ? -1.0 : 1.0;
     size_t first = k, last = end;
     while (first > 0 && sign * off_A(first - 1) > close_A / 3.0) --first;
@@ -121,7 +122,7 @@ UnsteadyLight take_unsteady_light(IvSweep& sweep, double noise) {
       lowest_A = std::min(lowest_A, amperes(j));
       rise_A = std::max(rise_A, amperes(j) - lowest_A);
     }
-    // Without light that changes no current rises with the voltage.
+    // In steady light the current never rises with the voltage.
     if (largest_A < least * scale_A || rise_A < half * largest_A) continue;
     for (size_t j = first; j < last; ++j) out[flat[j]] = 1;
     found.largest = std::max(found.largest, largest_A / scale_A);
@@ -145,7 +146,8 @@ CurveCleaning clean_curve(IvSweep& sweep) {
   const auto volts = [&](size_t k) { return sweep.voltage_V[order[k]]; };
   const auto amperes = [&](size_t k) { return sweep.current_A[order[k]]; };
   constexpr double near_zero = 0.03, least_fall = 0.01, held = 0.25;
-  // The longest tail within the band about zero, then the longest part of it that stays in place.
+  // The longest tail within the band about zero, then the longest part of it with a constant
+  // current.
   size_t band = order.size();
   while (band > 0 && std::abs(amperes(band - 1)) <= near_zero * scale_A) --band;
   for (size_t first = band; first + 1 < order.size(); ++first) {

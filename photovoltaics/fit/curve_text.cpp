@@ -26,8 +26,8 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
   return words_of(line, " \t");
 }
 
-// The cells of a header. Between blanks a unit stays with its name: "Voltage (V)", "U / V",
-// "I in A".
+// The cells of a header. If blanks separate cells, a unit stays with its name: "Voltage (V)", "U /
+// V", "I in A".
 std::vector<std::string_view> split_header(std::string_view line, char separator) {
   std::vector<std::string_view> cells;
   if (separator != ' ') return split(line, separator);
@@ -65,12 +65,12 @@ struct Header {
   std::array<std::optional<size_t>, columns> place;
   std::array<Unit, columns> unit;
   std::array<bool, columns> has_unit{};
-  std::array<std::string, columns> title;  // as written
+  std::array<std::string, columns> title;  // title as written
   size_t cells = 0;
-  std::optional<size_t> reading, source;  // of instrument_header()
+  std::optional<size_t> reading, source;  // indices found by instrument_header()
 };
 
-// The name of a column: that of `columns` whose name in the file it is, else as it stands.
+// The name of a column: the one that `columns` assigns to it, otherwise the cell itself.
 std::string_view known_as(std::string_view cell, const CurveColumns& columns) {
   for (const auto& [name, written] : columns) {
     if (written == cell) return name;
@@ -115,7 +115,8 @@ std::optional<Header> header_of(std::string_view line, const InputLocation& wher
                        name.column == voltage ? "V or mV" : "A, mA, µA or mA/cm²");
     }
     if (header.place[name.column]) {
-      // A plain name counts before a qualified one, and of two qualified ones the first.
+      // A plain name has priority over a qualified one, and the first of two qualified ones over
+      // the second.
       if (!needed || name.is_qualified) continue;
       if (!is_qualified[name.column]) {
         throw InputError(where, std::string(unquoted(cells[i])), "a second column of this quantity",
@@ -132,7 +133,8 @@ std::optional<Header> header_of(std::string_view line, const InputLocation& wher
   return header;
 }
 
-// Whether all that a header names belongs to a curve; a log of a motor has more than that.
+// Whether all columns of a header belong to a curve. A log of a motor, for example, has further
+// columns.
 bool is_of_curve(std::string_view line, const Header& header) {
   static constexpr std::string_view beside[] = {
       "power", "p",     "leistung", "puissance", "potencia", "potenza", "time",
@@ -150,8 +152,8 @@ bool is_of_curve(std::string_view line, const Header& header) {
   return true;
 }
 
-// The rate of the voltage at each reading; per reading where there are no times. Differences over a
-// few readings, so that single voltages may scatter.
+// Rate of the voltage at each reading: per second or, without times, per reading. Differences over
+// a few readings reduce the scatter of single voltages.
 void find_rates(IvSweep& sweep, std::vector<double> time_s) {
   const size_t readings = sweep.voltage_V.size();
   sweep.is_timed = time_s.size() == readings && std::ranges::is_sorted(time_s) && readings > 1 &&
@@ -215,7 +217,7 @@ class Reader {
     MeasuredCurve curve;
     std::array<double, columns> sum{};
     std::array<double, columns> count{};
-    std::vector<double> irradiance_W_m2, time_s;  // of each reading that has one
+    std::vector<double> irradiance_W_m2, time_s;  // one per reading that has one
   };
 
   void find_header() {
@@ -259,7 +261,7 @@ class Reader {
     }
   }
 
-  // Which of reading and source is the voltage, and their units, by the first row.
+  // Determines which of reading and source is the voltage, and their units, from the first row.
   void assign_instrument(const std::vector<std::string_view>& cells) {
     const auto unit_after = [&](Column column) -> std::optional<Unit> {
       for (size_t i = *header_.place[column] + 1; i < cells.size(); ++i) {
@@ -275,7 +277,7 @@ class Reader {
     }
   }
 
-  // A row of units below the header.
+  // Whether a row below the header states units.
   bool states_units(const std::vector<std::string_view>& cells) {
     for (const Column column : {voltage, current}) {
       const size_t place = *header_.place[column];
@@ -295,7 +297,7 @@ class Reader {
     return all;
   }
 
-  // A decimal comma, where none separates.
+  // The cell with a point in place of a decimal comma, unless commas separate the cells.
   std::string plain(std::string_view cell) const {
     std::string text(unquoted(cell));
     const bool may_be_comma = header_.separator != ',';
@@ -309,7 +311,7 @@ class Reader {
     if (is_missing(cell)) return std::nullopt;
     Unit unit = header_.unit[column];
     std::string_view text = cell;
-    // "0.52 V"
+    // A cell may contain its unit: "0.52 V".
     const size_t digits = text.find_last_of("0123456789.") + 1;
     if (digits > 0 && digits < text.size()) {
       const auto stated = unit_named(column, lower(trimmed(text.substr(digits))));
@@ -320,8 +322,8 @@ class Reader {
     return (number + unit.offset) * unit.to_SI;
   }
 
-  // Lines below the readings ("End of data") have no voltage; a reading behind one makes it a
-  // mistake.
+  // Whether a row is below the readings ("End of data"): it has no voltage. If a reading follows
+  // such a row, the row is an error.
   bool is_after_readings(const std::vector<std::string_view>& cells) {
     try {
       value(voltage, cells);
@@ -362,7 +364,7 @@ class Reader {
       rows.count[column] += 1.0;
       if (column == irradiance) rows.irradiance_W_m2.push_back(*one);
     }
-    // Times of day ("08:00") have no use here.
+    // Times of day ("08:00") are ignored.
     if (header_.place[time] && *header_.place[time] < cells.size()) {
       const auto number_s = number_in(plain(cells[*header_.place[time]]));
       if (number_s) rows.time_s.push_back(*number_s * header_.unit[time].to_SI);
@@ -423,7 +425,7 @@ bool is_curve_header(std::string_view line, const CurveColumns& columns) {
     const auto header = curve_text::header_of(line, {}, columns);
     return header && (!columns.empty() || curve_text::is_of_curve(line, *header));
   } catch (const InputError&) {
-    return true;  // names them, but in a way that the reader refuses
+    return true;  // it names curve columns, but in a form that the reader rejects
   }
 }
 

@@ -65,8 +65,8 @@ std::span<const Unit> units_of(Column column) {
   }
 }
 
-// In English, German, French, Spanish, Italian, Portuguese, Dutch, Polish, Czech, Swedish, Russian,
-// Chinese and Japanese; small letters.
+// Names of a column in English, German, French, Spanish, Italian, Portuguese, Dutch, Polish, Czech,
+// Swedish, Russian, Chinese and Japanese, in small letters.
 std::span<const std::string_view> names_of(Column column) {
   static constexpr std::string_view voltages[] = {
       "voltage",        "volts",    "volt",       "v",        "u",
@@ -155,8 +155,8 @@ bool is_one_of(std::string_view text, std::span<const std::string_view> words) {
   return std::ranges::find(words, text) != words.end();
 }
 
-// Words beside a voltage or current that leave it one of the device. Those of single points
-// ("V_oc", "I_mp") are not among them.
+// Whether a word may qualify a voltage or current of the device. Words for single points ("V_oc",
+// "I_mp") are excluded.
 bool is_qualifier(std::string_view word) {
   static constexpr std::string_view known[] = {
       "mod",   "module",   "cell",  "meas", "measured", "corr",  "corrected", "pv",
@@ -206,7 +206,7 @@ Named named_without_brackets(std::string cell) {
       std::string text = cell;
       std::ranges::replace(text, '_', ' ');
       if (text == name) return {column, {}, {}};
-      // "U / V", "U/V", "voltage mV"
+      // A name may be followed by a unit: "U / V", "U/V", "voltage mV".
       if (!text.starts_with(std::string(name) + " ") &&
           !text.starts_with(std::string(name) + "/")) {
         continue;
@@ -244,7 +244,7 @@ Named named(std::string_view header_cell) {
   const std::string cell = lower(trimmed(header_cell));
   const size_t open = cell.find_first_of("([");
   if (open == std::string::npos) {
-    // Small: T is a temperature.
+    // Only a small t is a time: T is a temperature.
     if (trimmed(header_cell) == "t") return {time, {}, {}};
     return named_without_brackets(cell);
   }

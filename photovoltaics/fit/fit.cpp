@@ -1,4 +1,4 @@
-// Fits of whole sweeps under even light.
+// Fits of whole sweeps in uniform light.
 #include "photovoltaics/fit/fit.h"
 
 #include <Eigen/Dense>
@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-// Fitted are I_L and the logarithms of I₀, n V_t, R_s and 1/R_sh, and of sweeps in both directions
-// τ of the charge storage.
+// The fitted parameters are I_L, the logarithms of I₀, n V_t, R_s and 1/R_sh, and, for sweeps in
+// both directions, τ of the charge storage.
 enum Parameter { light, saturation, scale, series, shunt, count, storage = count };
 
 CellCurve circuit(const VectorXd& x) {
@@ -104,7 +104,8 @@ std::vector<inference::Parameter> parameters_from(const VectorXd& x, const Sweep
   return all;
 }
 
-// The residuals of some sweeps, whitened by the roots of their covariances; all must outlive it.
+// The residuals of some sweeps, whitened by the roots of their covariances. All arguments must
+// outlive the result.
 inference::ResidualFunction whitened(std::span<const IvSweep> sweeps,
                                      const std::vector<MatrixXd>& roots) {
   Index points = 0;
@@ -143,7 +144,7 @@ inference::Fit fit_round(std::span<const IvSweep> sweeps, const std::vector<Matr
   return inference::fit(model, start, inference::Options::to_rounding());
 }
 
-// The weights of each round are those of the curve of the round before.
+// Repeats the fit. The weights of each round are computed from the curve of the previous round.
 inference::Fit fit_rounds(std::span<const IvSweep> sweeps, const SweepNoise& noise, VectorXd x,
                           int rounds) {
   inference::Fit fit;
@@ -215,7 +216,7 @@ bool has_both_directions(std::span<const IvSweep> sweeps) {
   return std::min(up_V, down_V) > least * std::max(up_V, down_V);
 }
 
-// The charge storage at a fit, where it is determined.
+// The charge storage of a fit; nothing if it is not determined.
 std::optional<ChargeStorage> storage_of(std::span<const IvSweep> sweeps,
                                         const inference::Fit& fit) {
   ChargeStorage found;
@@ -235,8 +236,8 @@ std::optional<ChargeStorage> storage_of(std::span<const IvSweep> sweeps,
   return found;
 }
 
-// The best fit without outliers, which go to `outliers` and out of `sweeps`; with the charge
-// storage where it is determined.
+// The best fit without outliers, which are moved from `sweeps` to `outliers`. It includes the
+// charge storage if that is determined.
 inference::Fit best_fit(std::vector<IvSweep>& sweeps, const SweepNoise& noise,
                         std::vector<OutlierReading>& outliers) {
   const bool may_store = has_both_directions(sweeps);

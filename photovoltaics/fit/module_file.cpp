@@ -18,7 +18,7 @@ namespace {
 
 constexpr double zero_celsius_K = 273.15;
 
-// Figures by name, of one place in a file.
+// Values by key, from one place of a file.
 class Listing {
  public:
   explicit Listing(InputLocation where) : where_(std::move(where)) {}
@@ -26,7 +26,7 @@ class Listing {
   void set(const std::string& key, std::string_view text) { texts_.emplace(key, text); }
   bool has(const std::string& key) const { return texts_.contains(key); }
   std::string text(const std::string& key) const { return has(key) ? texts_.at(key) : ""; }
-  // Within the range of real modules.
+  // The number of a key, which must be between `above` and `below`, the range of real modules.
   double number(const std::string& key, double above, double below) const {
     if (!has(key)) {
       throw InputError(where_, key, "nothing",
@@ -135,7 +135,7 @@ Listing named_row(std::string_view text, const std::string& file, const std::str
   return listing_of(header, rows[0], file);
 }
 
-// The circuit of the whole module at the reference, and how it goes to one cell.
+// The circuit of the whole module at the reference.
 struct Circuit {
   double photocurrent_A, saturation_A, ideality, series_ohm, shunt_ohm;
 };
@@ -232,7 +232,7 @@ ListedModule of_pan(const Listing& pan) {
   constexpr double ampere_of_mA = 1e-3;
   const double growth_1_K = ampere_of_mA * pan.number("muISC", -1e5, 1e5) / photocurrent_A;
   m.cell.photocurrent_slope_1_K = growth_1_K;
-  // The open circuit of PVsyst's equations, warmer.
+  // The open-circuit voltage by PVsyst's equations at a higher temperature.
   constexpr double step_K = 10.0;
   const double warm_K = T + step_K;
   const double warm_n = n + (pan.has("muGamma") ? pan.number("muGamma", -1.0, 1.0) : 0.0) * step_K;

@@ -117,7 +117,8 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double one_sided_95 = 2.706;  // 1.645²
 
-// χ² with parameter k held, all others fitted from `rest`, which becomes where they end.
+// χ² with parameter k held at `value` and all others fitted from `rest`, which receives their
+// values.
 double held_chi2(const std::vector<inference::Parameter>& all,
                  const inference::ResidualFunction& residuals, Index k, double value,
                  VectorXd& rest) {
@@ -168,7 +169,7 @@ std::optional<double> upper_limit(const inference::Fit& best,
     inside = outside;
     rest = trial;
   }
-  constexpr double close = 0.005;  // of a logarithm: the limit to half a percent
+  constexpr double close = 0.005;  // in a logarithm: half a percent of the limit
   while (outside - inside > close) {
     const double middle = std::midpoint(inside, outside);
     VectorXd trial = rest;
@@ -198,7 +199,7 @@ void limit_resistances(const inference::Fit& best, const inference::ResidualFunc
 
 std::vector<BoundReached> bounds_reached(const inference::Fit& best,
                                          std::span<const NamedBound> named, Index first) {
-  constexpr double near = 1e-6;  // of a logarithm
+  constexpr double near = 1e-6;  // in a logarithm
   std::vector<BoundReached> reached;
   for (const NamedBound& bound : named) {
     const inference::Parameter& p = best.parameters.shared[static_cast<size_t>(bound.parameter)];

@@ -1,4 +1,4 @@
-// Fits of datasheet figures.
+// Fits of datasheet values.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
@@ -19,7 +19,8 @@ using Eigen::Index, Eigen::VectorXd;
 
 enum Parameter { saturation, scale, series, shunt, count };
 
-// The points, and the law of the shunt, whose reference is the short-circuit current of the first.
+// The points, and the law of the shunt, whose reference is the short-circuit current of the first
+// point.
 struct Figures {
   std::span<const RatedPoint> points;
   ShuntLaw law = ShuntLaw::constant;
@@ -45,7 +46,7 @@ Circuit circuit_of(const VectorXd& x, const Figures& figures, const RatedPoint& 
   const double first_A = cell.photocurrent_A(figures.first_A);
   const double leak_A = shunt_S * series_ohm * point.short_circuit_A;
   double factor = (cell.photocurrent_A(point.short_circuit_A) - leak_A) / (first_A - leak_A);
-  // Happens only for resistances that are never the result of a fit.
+  // Happens only for resistances that a fit never results in.
   if (!(factor > 0.0) || !std::isfinite(factor)) {
     factor = point.short_circuit_A / figures.first_A;
   }
@@ -211,7 +212,7 @@ FigureErrors figures_of(const RatedFit& fit) {
 // undetermined parameter are undetermined too.
 FigureErrors scatter_errors(const inference::Fit& fitted, const Figures& figures,
                             const TemperatureSlopes& slopes) {
-  constexpr double step = 1e-4;  // of logarithms
+  constexpr double step = 1e-4;  // step of the logarithms
   Eigen::Matrix<double, with_errors, Eigen::Dynamic> jacobian(with_errors, Index{count});
   for (Index k = 0; k < Index{count}; ++k) {
     const auto moved = [&](double by) {
@@ -301,7 +302,7 @@ void limit_by_figures(const inference::Fit& best, const Figures& figures,
       });
   std::vector<inference::Parameter> parameters = parameters_from(best.at, points);
   if (points.size() == 1) {
-    constexpr double assumed = 0.1;  // of the ideality, which one point does not determine
+    constexpr double assumed = 0.1;  // error of the ideality, which one point does not determine
     parameters[scale].mean = best.at[scale];
     parameters[scale].sigma = assumed;
   }

@@ -1,4 +1,4 @@
-// Keys of a maker's figures, for fits of cells and modules.
+// Keys of a manufacturer's values, for fits of cells and modules.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,10 @@
 
 namespace photorque {
 
-// One [[datasheet]], and the keys of it.
+// One [[datasheet]], and its keys.
 RatedPoint read_rated_point(const Settings& point);
 std::vector<Key> rated_point_keys();
-// Temperature slopes of the figures, and their keys.
+// Temperature slopes of the values, and their keys.
 TemperatureSlopes read_rated_slopes(const Settings& settings);
 std::vector<Key> rated_slope_keys();
 

@@ -1,4 +1,4 @@
-// Fits of a string in uneven light.
+// Fits of a string in light that differs between its substrings.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -49,7 +49,8 @@ std::vector<ArrayCurve::SlopedPoint> string_points(const VectorXd& x,
   return points;
 }
 
-// The current in the middle of each substring's part of the voltage is about that substring's.
+// Initial values. The current in the middle of each substring's part of the voltage is about that
+// of the substring.
 VectorXd first_guess(const IvSweep& sweep, int substrings, double knee) {
   const SweepEnds ends = sweep_ends(sweep);
   const double substring_V = ends.open_circuit_V / substrings, a = substring_V / knee;
@@ -70,8 +71,9 @@ VectorXd first_guess(const IvSweep& sweep, int substrings, double knee) {
   return x;
 }
 
-// Substrings without light, and diodes that drop nothing or all of the voltage, end on a bound.
-constexpr double darkest_part = 1e-6;  // of the short-circuit current
+// Bounds: fits of substrings without light, and of diodes with no drop or the whole voltage, end
+// there.
+constexpr double darkest_part = 1e-6;  // fraction of the short-circuit current
 constexpr double least_drop_V = 1e-3, most_drop_V = 5.0;
 
 std::vector<inference::Parameter> parameters_from(const VectorXd& x, const SweepEnds& ends) {
@@ -126,8 +128,9 @@ VectorXd fitted_slopes_S(const IvSweep& sweep, const VectorXd& x) {
   return slopes;
 }
 
-// Errors of the current over their standard deviations, the voltage's carried over by slopes that
-// the fit does not change: else it would find a string so steep that any error is the voltage's.
+// Residuals of the current over their standard deviations. The error of the voltage is converted by
+// slopes that the fit does not change. Otherwise the fit would find a string so steep that every
+// residual counts as an error of the voltage.
 VectorXd weighted_errors(const IvSweep& sweep, const SweepNoise& noise, double max_A,
                          const VectorXd& slopes_S, const VectorXd& x) {
   const auto points = static_cast<Index>(sweep.voltage_V.size());
@@ -160,7 +163,7 @@ StringFit fitted_from(const VectorXd& start, const IvSweep& sweep, const SweepNo
   return {inference::fit(model, start, inference::Options::to_rounding()), residuals};
 }
 
-// The best from several starts with the slopes as measured, and from there with those of the fit.
+// The best fit from several starts with the measured slopes, refitted with the slopes of the fit.
 StringFit best_fit(const IvSweep& sweep, int substrings, const SweepNoise& noise) {
   const VectorXd measured_S = measured_slopes_S(sweep);
   const auto from_knee = [&](double knee) {

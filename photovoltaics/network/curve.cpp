@@ -73,7 +73,7 @@ ArrayCurve::ArrayCurve(const ArrayWiring& wiring, CellTables tables,
   end_x_ = find_end_x();
 }
 
-// Cells whose shunt changes with the light: one law for each light.
+// Replaces the laws of cells whose shunt depends on the light: one law for each photocurrent.
 void ArrayCurve::set_photocurrents(const std::vector<double>& photocurrents_A) {
   std::map<std::pair<const DiodeVoltageLaw*, double>, std::shared_ptr<const DiodeVoltageLaw>> known;
   std::vector<std::shared_ptr<const DiodeVoltageLaw>> replaced;  // alive, so that addresses differ
@@ -142,7 +142,7 @@ void ArrayCurve::evaluate(double x, const std::vector<StringRegime>& regimes, No
     node.third = state.third_V_A3;
     return;
   }
-  // Four at a time where that is possible.
+  // Solves four strings at once if possible.
   const bool cells_too = std::isfinite(tolerance);
   const auto alone = [&](size_t s, const CurrentGuess& guess) {
     strings_[s].at_voltage(x, regimes[s], guess.low_A, guess.high_A, tolerance, node.strings[s]);
@@ -216,7 +216,7 @@ ArrayCurve::Switches ArrayCurve::switches_of(const StringCurve& string) const {
   for (double& clamp : switches.clamp_x) {
     if (clamp == never) continue;
     string.at_current(clamp, string.regime_at(clamp), fine, state);
-    // No current that a blocking diode lets back ends its conduction.
+    // If the voltage is not finite, no current that the blocking diode admits ends the conduction.
     clamp = std::isfinite(state.voltage_V) ? state.voltage_V : always;
   }
   if (string.has_blocking_clamp()) switches.blocked_x = string.open_circuit_V();

@@ -1,19 +1,19 @@
-// The current–voltage curve of an array under given light, exactly.
+// The exact current–voltage curve of an array in given light.
 //
-// Between breakpoints (where an ideal bypass or blocking diode starts to conduct) the curve is a
-// smooth function: one string is V(I), explicit through the cells' tables; several strings are
-// I(V), each string solved for its current. `x` is that independent variable, `y` the other one.
+// Between breakpoints (at which an ideal bypass or blocking diode starts to conduct) the curve is a
+// smooth function. One string is V(I), explicit through the cells' tables. Several strings are
+// I(V), each string solved for its current. `x` is the independent variable, `y` the other one.
 //
-// A resistance R in series with the array adds to V(I) of one string; several strings keep x, the
-// voltage before it, and the power is y (x − R y).
+// A resistance R may be in series with the array. For one string it adds to V(I). For several
+// strings x remains the voltage before R, and the power is y (x − R y).
 //
-// Maxima of the power are zeros of P′ = y − (x − 2 R y)·slope, without R of P′ = y − x·slope. At a
+// Maxima of the power are zeros of P′ = y − (x − 2 R y)·slope (without R: P′ = y − x·slope). At a
 // breakpoint the slope falls, so P′ jumps upwards and no maximum lies there. Inside a piece, bounds
-// on slope and curvature over an interval follow from the diode voltages at its ends: with D‴ > 0
-// (true while n V_t ≪ |V_br|) D″ is monotone and D′ has its one minimum where D″ = 0; sums and
-// reciprocals of such bounds cover the network (elements.h). An interval is halved until the
-// bounds show that P′ has no zero in it, or is monotone in it and so has at most one. All local
-// maxima are found thereby and none is missed.
+// on slope and curvature over an interval follow from the diode voltages at its ends. With D‴ > 0
+// (true while n V_t ≪ |V_br|) D″ is monotone, and D′ has its only minimum where D″ = 0. Sums and
+// reciprocals of such bounds cover the network (elements.h). An interval is halved until the bounds
+// show that P′ has no zero in it, or is monotone in it and so has at most one. This finds all local
+// maxima.
 #pragma once
 
 #include <vector>
@@ -29,7 +29,7 @@ struct ArrayPoint {
   double power_W() const { return voltage_V * current_A; }
 };
 
-// The state of every cell, indexed as in the wiring.
+// The states of all cells, indexed as in the wiring.
 struct CellStates {
   std::vector<double> voltages_V;  // < 0: reverse-biased
   std::vector<double> currents_A;
@@ -37,45 +37,46 @@ struct CellStates {
 
 class ArrayCurve {
  public:
-  // `tables[i]` and `photocurrents_A[i]` (≥ 0) belong to cell i of the wiring; like cells share a
-  // law. A shunt that changes with the light is that of the cell's photocurrent (in_light()).
-  // Throws InputError for a wiring without cells or with a cell that is not there.
+  // `tables[i]` and `photocurrents_A[i]` (≥ 0) belong to cell i of the wiring; equal cells share a
+  // law. A shunt that depends on the light is evaluated at the cell's photocurrent (in_light()).
+  // Throws InputError for a wiring without cells or with an index that has no cell.
   ArrayCurve(const ArrayWiring& wiring, CellTables tables,
              const std::vector<double>& photocurrents_A, const ArrayChanges& changes = {});
 
   double short_circuit_A() const { return by_current() ? end_x_ : current_A(0.0); }
   double open_circuit_V() const { return by_current() ? voltage_V(0.0) : end_x_; }
-  // For voltages from 0 to the open circuit's and currents from 0 to the short circuit's.
+  // For voltages from 0 to open circuit, and currents from 0 to short circuit.
   double current_A(double voltage_V) const;
   double voltage_V(double current_A) const;
 
-  // All local maxima of the power between short and open circuit, by rising voltage. Empty in the
-  // dark. Powers are exact to 1e-12 relative.
+  // All local maxima of the power between short and open circuit, by rising voltage; none in the
+  // dark. The relative error of the powers is 1e-12.
   std::vector<ArrayPoint> maxima() const { return scan(1).maxima; }
-  // The largest of maxima(); zero in the dark. Searches only pieces that can hold it: y falls, so
-  // that between a and b the power is at most y(a) b.
+  // The largest of maxima(); zero in the dark. Searches only pieces that can contain it: y falls,
+  // so the power between a and b is at most y(a) b.
   ArrayPoint maximum_power() const;
-  // Points of the curve by rising voltage, both ends and all breakpoints among them, x in at least
-  // `intervals` (≥ 1) steps; with all local maxima, found between them.
+  // Points of the curve by rising voltage, including both ends and all breakpoints, with at least
+  // `intervals` (≥ 1) steps of x; and all local maxima.
   struct Scan {
     std::vector<ArrayPoint> points;
     std::vector<ArrayPoint> maxima;
-    // Breakpoints without a maximum beside which the power is nearly level: a maximum has just
-    // vanished there, or appears with a little other light.
+    // Breakpoints without a maximum at which the power is nearly constant on one side: a maximum
+    // has just vanished there, or appears with a small change of the light.
     std::vector<ArrayPoint> corners;
   };
   Scan scan(int intervals) const;
   CellStates cells_at(double voltage_V) const;
 
-  // Current and −dI/dV ≥ 0 at rising voltages of any sign, beyond short and open circuit too.
+  // Current and −dI/dV ≥ 0 at ascending voltages of any sign, also beyond short and open circuit.
   struct SlopedPoint {
     double voltage_V = 0.0, current_A = 0.0, slope_S = 0.0;
   };
   std::vector<SlopedPoint> at_voltages(const std::vector<double>& rising_V) const;
-  // Points from backwards to beyond the open circuit, some hundredth of voltage and current apart.
+  // Points from before short circuit to beyond open circuit, about a hundredth of the voltage or
+  // current apart.
   std::vector<ArrayPoint> trace() const;
-  // The point of the curve, beyond short and open circuit too, that is nearest to a reading in
-  // units of its errors (> 0). Among many readings the search starts from the nearest point of a
+  // The point of the curve, also beyond short and open circuit, that is nearest to a reading in
+  // units of its errors (> 0). For many readings the search starts from the nearest point of a
   // trace().
   SlopedPoint nearest(const ArrayPoint& reading, const ArrayPoint& error,
                       const std::vector<ArrayPoint>& trace = {}) const;
@@ -91,7 +92,7 @@ class ArrayCurve {
  private:
   struct Node {
     double x = 0.0, y = 0.0, slope = 0.0, curvature = 0.0, third = 0.0;
-    double series_ohm = 0.0;  // R where x is the voltage, else 0
+    double series_ohm = 0.0;  // R if x is the voltage, otherwise 0
     std::vector<StringState> strings;
     void sum_strings();
     double power_W() const { return (x - series_ohm * y) * y; }
@@ -111,10 +112,10 @@ class ArrayCurve {
   class Search;
   class Probe;
 
-  // Where a string's ideal diodes start to conduct or block, in terms of x.
+  // Values of x at which a string's ideal diodes start to conduct or block.
   struct Switches {
     std::vector<double> clamp_x;  // per substring; ∞ without a clamp
-    double blocked_x = 0.0;       // ∞ without one
+    double blocked_x = 0.0;       // ∞ without a blocking clamp
   };
 
   bool by_current() const { return strings_.size() == 1; }
@@ -123,7 +124,7 @@ class ArrayCurve {
   // piece at either side of x.
   void evaluate(double x, const std::vector<StringRegime>& regimes, Node& node, double tolerance,
                 const Node* low = nullptr, const Node* high = nullptr) const;
-  // Between which currents a string's lies; the start of the search goes to the node's state.
+  // Bounds of the current of a string. guess_current() stores the start of the search in the node.
   struct CurrentGuess {
     double low_A, high_A;
   };
@@ -133,8 +134,8 @@ class ArrayCurve {
   void add_strings(const ArrayWiring& wiring, const std::vector<double>& photocurrents_A,
                    const ArrayChanges& changes);
   void group_strings();
-  // From the end of `last` to the beginning of `piece` after it: only strings whose diodes switch
-  // there are evaluated again.
+  // Moves a node from the end of `last` to the beginning of the next piece, `piece`. Only strings
+  // whose diodes switch there are evaluated again.
   void enter(const Piece& piece, const Piece& last, double tolerance, Node& node) const;
   void find_regimes(double x, std::vector<StringRegime>& regimes) const;
   std::vector<StringRegime> regimes_at(double x) const;
@@ -144,28 +145,29 @@ class ArrayCurve {
   double y_at(double x) const { return node_at(x).y; }
   double x_at(double y) const;
   double x_of(const ArrayPoint& point) const;
-  // Within which x the curve is defined.
+  // Lower limit of x at which the curve is defined.
   double lowest_x() const;
-  // By the photocurrent of each cell at fixed voltage: of the current, and of −dI/dV.
+  // Derivatives with respect to the photocurrent of each cell at fixed voltage: of the current, and
+  // of −dI/dV.
   struct Moved {
     std::vector<double> current, slope_1_V;
   };
   Moved moved_by_photocurrents(const Node& node, const std::vector<StringRegime>& regimes) const;
-  // The ends of the curve and its breakpoints between them, rising; pieces lie between neighbours,
-  // and are made when they are needed: each has a word for every bypass diode.
+  // The ends of the curve and its breakpoints, in ascending order. Pieces lie between neighbours.
+  // They are created when needed, because each contains a value for every bypass diode.
   std::vector<double> edges() const;
   Piece piece(double low_x, double high_x) const;
   ArrayPoint point(double x, double y) const;
 
   CellTables tables_;  // the strings point into it
   std::vector<StringCurve> strings_;
-  std::vector<FourStrings> fours_;  // of several strings, those that are alike
+  std::vector<FourStrings> fours_;  // groups of equal strings
   std::vector<size_t> singles_;     // the others
   std::vector<Switches> switches_;
   size_t cells_ = 0;
   double series_ohm_ = 0.0;
   bool is_shorted_ = false;  // by a string without voltage
-  double end_x_ = 0.0;       // where y = 0
+  double end_x_ = 0.0;       // x at y = 0
 };
 
 }  // namespace photorque

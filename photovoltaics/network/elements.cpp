@@ -28,8 +28,8 @@ double DiodeJunction::current_A(double junction_voltage_V) const {
   return saturation_A * std::expm1(junction_voltage_V * per_scale_1_V);
 }
 
-// Newton's method for u + i(u) R_s = V, which is convex: from a start at or above the root it falls
-// to it, from below it jumps above first.
+// Newton's method for u + i(u) R_s = V, which is convex: iterates decrease towards the root. From a
+// start below the root the first step leads above it.
 double DiodeJunction::junction_V(double forward_V) const {
   if (forward_V <= saturated_V()) return forward_V + saturation_A * series_ohm;
   double u = forward_V;
@@ -57,7 +57,7 @@ double DiodeJunction::curvature_A_V2(double g) const {
   return g / (scale_V * divisor * divisor * divisor);
 }
 
-// With w the voltage forwards, w(i) = n V_t ln(1 + i/I_s) + i R_s; the substring's V is −w.
+// With w the forward voltage, w(i) = n V_t ln(1 + i/I_s) + i R_s; the substring's V is −w.
 Slopes DiodeJunction::slopes(double g) const {
   const double divisor = 1.0 + g * series_ohm, per_divisor = 1.0 / divisor;
   const double per_divisor3 = per_divisor * per_divisor * per_divisor;

@@ -1,5 +1,5 @@
-// Two-terminal elements of a string at a point of their curves: derivatives, bounds on them over an
-// interval, and how they combine when elements are joined; cells and diodes.
+// Two-terminal elements of a string (cells and diodes) at a point of their curves: derivatives,
+// bounds on them over an interval, and their combination when elements are joined.
 #pragma once
 
 #include <algorithm>
@@ -10,14 +10,13 @@
 
 namespace photorque {
 
-// Derivatives of a falling current–voltage curve at a point.
-// y falls with x: `slope` is −dy/dx ≥ 0, `curvature` d²y/dx² and `third` d³y/dx³; of one curve, or
-// of several in lanes.
+// Derivatives of a falling current–voltage curve at a point. y falls with x: `slope` is −dy/dx ≥ 0,
+// `curvature` d²y/dx² and `third` d³y/dx³; of one curve, or of several in lanes.
 template <class T>
 struct SlopesOf {
   T slope{}, curvature{}, third{};
 
-  // V(I) of elements in series, I(V) of elements in parallel.
+  // Joins elements: V(I) in series, I(V) in parallel.
   SlopesOf& operator+=(const SlopesOf& other) {
     slope += other.slope;
     curvature += other.curvature;
@@ -28,8 +27,8 @@ struct SlopesOf {
 
 using Slopes = SlopesOf<double>;
 
-// From V(I) to I(V) or back: d³x/dy³ = (3 y″² − y′ y‴)/y′⁵, the others as below. A slope of ∞ (a
-// blocked string; none is in lanes) becomes 0.
+// Converts V(I) into I(V) or back: d³x/dy³ = (3 y″² − y′ y‴)/y′⁵, the others as below. A slope of ∞
+// (of a blocked string; lanes contain none) becomes 0.
 template <class T>
 SlopesOf<T> inverted(const SlopesOf<T>& s) {
   const T inverse = 1.0 / s.slope;
@@ -41,13 +40,13 @@ SlopesOf<T> inverted(const SlopesOf<T>& s) {
           -(3.0 * s.curvature * s.curvature * inverse + s.third) * inverse * cube};
 }
 
-// y falls with x: `slope` is −dy/dx ≥ 0 and `curvature` is d²y/dx². As V(I) (ohm, V/A²) or as I(V)
-// (siemens, A/V²).
+// Bounds over an interval. y falls with x: `slope` is −dy/dx ≥ 0 and `curvature` is d²y/dx². The
+// curve is V(I) (ohm, V/A²) or I(V) (siemens, A/V²).
 struct SlopeRange {
   double slope_low = 0.0, slope_high = 0.0;
   double curvature_low = 0.0, curvature_high = 0.0;
 
-  // V(I) of elements in series, I(V) of elements in parallel.
+  // Joins elements: V(I) in series, I(V) in parallel.
   SlopeRange& operator+=(const SlopeRange& other) {
     slope_low += other.slope_low;
     slope_high += other.slope_high;
@@ -61,7 +60,7 @@ struct SlopeRange {
   }
 };
 
-// From V(I) to I(V) or back: dx/dy = 1/(dy/dx) and d²x/dy² = −y″/y′³ = y″/slope³.
+// Converts V(I) into I(V) or back: dx/dy = 1/(dy/dx) and d²x/dy² = −y″/y′³ = y″/slope³.
 inline SlopeRange inverted(const SlopeRange& range) {
   const double low = 1.0 / range.slope_high, high = 1.0 / range.slope_low;
   const double low3 = low * low * low, high3 = high * high * high;
@@ -69,13 +68,13 @@ inline SlopeRange inverted(const SlopeRange& range) {
           range.curvature_high * (range.curvature_high > 0 ? high3 : low3)};
 }
 
-// `copies` like cells in series; 1 in a row.
+// `copies` equal cells in series; 1 for a cell in parallel with others.
 struct LitCell {
   const DiodeVoltageLaw* law = nullptr;
   double photocurrent_A = 0.0;
   double series_ohm = 0.0;
   double copies = 1.0;
-  double offset_V = 0.0;  // added to the voltage of each
+  double offset_V = 0.0;  // added to the voltage of each cell
 };
 
 // A two-terminal element at a current.
@@ -85,7 +84,7 @@ struct ElementPoint {
   double curvature_V_A2 = 0.0;  // d²V/dI²
   double third_V_A3 = 0.0;      // d³V/dI³
 
-  // Elements in series.
+  // Joins elements in series.
   ElementPoint& operator+=(const ElementPoint& other) {
     voltage_V += other.voltage_V;
     slope_ohm += other.slope_ohm;
@@ -121,12 +120,12 @@ inline SlopeRange cell_range(const LitCell& cell, const JunctionState& high_v,
           low_v.curvature_V_A2 * max_r * max_r * max_r};
 }
 
-// I(V) beyond a point from V(I) and its derivatives there: a straight line and an exponential, as a
-// shunt and a diode have it; to third order any curve.
+// Extrapolates I(V) from a point of V(I) and its derivatives there, as the sum of a straight line
+// and an exponential, like a shunt and a diode. Correct to third order for any curve.
 double extrapolated_A(const ElementPoint& at, double current_A, double voltage_V);
 
 // For a junction: with u its voltage without R_s, the current is i = I_s (e^{u/nV_t} − 1) and its
-// own conductance g = (i + I_s)/nV_t. Positive forwards.
+// conductance g = (i + I_s)/nV_t. Forward values are positive.
 struct DiodeJunction {
   Diode::Kind kind = Diode::Kind::none;
   double drop_V = 0.0, saturation_A = 0.0, series_ohm = 0.0;
@@ -134,17 +133,17 @@ struct DiodeJunction {
 
   explicit DiodeJunction(const Diode& diode);
 
-  // At this voltage in reverse a diode carries I_s but for 1e-13 of it.
+  // At this reverse voltage the current of the diode is −I_s to within 1e-13.
   double saturated_V() const { return -30.0 * scale_V; }
-  // The voltage without R_s when the diode, R_s included, has `forward_V`. To rounding.
+  // The junction voltage without R_s at the voltage `forward_V` of the diode with R_s, to rounding.
   double junction_V(double forward_V) const;
   double current_A(double junction_voltage_V) const;
   double conductance_S(double through_A) const {
     return (through_A + saturation_A) * per_scale_1_V;
   }
 
-  // I(V) with the series resistance, from the junction's own conductance; V backwards, as the
-  // voltage of the cells beside a bypass diode.
+  // I(V) with the series resistance, as a function of the junction's conductance. V is the reverse
+  // voltage: that of the cells in parallel with a bypass diode.
   Slopes slopes(double conductance_S) const;
   // Bounds between two conductances.
   SlopeRange range(double low_S, double high_S) const;

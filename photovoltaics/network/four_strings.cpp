@@ -36,7 +36,7 @@ void FourStrings::add(size_t index, const StringCurve& curve, const PlainString&
     blocking_junctions_ = blocking.kind == Diode::Kind::junction;
     close_V_ = std::numeric_limits<double>::infinity();
   }
-  // From this string on, all further lanes: those that stay without one repeat it.
+  // Fills all further lanes with this string, so that unused lanes repeat the last one.
   for (size_t lane = count_; lane < 4; ++lane) {
     member_[lane] = index;
     cells_[lane] = string.photocurrents_A.size();
@@ -63,8 +63,8 @@ void FourStrings::add(size_t index, const StringCurve& curve, const PlainString&
   close_V_ = std::min(close_V_, curve.close_V());
 }
 
-// Cells that fill up a string shorter than its neighbours have no copies; those that fill up all
-// four are not asked.
+// Cells that pad a string shorter than the others have no copies. Cells that pad all four strings
+// are removed.
 void FourStrings::fill() {
   const auto unused = [](const std::array<double, 4>& copies) {
     return std::ranges::all_of(copies, [](double c) { return c == 0.0; });
@@ -130,7 +130,7 @@ FourStrings::Point FourStrings::rows_at(const Quad& rows_A, const CellTargets& t
   return {value - rows_A * series_ohm_, {slope + series_ohm_, curvature, -third}};
 }
 
-// Adds the reverse current of the bypass diodes beside lit rows, in place of the assumed leak:
+// Adds the reverse current of the bypass diodes of lit rows, in place of the assumed leak:
 // Newton's method as in DiodeJunction::junction_V(), with as many rounds as small diodes need.
 bool FourStrings::add_bypass(Point& at, Quad& current_A, Quad& leak_A) const {
   constexpr int rounds = 2;
@@ -171,8 +171,8 @@ void FourStrings::add_blocking(Point& at, const Quad& current_A) const {
   at.resistance += {ohm + blocking_ohm_, bend, -(2.0 * bend * ohm / blocking_scale_V_)};
 }
 
-// The strings' voltages and derivatives; their currents move by what the bypass diodes' leak was
-// off.
+// The strings' voltages and derivatives. Corrects the currents by the error of the assumed leak of
+// the bypass diodes.
 bool FourStrings::at_currents(const CellTargets& targets, Quad& current_A, Quad& leak_A,
                               Point& at) const {
   bool outside = false;
@@ -211,7 +211,7 @@ bool FourStrings::solve(double voltage_V, const Quad& low_A, const Quad& high_A,
     if (!at_currents(targets, current, leak, at)) return false;
     const SlopesOf<Quad>& r = at.resistance;
     const Quad excess = at.voltage_V - voltage_V;
-    // The search of falling_root(), in step for all.
+    // The method of falling_root(), in all lanes at once.
     const RootStep<Quad> step = third_order_step(excess, Quad(-r.slope), r.curvature, r.third);
     const Quad root = current + step.length, size = abs(current), length = abs(step.length);
     const QuadBits exact = (step.left <= 1e-12 * size) | (length <= 1e-13 * size);
@@ -231,8 +231,8 @@ bool FourStrings::solve(double voltage_V, const Quad& low_A, const Quad& high_A,
   return false;
 }
 
-// From the last voltage on: a straight line and an exponential, as a shunt and a diode have it; to
-// third order any curve.
+// The search starts from the last solution, extrapolated by the sum of a straight line and an
+// exponential, like a shunt and a diode. This is correct to third order for any curve.
 bool FourStrings::advance(double voltage_V, State& state) const {
   const SlopesOf<Quad> conductance = inverted(state.resistance);
   const double h = voltage_V - state.voltage_V;

@@ -1,4 +1,4 @@
-// The maxima of ArrayCurve: isolation of the zeros of P′ by bounds (curve.h).
+// The maxima of ArrayCurve, by isolation of the zeros of P′ with bounds (curve.h).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -27,7 +27,7 @@ class ArrayCurve::Search {
         std::swap(low, high);
         curve_.enter(piece, last, near, low);
       }
-      // Every point is the start of the next one's solution.
+      // Every point is the start of the solution of the next one.
       high = low;
       add_points_between(piece, high);
       curve_.evaluate(piece.high_x, piece.regimes, high, near);
@@ -45,7 +45,7 @@ class ArrayCurve::Search {
     return std::move(scan_);
   }
 
-  // The largest maximum.
+  // Finds only the largest maximum.
   ArrayPoint run_for_largest() {
     if (curve_.end_x_ == 0.0) return {};
     edges_ = curve_.edges();
@@ -60,8 +60,8 @@ class ArrayCurve::Search {
   }
 
  private:
-  // Relative tolerance of the strings' currents at which their cells are evaluated: for bounds, and
-  // for points, whose currents are exact with any tolerance.
+  // Relative tolerance of the strings' currents at which their cells are evaluated: `near` for
+  // bounds, `any` for points, whose currents are exact with any tolerance.
   static constexpr double near = 1e-6, any = std::numeric_limits<double>::infinity();
 
   struct Bounds {
@@ -89,11 +89,11 @@ class ArrayCurve::Search {
     search(node(depth), high, piece, depth + 1);
   }
 
-  // Rounding must not leave out the piece of the largest maximum itself.
+  // Margin, so that rounding does not exclude the piece of the largest maximum.
   static constexpr double enough = 1.0 - 1e-9;
 
-  // Pieces from one edge to another, `low` being solved at the first: halves that may hold more
-  // than the most power seen so far, the one that may hold more of it first.
+  // Searches the pieces between two edges; `low` is solved at the first edge. Halves that cannot
+  // exceed the largest power so far are skipped. The half with the larger bound comes first.
   void search_for_largest(size_t from, size_t to, const Node& low) {
     most_W_ = std::max(most_W_, low.power_W());
     if (to - from == 1) {
@@ -139,7 +139,7 @@ class ArrayCurve::Search {
     return {fall(r.slope_high) + least, fall(r.slope_low) + most};
   }
 
-  // P′ = y − lever·slope, directly and by the mean value theorem from either end.
+  // P′ = y − lever·slope: bounds from its terms and by the mean value theorem from either end.
   static Bounds power_slope(const Node& low, const Node& high, const SlopeRange& r,
                             const Bounds& second) {
     const double width = high.x - low.x;

@@ -92,7 +92,7 @@ void StringCurve::at_current(double current_A, const StringRegime& regime, doubl
   if (blocking_.kind == Diode::Kind::junction) add_blocking(state);
 }
 
-// The derivatives of a blocking junction, in series with what the state has.
+// Adds the derivatives of a blocking junction in series.
 void StringCurve::add_blocking(StringState& state) const {
   const double junction_ohm =
       std::min(blocking_.scale_V / (state.current_A + blocking_.saturation_A), max_ohm);
@@ -129,8 +129,8 @@ void StringCurve::reverse_at_voltage(double voltage_V, const StringRegime& regim
   state.third_V_A3 = sum.third_V_A3 - 2.0 * bend * junction_ohm * blocking_.per_scale_1_V;
 }
 
-// With the current r through the cells as the unknown, all is explicit: their voltage, hence the
-// current i ≤ 0 of the diode beside them, the string's I = r + i and its voltage.
+// With the current r through the cells as the unknown, everything is explicit: their voltage, the
+// current i ≤ 0 of the diode in parallel, the string's current I = r + i and its voltage.
 FunctionAt StringCurve::beside_junction(double rows_A, double voltage_V, const StringRegime& regime,
                                         ElementPoint& rows, StringState& state) const {
   const DiodeJunction& bypass = parts_[0].bypass;
@@ -228,7 +228,7 @@ void StringCurve::at_voltage(double voltage_V, const StringRegime& regime, doubl
     state.current_A = guess_A;
   }
   if (voltage_V > open_circuit_V_ && low_A >= 0.0) {
-    // Fed backwards by the other strings.
+    // The other strings drive a reverse current through this one.
     double step = 1e-3 * largest_photocurrent_A_ + 1e-9;
     high_A = 0.0;
     for (low_A = -step; excess_V(low_A).value < 0.0; step *= 4.0) {

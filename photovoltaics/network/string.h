@@ -1,4 +1,4 @@
-// One string of an array under given light: V as an explicit function of I.
+// One string of an array in given light: V as an explicit function of I.
 #pragma once
 
 #include <cmath>
@@ -18,17 +18,17 @@ namespace photorque {
 
 using CellTables = std::vector<std::shared_ptr<const DiodeVoltageLaw>>;
 
-// A string of cells of one law in series, with one bypass diode over all of them at most.
+// A string of cells of one law in series, with at most one bypass diode over all of them.
 struct PlainString {
   const DiodeVoltageLaw* law = nullptr;
-  std::span<const double> photocurrents_A, copies;  // filled up to DiodeVoltageLaw::lanes
-  double series_ohm = 0.0;                          // of all cells
+  std::span<const double> photocurrents_A, copies;  // padded to DiodeVoltageLaw::lanes
+  double series_ohm = 0.0;                          // total of all cells
   const DiodeJunction* bypass = nullptr;
   const DiodeJunction* blocking = nullptr;
 };
 
-// A point of a string's curve, with what the bounds between two points need. Reused between
-// evaluations to spare allocations.
+// A point of a string's curve, with the data for bounds between two points. Reused between
+// evaluations to avoid allocations.
 struct StringState {
   double current_A = 0.0;
   double voltage_V = 0.0;
@@ -36,8 +36,8 @@ struct StringState {
   double curvature_V_A2 = 0.0;  // d²V/dI²
   double third_V_A3 = 0.0;      // d³V/dI³
   std::vector<JunctionState> cells;
-  // A part at its current, where the next solution starts; of a junction beside it the voltage
-  // without R_s and the conductance.
+  // A part at its current, from which the next solution starts; for a bypass junction in parallel
+  // with it, the voltage without R_s and the conductance.
   struct Part {
     double junction_V = -std::numeric_limits<double>::infinity();
     double junction_S = 0.0;
@@ -45,16 +45,16 @@ struct StringState {
     ElementPoint at;
   };
   std::vector<Part> parts;
-  double blocking_ohm = 0.0;  // of the blocking junction, without R_s
+  double blocking_ohm = 0.0;  // blocking junction, without R_s
 
   Slopes slopes() const { return {slope_ohm, curvature_V_A2, third_V_A3}; }
 };
 
-// Which ideal diodes conduct. Over a piece of the curve on which this does not change, the string
-// is a smooth element.
+// State of the ideal diodes. On a piece of the curve on which it is constant, the string is a
+// smooth element.
 struct StringRegime {
-  std::vector<char> clamped;  // per part: its ideal bypass diode carries the current
-  bool blocked = false;       // the blocking diode carries none
+  std::vector<char> clamped;  // per part: its ideal bypass diode conducts
+  bool blocked = false;       // the blocking diode does not conduct
 
   bool operator==(const StringRegime&) const = default;
 };
@@ -62,14 +62,14 @@ struct StringRegime {
 // Derivatives of V and of its slope dV/dI with respect to the photocurrent of a cell, at fixed
 // current.
 struct VoltageMotion {
-  size_t cell = 0;  // of the wiring
+  size_t cell = 0;  // index in the wiring
   double voltage_ohm = 0.0, slope_V_A2 = 0.0;
 };
 
 class StringCurve {
  public:
-  // Points into the tables, which must live as long. Adds `cell_offset_V` to the voltage of every
-  // cell; a substring for which is_shorted(its place in the string) is true has no voltage.
+  // Keeps pointers into the tables, which must outlive this. Adds `cell_offset_V` to the voltage of
+  // every cell. A substring for which is_shorted(its place in the string) is true has no voltage.
   StringCurve(const ArrayWiring::String& wiring, const CellTables& tables,
               const std::vector<double>& photocurrents_A, double cell_offset_V,
               const std::function<bool(size_t)>& is_shorted);
@@ -79,80 +79,83 @@ class StringCurve {
 
   // The regime at a current ≥ 0.
   StringRegime regime_at(double current_A) const;
-  // Per part, the string's current at which an ideal bypass diode beside it starts to conduct; ∞
-  // without one, and where the current never gets there.
+  // Per part, the string's current at which its ideal bypass diode starts to conduct; ∞ without
+  // such a diode, or if no current reaches this point.
   std::vector<double> clamp_currents_A() const;
   // The largest photocurrent: V ≤ 0 from this current on.
   double largest_photocurrent_A() const { return largest_photocurrent_A_; }
-  // Start of a search for a current when nothing is known.
+  // Start of a search for a current without further knowledge.
   double first_guess_A() const;
-  // The voltage at no current behind the blocking diode's drop: above it a clamping diode blocks.
+  // The voltage at zero current, less the blocking diode's drop. Above it a clamping diode blocks.
   double open_circuit_V() const { return open_circuit_V_; }
   // Lower bound of V at any current; −∞ unless clamping diodes bypass all cells.
   double lowest_V() const;
   bool has_blocking_clamp() const { return blocking_.kind == Diode::Kind::clamp; }
-  // Nothing for other strings. Points into this.
+  // This string as a PlainString, which points into this object; nothing for other strings.
   std::optional<PlainString> plain() const;
-  // Over which a cell's curve keeps its shape: a tenth of the least n V_t.
+  // Voltage interval over which a cell's curve hardly changes its form: a tenth of the smallest n
+  // V_t.
   double close_V() const { return close_V_; }
 
   StringState make_state() const;
-  // Cells behind a bypass junction are evaluated within a fraction `tolerance` of its voltage; the
-  // voltage and its derivatives are exact to third order in that.
+  // Computes the state at a current. Cells with a bypass junction in parallel are evaluated within
+  // a fraction `tolerance` of its voltage. The voltage and its derivatives are exact to third order
+  // in that.
   void at_current(double current_A, const StringRegime& regime, double tolerance,
                   StringState& state) const;
-  // The current is looked for in [low_A, high_A], or below when the voltage is above
-  // open_circuit_V(), from the state's own current. Slopes are those of a current at most a
-  // fraction `tolerance` away; the current itself is exact to second order in that.
+  // Computes the state at a voltage. The current is searched in [low_A, high_A], or below if the
+  // voltage is above open_circuit_V(), starting from the current of `state`. Slopes are those at a
+  // current at most a fraction `tolerance` away; the current itself is exact to second order in
+  // that.
   void at_voltage(double voltage_V, const StringRegime& regime, double low_A, double high_A,
                   double tolerance, StringState& state) const;
 
-  // Change of the voltage with each cell whose substring is not clamped. The cells of `state` must
-  // have been evaluated within a small tolerance.
+  // Derivatives with respect to the photocurrent of each cell whose substring is not clamped. The
+  // cells of `state` must have been evaluated with a small tolerance.
   std::vector<VoltageMotion> voltage_motions(const StringState& state,
                                              const StringRegime& regime) const;
 
-  // Bounds on I(V) between two states; `high_i` at the higher current.
+  // Bounds on I(V) between two states; `high_i` has the higher current.
   SlopeRange conductance_range(const StringState& low_i, const StringState& high_i,
                                const StringRegime& regime) const;
-  // Bounds on V(I).
+  // Bounds on V(I) between two states.
   SlopeRange resistance_range(const StringState& low_i, const StringState& high_i,
                               const StringRegime& regime) const;
 
-  // Terminal voltage and current of every cell at a string current, into arrays indexed as the
-  // wiring's cells.
+  // Terminal voltage and current of every cell at a string current, written to arrays with the
+  // indices of the wiring.
   void cells_at(double current_A, std::vector<double>& voltages_V,
                 std::vector<double>& currents_A) const;
 
  private:
-  // Cells of one law in series, filled up with cells of no copies to a multiple of
+  // Cells of one law in series, padded with cells of zero copies to a multiple of
   // DiodeVoltageLaw::lanes.
   struct Run {
     const DiodeVoltageLaw* law;
-    double series_ohm, offset_V;  // of all cells
+    double series_ohm, offset_V;  // total of all cells
     uint32_t first_cell, cells, filled_cells;
   };
   static constexpr uint32_t nothing = std::numeric_limits<uint32_t>::max();
   static constexpr double unlimited = std::numeric_limits<double>::infinity();
-  // Runs of cells and parts in series, or tied cells and parts in parallel, with a bypass diode
-  // beside all of them or none. The substrings come first; a part stands before those inside it.
+  // Runs of cells and parts in series, or cells and parts in parallel, with or without a bypass
+  // diode in parallel with all of them. Substrings come first; a part precedes those inside it.
   struct Part {
     DiodeJunction bypass;
     bool in_parallel = false;
     uint32_t parent = nothing;
-    uint32_t first_run = 0, runs = 0;    // in series
-    uint32_t first_cell = 0, cells = 0;  // tied
-    uint32_t first_part = 0, parts = 0;  // of inner_
+    uint32_t first_run = 0, runs = 0;    // if in series
+    uint32_t first_cell = 0, cells = 0;  // if in parallel
+    uint32_t first_part = 0, parts = 0;  // indices in inner_
     double largest_A = 0.0;              // V ≤ 0 from this current on
     double light_A = 0.0;                // about the short-circuit current
     double open_circuit_V = 0.0;         // without the bypass diode
-    // Currents of this part: where its ideal diode starts to conduct; about where its junction
-    // does.
+    // Currents of this part: at which its ideal diode starts to conduct; at which its junction
+    // approximately does.
     double own_clamp_A = unlimited, turn_on_A = unlimited;
-    double clamp_A = unlimited;  // of the string, where this part's ideal diode starts to conduct
-    // Which voltage no current goes below, and the current that gets there.
+    double clamp_A = unlimited;  // string current at which this part's ideal diode conducts
+    // Lower bound of the voltage at any current, and the current at which it is reached.
     double lowest_V = -unlimited, lowest_A = unlimited;
-    bool has_clamps = false;  // inside it
+    bool has_clamps = false;  // whether parts inside it have clamping diodes
   };
   struct Source {
     const CellTables& tables;
@@ -167,8 +170,8 @@ class StringCurve {
   void prepare_part(uint32_t index, StringState& state);
   void find_clamp(uint32_t index, StringState& state);
 
-  // A part at its current, without and with the diode beside it. Without a regime every ideal diode
-  // conducts where the voltage asks for it.
+  // A part at its current, without and with its bypass diode. Without a regime every ideal diode
+  // conducts if the voltage requires it.
   ElementPoint inside_at(uint32_t index, double current_A, const StringRegime* regime,
                          double tolerance, StringState& state) const;
   ElementPoint part_at(uint32_t index, double current_A, const StringRegime* regime,
@@ -182,21 +185,21 @@ class StringCurve {
                                                StringState& state) const;
   ElementPoint tied_nested_at(uint32_t index, double current_A, const StringRegime* regime,
                               StringState& state) const;
-  // Current of all cells and parts in a part at a voltage, except those of `but`.
+  // Current at a voltage of all cells and parts in a part, except those of part `but`.
   double tied_A(uint32_t index, double voltage_V, const StringRegime* regime, uint32_t but,
                 Slopes* slopes, StringState& state) const;
-  // The part in parallel whose diodes hold the voltage of all; `nothing` where none does.
+  // The part in parallel whose diodes determine the common voltage; `nothing` if there is none.
   uint32_t clamping_part(uint32_t index, const StringRegime& regime) const;
   bool is_held(uint32_t index, const StringRegime& regime) const;
-  // The current of a part at a voltage.
+  // Current of a part at a voltage.
   double part_A(uint32_t index, double voltage_V, const StringRegime* regime,
                 StringState& state) const;
   static double bypass_guess_V(const Part& part, const StringState::Part& last, double current_A);
   ElementPoint substrings_at(double current_A, const StringRegime& regime, double tolerance,
                              StringState& state) const;
-  // At a voltage from 0 to open circuit of a string that is one substring beside a junction: the
-  // remainder of the voltage at a current through its cells, whose point goes to `rows`; and the
-  // whole.
+  // For a string that is one substring with a bypass junction, at a voltage from 0 to open circuit:
+  // the voltage that remains at a current through its cells, whose point is written to `rows`; and
+  // the solution.
   FunctionAt beside_junction(double rows_A, double voltage_V, const StringRegime& regime,
                              ElementPoint& rows, StringState& state) const;
   void beside_junction_at_voltage(double voltage_V, const StringRegime& regime, double low_A,
@@ -204,7 +207,7 @@ class StringCurve {
   double blocking_drop_V(double current_A) const;
   void add_blocking(StringState& state) const;
   void reverse_at_voltage(double voltage_V, const StringRegime& regime, StringState& state) const;
-  // At which a part without its diode has the voltage −drop_V.
+  // Current at which a part without its diode has the voltage −drop_V.
   double inside_A(uint32_t index, double drop_V, StringState& state) const;
   SlopeRange part_range(uint32_t index, const StringState& low_i, const StringState& high_i,
                         const StringRegime& regime) const;
@@ -232,12 +235,12 @@ class StringCurve {
     return std::span(wired_).subspan(first, end - first);
   }
   std::vector<LitCell> cells_;
-  std::vector<double> photocurrents_A_, copies_;  // of cells_, side by side for vector registers
+  std::vector<double> photocurrents_A_, copies_;  // one per element of cells_, for vector registers
   std::vector<int> wired_;  // the wiring's cells behind each of cells_, one after the other
-  std::vector<uint32_t> first_wired_;  // of each of cells_
+  std::vector<uint32_t> first_wired_;  // first index in wired_ for each of cells_
   std::vector<Run> runs_;
   std::vector<Part> parts_;
-  std::vector<uint32_t> inner_;  // the parts in each part
+  std::vector<uint32_t> inner_;  // the parts inside each part
   uint32_t substrings_ = 0;
   DiodeJunction blocking_;
   double cell_offset_V_ = 0.0;

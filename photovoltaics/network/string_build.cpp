@@ -1,4 +1,5 @@
-// A StringCurve from its wiring: cells in runs, and where its diodes start to conduct.
+// Construction of a StringCurve from its wiring: cells in runs, and the currents at which its
+// diodes start to conduct.
 #include <algorithm>
 #include <cmath>
 
@@ -22,7 +23,7 @@ StringCurve::StringCurve(const ArrayWiring::String& wiring, const CellTables& ta
   substrings_ = static_cast<uint32_t>(substrings.size());
   for (uint32_t s = 0; s < substrings_; ++s) fill_part(s, substrings[s]->rows, source);
   StringState state = make_state();
-  // A part stands before those inside it.
+  // A part precedes those inside it.
   for (size_t k = parts_.size(); k-- > 0;) prepare_part(static_cast<uint32_t>(k), state);
   for (uint32_t s = 0; s < substrings_; ++s) {
     largest_photocurrent_A_ = std::max(largest_photocurrent_A_, parts_[s].largest_A);
@@ -32,7 +33,7 @@ StringCurve::StringCurve(const ArrayWiring::String& wiring, const CellTables& ta
   open_circuit_V_ = state.voltage_V;
 }
 
-// Room for all, filled up in runs of like tables.
+// Reserves memory for all cells, with padding for runs of equal tables.
 void StringCurve::reserve(const ArrayWiring::String& wiring) {
   size_t cells = wiring.substrings.size() * DiodeVoltageLaw::lanes;
   wiring.for_each_cell([&](int) { ++cells; });
@@ -56,10 +57,10 @@ void StringCurve::add_cell(int cell, const Source& source) {
   wired_.push_back(cell);
 }
 
-// Cells of one law stand next to each other; like cells under the same light become one.
+// Groups the cells of one law. Equal cells in equal light become one cell with several copies.
 void StringCurve::add_series(std::vector<int> cells, const Source& source) {
   const auto law = [&](int cell) { return source.tables[static_cast<size_t>(cell)].get(); };
-  // In the order in which the string meets them, which no address in memory changes.
+  // Laws in the order of their first cells in the string, which is independent of addresses.
   std::vector<const DiodeVoltageLaw*> laws;
   for (const int cell : cells) {
     if (std::ranges::find(laws, law(cell)) == laws.end()) laws.push_back(law(cell));
@@ -94,7 +95,8 @@ void StringCurve::add_series(std::vector<int> cells, const Source& source) {
   }
 }
 
-// Members that are joined like their part, without a diode, are members of it.
+// A member without a diode that is joined like its part is dissolved: its members become members of
+// the part.
 void StringCurve::fill_part(uint32_t index, const std::vector<CellGroup>& members,
                             const Source& source) {
   const CellGroup::Join join =
@@ -194,8 +196,8 @@ void StringCurve::prepare_part(uint32_t index, StringState& state) {
   }
 }
 
-// From the current of the part at which its diode starts to conduct to that of the string, from one
-// part to the one that it lies in.
+// Converts the current of the part at which its diode starts to conduct into the current of the
+// string, through the parts that contain it, from the inside to the outside.
 void StringCurve::find_clamp(uint32_t index, StringState& state) {
   double current_A = parts_[index].own_clamp_A;
   uint32_t below = index;

@@ -49,12 +49,13 @@ SlopeRange StringCurve::conductance_range(const StringState& low_i, const String
   return regime.blocked ? SlopeRange{} : inverted(resistance_range(low_i, high_i, regime));
 }
 
-// At a fixed current of a part each photocurrent p moves its voltage by m = ∂V/∂p, and the slope by
-// m′ = ∂²V/∂I∂p. Of a cell m = r = dV_d/dj and m′ = −q, q = dr/dj; in series they stay. In parallel
-// the current of a branch of ρ = −dV/dI and κ = d²V/dI² moves at a fixed voltage by g = m/ρ, and
-// its slope dI/dV by h = −(κ g + m′)/ρ²; with S = Σ 1/ρ and K = Σ κ/ρ³ over all branches
+// At a fixed current of a part each photocurrent p changes its voltage by m = ∂V/∂p, and the slope
+// by m′ = ∂²V/∂I∂p. For a cell m = r = dV_d/dj and m′ = −q, with q = dr/dj; in series they are
+// unchanged. In parallel the current of a branch with ρ = −dV/dI and κ = d²V/dI² changes at a fixed
+// voltage by g = m/ρ, and its slope dI/dV by h = −(κ g + m′)/ρ². With S = Σ 1/ρ and K = Σ κ/ρ³ over
+// all branches
 //   ∂V/∂p = g/S,   ∂²V/∂I∂p = −(K g/S + h)/S².
-// A junction beside cells, of the conductance G = di/dw, shares what they get: with D = 1 + ρ G,
+// For cells in parallel with a junction of the conductance G = di/dw, and with D = 1 + ρ G,
 //   ∂V/∂p = m/D,   ∂²V/∂I∂p = m′/D² − m (ρ² dG/dw − G κ)/D³.
 StringCurve::PartMotion StringCurve::motion_of(uint32_t index, const StringState& state,
                                                const StringRegime& regime) const {
@@ -63,7 +64,7 @@ StringCurve::PartMotion StringCurve::motion_of(uint32_t index, const StringState
   const Part& part = parts_[index];
   if (part.in_parallel) {
     if (clamping_part(index, regime) != nothing) return motion;
-    Slopes all;  // of I(V)
+    Slopes all;  // sums of I(V)
     const auto add = [&](const Slopes& branch, std::vector<VoltageMotion> moved) {
       all += inverted(branch);
       for (VoltageMotion& m : moved) {
@@ -120,7 +121,7 @@ StringCurve::PartMotion StringCurve::motion_of(uint32_t index, const StringState
 
 std::vector<VoltageMotion> StringCurve::voltage_motions(const StringState& state,
                                                         const StringRegime& regime) const {
-  std::vector<VoltageMotion> all;  // of the wiring's cells
+  std::vector<VoltageMotion> all;  // per cell of the wiring
   for (uint32_t k = 0; k < substrings_; ++k) {
     for (const VoltageMotion& m : motion_of(k, state, regime).moved) {
       for (const int wired : wired_to(static_cast<uint32_t>(m.cell))) {

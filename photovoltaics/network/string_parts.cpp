@@ -1,4 +1,4 @@
-// The parts of a StringCurve at a current: cells and parts in series, in parallel, and beside a
+// The parts of a StringCurve at a current: cells and parts in series, in parallel, and with a
 // bypass diode.
 #include <algorithm>
 #include <cmath>
@@ -11,8 +11,8 @@
 namespace photorque {
 namespace {
 
-constexpr size_t max_together = 64;  // branches that are solved for all currents at once
-// Voltages that are alike but for rounding.
+constexpr size_t max_together = 64;  // maximum branches that are solved for all currents at once
+// Voltages that differ by less than this are equal except for rounding.
 constexpr double same_V = 1e-9;
 
 // V(I) of elements in parallel from the sum of their I(V).
@@ -59,8 +59,9 @@ ElementPoint StringCurve::part_at(uint32_t index, double current_A, const String
   return at;
 }
 
-// From the last solution along the part's derivatives there; where that is too far, as if the cells
-// kept the current at which they turn the diode on.
+// Start of the search for the diode's voltage: the last solution, extrapolated by the derivatives
+// of the part. If the current has changed too much, the cells are assumed to keep the current at
+// which they turn the diode on.
 double StringCurve::bypass_guess_V(const Part& part, const StringState::Part& last,
                                    double current_A) {
   const DiodeJunction& d = part.bypass;
@@ -75,16 +76,16 @@ double StringCurve::bypass_guess_V(const Part& part, const StringState::Part& la
 }
 
 // With u the junction voltage of the bypass diode, its current is i(u) = I_s (e^{u/nV_t} − 1) and
-// the part's voltage is −(u + i R_s): one equation, V_inside(I − i(u)) + u + i(u) R_s = 0, rising
-// in u. A diode that carries all of I leaves the cells at V ≥ 0, and one that carries nothing
-// leaves them at most at their open circuit: between the two lies u.
+// the part's voltage is −(u + i R_s). This gives one equation, V_inside(I − i(u)) + u + i(u) R_s =
+// 0, which rises in u. If the diode carries all of I, the cells are at V ≥ 0. If it carries
+// nothing, they are at most at their open circuit. u lies between these two cases.
 ElementPoint StringCurve::bypassed_at(uint32_t index, double current_A, const StringRegime* regime,
                                       double tolerance, StringState& state) const {
   const Part& part = parts_[index];
   const DiodeJunction& d = part.bypass;
   StringState::Part& last = state.parts[index];
   if (last.junction_V <= d.saturated_V() && current_A <= part.turn_on_A) {
-    // Far in reverse the diode leaks I_s and no more: nothing to solve.
+    // Far in reverse the diode's leak is I_s, and there is no equation to solve.
     const ElementPoint rows =
         inside_at(index, current_A + d.saturation_A, regime, tolerance, state);
     const double u = d.saturation_A * d.series_ohm - rows.voltage_V;
@@ -156,7 +157,7 @@ ElementPoint StringCurve::tied_at(uint32_t index, double current_A, const String
   }
   if (const uint32_t p = regime != nullptr ? clamping_part(index, *regime) : nothing;
       p != nothing) {
-    // The part takes the remainder.
+    // This part carries the remaining current.
     const double voltage_V = part_at(p, parts_[p].light_A, regime, 1e-9, state).voltage_V;
     const double others_A = tied_A(index, voltage_V, regime, p, nullptr, state);
     return part_at(p, current_A - others_A, regime, 1e-9, state);
@@ -165,10 +166,10 @@ ElementPoint StringCurve::tied_at(uint32_t index, double current_A, const String
   return together ? *together : tied_nested_at(index, current_A, regime, state);
 }
 
-// Newton's method for all currents at once: each branch's curve is replaced by its tangent and the
-// tangents are made to meet at one voltage. Cells of one type without series resistance would all
-// have the same dark current; from there, or from a part's last current, two or three rounds are
-// enough. Empty if they are not.
+// Newton's method for all currents at once: each branch's curve is replaced by its tangent, and the
+// common voltage of the tangents is computed. Cells of one type without series resistance would all
+// have the same dark current. From there, or from a part's last current, two or three rounds are
+// sufficient. Returns nothing if they are not.
 std::optional<ElementPoint> StringCurve::tied_together_at(uint32_t index, double current_A,
                                                           const StringRegime* regime,
                                                           StringState& state) const {
@@ -237,7 +238,7 @@ double StringCurve::tied_A(uint32_t index, double voltage_V, const StringRegime*
 ElementPoint StringCurve::tied_nested_at(uint32_t index, double current_A,
                                          const StringRegime* regime, StringState& state) const {
   const Part& part = parts_[index];
-  // Were the current shared equally, the voltage would lie between the branches'.
+  // With equal currents the common voltage would lie between the voltages of the branches.
   const double branch_A = current_A / static_cast<double>(part.cells + part.parts);
   double low_V = unlimited, high_V = -unlimited;
   const auto reach = [&](double v) {

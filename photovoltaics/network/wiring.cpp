@@ -9,7 +9,7 @@ ArrayWiring::String string_of(const CellGroup& branch, const Diode& blocking) {
     string.substrings.push_back({{branch}, {}});
     return string;
   }
-  bool is_open = false;  // the last substring takes what has no diode beside it
+  bool is_open = false;  // whether the last substring accepts parts without a bypass diode
   for (const CellGroup& part : branch.parts) {
     const bool bypassed = part.bypass.kind != Diode::Kind::none;
     if (bypassed || !is_open) string.substrings.push_back({{}, part.bypass});

@@ -6,11 +6,11 @@
 
 namespace photorque {
 
-// A diode beside a substring (bypass) or in a string (blocking).
+// A diode in parallel with a substring (bypass) or in series with a string (blocking).
 struct Diode {
   enum class Kind {
     none,
-    clamp,     // no current backwards, exactly drop_V forwards
+    clamp,     // no reverse current, exactly drop_V in forward direction
     junction,  // V = n V_t ln(1 + I/I_s) + I R_s
   };
   Kind kind = Kind::none;
@@ -21,17 +21,17 @@ struct Diode {
   double temperature_K = 298.15;
 };
 
-// A cell, or parts joined in series or in parallel, to any depth. A bypass diode may lie beside
-// parts that are joined.
+// A cell, or parts joined in series or in parallel, to any depth. Joined parts may have a bypass
+// diode in parallel.
 struct CellGroup {
   enum class Join { cell, series, parallel };
   Join join = Join::cell;
-  int cell = -1;  // its index, where it is one
+  int cell = -1;  // index, if it is a cell
   std::vector<CellGroup> parts;
   Diode bypass;
 
   CellGroup(int index) : cell(index) {}
-  // Cells tied in parallel; the cell alone where there is one.
+  // Cells in parallel; a single cell is not a group.
   CellGroup(const std::vector<int>& tied) : join(Join::parallel) {
     if (tied.size() == 1) {
       *this = CellGroup(tied[0]);
@@ -50,9 +50,9 @@ struct CellGroup {
   }
 };
 
-// An array is strings in parallel; a string is substrings in series behind one blocking diode; a
-// substring is cells and groups of cells in series beside one bypass diode. Cells are named by
-// their index; each occurs once.
+// An array is strings in parallel. A string is substrings in series with one blocking diode. A
+// substring is cells and groups of cells in series, with one bypass diode in parallel. Cells are
+// identified by their index; each occurs once.
 struct ArrayWiring {
   struct Substring {
     std::vector<CellGroup> rows;
@@ -80,15 +80,15 @@ struct ArrayWiring {
   }
 };
 
-// An array of one circuit: its parallel branches are the strings, each behind the blocking diode,
-// and what lies in series in a string are its substrings.
+// An array of one circuit. Its parallel branches are the strings, each with the blocking diode; the
+// parts in series in a string are its substrings.
 ArrayWiring wiring_of(const CellGroup& circuit, const Diode& blocking);
 
-// Changes to an array as it is wired.
+// Changes to a wired array.
 struct ArrayChanges {
   double series_ohm = 0.0;     // ≥ 0, in series with the whole array
   double cell_offset_V = 0.0;  // added to the voltage of every cell
-  // By string, and by substring over all strings in turn; may be empty.
+  // One element per string, and one per substring over all strings; may be empty.
   std::vector<bool> string_open;     // carries no current
   std::vector<bool> bypass_shorted;  // its cells give no voltage
 };

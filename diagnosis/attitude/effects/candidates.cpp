@@ -14,7 +14,7 @@ namespace {
 struct ReadMotion {
   std::vector<PlatformState> states;
   double acceleration_rad_s2 = 0.0;
-  double acceleration_m_s2 = 0.0;  // of a sliding body
+  double acceleration_m_s2 = 0.0;  // for a sliding body
 };
 
 // Position and velocity of a sliding body at block `i`, from the readings.
@@ -381,7 +381,8 @@ bool slides_until_rest(const std::vector<Observation>& runs) {
     if (velocity.size() < 2) return false;
     const Vec2 start = velocity.front();
     constexpr double along = 0.95, slower = 0.8, little = 0.1;
-    // A body that swings returns within the time of a difference.
+    // A swinging body returns towards its start. It may do so within the interval of one velocity
+    // difference, so the positions are tested too.
     double farthest_m = 0.0, back_m = 0.0;
     for (const Vec2& place : place_m) {
       const double out_m = (place - place_m.front()).dot(start.normalized());
@@ -426,8 +427,9 @@ bool swings_little(const std::vector<Observation>& runs) {
   return sees && most_rad - least_rad < little_rad;
 }
 
-// Where the angle is zero is shown neither by rates alone nor by a body that does not swing: the
-// zero is where a restoring torque vanishes. Its components with an effect there are excluded.
+// Neither rates alone nor a body that does not swing determine the zero of the angle. The zero is
+// therefore defined as the angle at which a restoring torque vanishes. Components of a restoring
+// law that act at this angle are excluded.
 void set_zero_at_rest(const AttitudeModel& nominal, Candidate& c) {
   if (!is_restoring(c, nominal)) return;
   AttitudeModel model = nominal;
@@ -532,8 +534,8 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     });
   }
   if (context.platform.turns_about_one_axis()) {
-    // About a level axis the yaw is constant, and about an upright axis the tilt: a law of it would
-    // duplicate another law.
+    // About a level axis the yaw is constant, and about an upright axis the tilt is. A law of the
+    // constant angle would duplicate another law.
     const bool is_level = std::abs(context.platform.axis.z()) < 0.5;
     std::erase_if(all.list,
                   [&](const Candidate& c) { return c.variable == (is_level ? "yaw" : "tilt"); });
@@ -553,14 +555,14 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     if ((!sees_angle || (!is_level && !swings_freely)) && !context.platform.slides()) {
       for (Candidate& c : all.list) set_zero_at_rest(nominal.model, c);
     }
-    // In small swings the weight has a constant torque, and a steady torque is an error of the
-    // angle's zero; so it is beside a spring, and in every swing that only its rates show.
+    // A steady torque is indistinguishable from an error of the angle's zero in three cases: in
+    // small swings under a weight, beside a spring, and in swings of which only rates are measured.
     const bool hides_steady =
         sees_angle && is_level ? has_weight && swings_little(runs) : swings_freely;
     if (hides_steady && !context.platform.slides()) {
       std::erase_if(all.list, [](const Candidate& c) { return c.effect.how.steady; });
     }
-    // Where the model has no weight yet, the sag of a structure would only stand for one.
+    // If the nominal model contains no weight, the sag of a structure would only imitate a weight.
     const bool states_weight =
         std::ranges::any_of(nominal.model.disturbances, [](const Disturbance& d) {
           return find_kind(d.kind) != nullptr &&

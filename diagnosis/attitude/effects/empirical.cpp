@@ -29,7 +29,7 @@ MotionFunction harmonic(int order) {
   return {.of = MotionVariable::yaw, .form = harmonics, .orders = {order}};
 }
 
-// A formula holds up to twice the recorded range, a table only within it.
+// A formula is valid up to twice the recorded range, a table only within it.
 constexpr double formula_reach = 2.0;
 
 // A power of tilt or rate, normalised to 1 at 0.1 rad or 0.1 rad/s; `seen` is the maximum in the

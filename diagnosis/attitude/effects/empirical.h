@@ -27,7 +27,7 @@ struct CoveredMotion {
   double tilt_rad = 0.0;      // maximum
   double rate_rad_s = 0.0;    // maximum; 0: no rates are recorded
   double charge_C = 0.0;      // 0: no current is recorded
-  bool has_commands = false;  // of torques
+  bool has_commands = false;  // commanded torques
   bool has_forces = false;    // commanded forces
   bool has_wheel = false;     // recorded wheel speed
   // Lamp current: the maximum of all recordings, and whether it changes within one.

@@ -123,11 +123,11 @@ Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inert
 
 namespace {
 
-// Mostly short pulses (the start or end of a command) excite appendages, so a resonance appears as
-// wide as its damping. This damping is wide enough for the frequency grid.
+// Appendages are mostly excited by short pulses (the start or end of a command), so the width of a
+// resonance is given by its damping. This damping makes it wide enough for the frequency grid.
 constexpr double scanned_damping = 0.08;
 
-// The appendage initially rotates with the body; its rate is that about its axis.
+// The appendage initially rotates with the body. Its rate is the body rate about its axis.
 void set_axis(Disturbance& d, const Vec3& unit) {
   set_vector(d, "axis", unit);
   state_of(d, "rate_rad_s").per_body_rate = unit;
@@ -219,8 +219,8 @@ Score together(const Score& a, const Score& b) {
 }
 
 // Score of appendages that swing far faster than the platform moves, extrapolated from the score at
-// another such frequency. Besides a constant part of the inertia, which is independent of
-// frequency, the platform feels −J a (a·ω)''/(2πf)².
+// another such frequency. The appendage adds a constant part to the inertia, which is independent
+// of frequency, and the torque −J a (a·ω)''/(2πf)².
 Score carried_at(const Score& carried, double scored_Hz, double frequency_Hz) {
   const double grows = scored_Hz * scored_Hz / (frequency_Hz * frequency_Hz);
   Score at = carried;
@@ -280,7 +280,7 @@ struct FreeSwing {
   Vec3 direction = Vec3::UnitX();  // in which the body swings
 };
 
-// Free swings of any size in every run; their common direction.
+// Gain and common direction of free swings with any amplitude in every run.
 FreeSwing free_swing_at(const std::vector<PropagatedRun>& runs, double frequency_Hz,
                         double damping) {
   std::vector<Vec3> part, direction;
@@ -393,7 +393,8 @@ std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit
   double most = limits.min_scan_gain;
   for (const Start& driven : starts) most = std::max(most, driven.gain);
   if (const FreeSwing swing = best_free_swing(all, lines_Hz, highest_Hz); swing.gain > most) {
-    // The free swing determines J φ only. The fit finds J from what the motion drives.
+    // The free swing determines only the product J φ. The fit determines J from the swing that the
+    // motion drives.
     constexpr double fraction = 0.05;
     const Vec3 axis = (inertia_kg_m2 * swing.direction).normalized();
     const double light_kg_m2 =

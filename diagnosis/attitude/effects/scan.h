@@ -49,6 +49,7 @@ inline std::vector<size_t> peaks(const std::vector<double>& value, size_t most) 
   return found;
 }
 
+// A copy of a disturbance with another value of one scalar parameter.
 inline Disturbance with_parameter(const Disturbance& like, std::string_view key, double value) {
   Disturbance d = like;
   parameter_of(d, key).value = value;

@@ -99,7 +99,8 @@ inference::StrengthGroup group_of(const inference::Term<Start>& term, size_t at,
   return group;
 }
 
-// Sets the strengths to zero, where the derivatives are needed, also if a scan found others.
+// Sets the strengths to zero, including those found by a scan, because the derivatives are
+// evaluated at zero strength.
 Disturbance without_strength(const Candidate& c, Disturbance d) {
   for (size_t p = 0; p < c.scale.size(); ++p) {
     if (c.is_strength(p)) d.parameters[p].value = 0.0;
@@ -107,7 +108,7 @@ Disturbance without_strength(const Candidate& c, Disturbance d) {
   return d;
 }
 
-// Sums for some columns, with all others projected out.
+// Normal equations of some columns, with all other columns projected out.
 inference::LinearProblem projected_on(const inference::SumsOfRuns& of_runs,
                                       const std::vector<Eigen::Index>& columns) {
   const inference::NormalSums sums = of_runs.of_shared();

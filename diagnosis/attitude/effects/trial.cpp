@@ -167,7 +167,8 @@ Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const
   trial.candidates.push_back(candidate);
   trial.disturbances.push_back(add_free(h, all[candidate], start.disturbance, all.limits));
   if (is_near) {
-    // First how far each run begins to swing: before, the readings say nothing of the frequency.
+    // The initial deflection of each run is fitted first. Without it the readings do not determine
+    // the frequency.
     Hypothesis as_scanned = h;
     std::erase_if(as_scanned.free, [](const Free& f) { return !f.per_run; });
     h.runs = fit(as_scanned, runs, settings).best.runs;
@@ -202,7 +203,7 @@ bool adds_to(const Trial& trial, const inference::Members<Start>& members) {
   });
 }
 
-// Windows long enough to be fitted.
+// Windows of a growing fit, without those that contain too few readings.
 std::vector<double> growing_windows(const Thresholds& limits,
                                     const std::vector<Observation>& runs) {
   size_t shortest = std::numeric_limits<size_t>::max();
@@ -223,8 +224,7 @@ size_t first_state(const AttitudeModel& model, size_t disturbance) {
   return first;
 }
 
-// For every candidate the index of the same one among `others`, each of which is used once; the
-// number of others if there is none.
+// Index in `others` of each candidate, or `others.size()` if it is absent. Each index is used once.
 std::vector<size_t> counterparts(const std::vector<size_t>& candidates,
                                  const std::vector<size_t>& others) {
   std::vector<bool> is_taken(others.size(), false);
@@ -238,8 +238,8 @@ std::vector<size_t> counterparts(const std::vector<size_t>& candidates,
   return result;
 }
 
-// Lets candidates that `from` has too begin in each run as there: parts that hang deflected swing
-// without any push.
+// Copies the initial states of the candidates that `from` also contains, for each run. A part that
+// is deflected at the start swings without being driven.
 void begin_as(const Trial& from, const Trial& trial, Hypothesis& h) {
   const std::vector<size_t> same = counterparts(trial.candidates, from.candidates);
   for (size_t i = 0; i < same.size(); ++i) {

@@ -39,11 +39,11 @@ struct NominalModel;  // attitude/propagation/run.h
 // An effect of the catalogue, or an empirical law.
 struct Candidate {
   std::string label;     // "magnetic_dipole", "unknown in yaw: 3 periods a turn"
-  std::string variable;  // of an empirical law; empty for the catalogue
+  std::string variable;  // variable of an empirical law; empty for the catalogue
   Effect effect;         // empty kind for an empirical law
   EmpiricalLaw law;      // empty for an effect of the catalogue
   Disturbance start;
-  std::vector<double> scale;  // of each parameter
+  std::vector<double> scale;  // one per parameter
   std::vector<double> lowest, highest;
   std::vector<bool> searched;
 
@@ -67,8 +67,8 @@ struct Candidate {
 std::optional<double> braking_power(const Candidate& candidate, AttitudeModel model);
 
 // Whether a candidate on a one-axis platform exerts a restoring torque towards an angle, as a
-// weight or twisted line does, independently of the rate: with one sign up to a third of a turn
-// away.
+// weight or twisted line does. The torque must be independent of the rate and keep its sign up to a
+// third of a turn away from that angle.
 bool is_restoring(const Candidate& candidate, AttitudeModel model);
 
 // Start of a candidate's fit.
@@ -90,6 +90,7 @@ struct Candidates {
 };
 // An empirical law as a candidate.
 Candidate candidate_of(const EmpiricalLaw& law);
+// All candidates that these runs can reveal, with scales for the machine.
 Candidates all_candidates(const NominalModel& nominal, const std::vector<Observation>& runs,
                           const Thresholds& limits = {});
 
@@ -100,6 +101,7 @@ struct Trial : inference::Explanation {
   Fit fit;
 };
 
+// The fitted nominal model as a trial without candidates.
 Trial nominal_trial(const Fit& nominal, const Candidates& all);
 
 // The trial with all parameters of its candidates within physical bounds. If one is beyond, the
@@ -122,14 +124,14 @@ Trial exchange(const Trial& trial, const Candidates& all, size_t which, size_t c
 Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observation>& runs,
             const std::vector<RunStart>& starts, const FitSettings& settings = {});
 
-// Refits the trial from the end of another trial on the same runs: from its initial conditions and
-// its values of all common parameters. The fit of a long tumbling run may end in one of many local
-// minima; results of other trials give another start.
+// Refits the trial on the same runs, starting from the result of another trial: from its initial
+// conditions and its values of all common parameters. The fit of a long tumbling run may end in one
+// of many local minima; results of other trials give another start.
 Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
                  const std::vector<Observation>& runs, const FitSettings& settings = {});
 
-// The nominal model with exactly these members, fitted from the end of `from`, which may have other
-// candidates.
+// The nominal model with exactly these members. The fit starts from the result of `from`, which may
+// have other candidates.
 Trial assemble(const Trial& from, const Candidates& all, const inference::Members<Start>& members,
                const std::vector<Observation>& runs, const FitSettings& settings = {});
 

@@ -105,7 +105,8 @@ std::vector<LampField> diffuse_fields(const LightSites& sites, std::vector<Illum
   return fields;
 }
 
-// A mirror shows a point the view from the point's mirror image through the wall.
+// A mirror reflects to a point the light that would otherwise arrive, through the wall, at the
+// point's mirror image.
 LampField specular_field(const LightLab& lab, Illumination& lamp, const LightWall& wall,
                          size_t index) {
   static const std::vector<Vec2> disc = even_disc(64);

@@ -46,6 +46,7 @@ struct LampGeometry {
 
   bool operator==(const LampGeometry&) const = default;
 };
+// The geometry of one lamp in a state.
 LampGeometry geometry_of(const LightState& state, size_t lamp, bool enters_cells);
 
 // Irradiance [W/m²] of one lamp at full power on every output.
@@ -57,6 +58,7 @@ struct KnownField {
   const LampGeometry* geometry;
   const LampField* field;
 };
+// The field of one lamp; `known` saves the computation of unaffected outputs.
 LampField lamp_field(const LightLab& lab, const LampSet& lamps, const LightSites& sites,
                      const LampGeometry& geometry, const std::optional<KnownField>& known = {});
 
@@ -133,6 +135,7 @@ struct WallExchange {
   // patch.
   Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> shares;
 };
+// The exchange of the places with wall number `wall`.
 WallExchange exchange_with(const LightLab& lab, const LightSites& sites, size_t wall);
 
 // Light of each lamp after reflection at a wall with reflectance 1: diffuse, or specular if

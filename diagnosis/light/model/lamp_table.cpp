@@ -70,7 +70,7 @@ std::vector<LampTable::Node> LampTable::nodes_at(double step) const {
       }
     }
     nodes[static_cast<size_t>(i) + mirrored] = node;
-    // The light along the axis is an even function of the slope, that away from it an odd one.
+    // The light along the axis is an even function of the slope, the light away from it an odd one.
     if (i > 0 && i <= mirrored) {
       for (Eigen::Array2d& c : node) c[1] = -c[1];
       nodes[static_cast<size_t>(mirrored - i)] = node;
@@ -89,7 +89,7 @@ Eigen::Array2d LampTable::factors(double slope, double height_m) const {
   for (size_t k = 0; k < weights.size(); ++k) {
     between += weights[k] * Eigen::Map<const Coefficients>(nodes_[first + k].front().data());
   }
-  // In plain numbers: as arrays of two, the compiler keeps each sum in memory.
+  // Plain numbers are faster: the compiler keeps each sum of an array of two in memory.
   double along = 0.0, away = 0.0;
   for (Eigen::Index p = terms; p-- > 0;) {
     along = between[2 * p] + t * along;

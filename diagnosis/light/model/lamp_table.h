@@ -24,7 +24,7 @@ class LampTable {
   double radius_m() const { return light_->radius_m(); }
 
  private:
-  static constexpr size_t terms = 6;  // of the polynomial in (R/h)²
+  static constexpr size_t terms = 6;  // coefficients of the polynomial in (R/h)²
   using Node = std::array<Eigen::Array2d, terms>;
 
   double place_of(double height_m) const;
@@ -34,7 +34,7 @@ class LampTable {
 
   std::shared_ptr<const DiscLight> light_;
   double lowest_m_, highest_m_;
-  double middle_ = 0.0, half_ = 1.0;  // of (R/h)²
+  double middle_ = 0.0, half_ = 1.0;  // middle and half-width of the range of (R/h)²
   double step_ = 0.0, largest_slope_ = 0.0;
   std::vector<Node> nodes_;  // starts at −2 steps of slope; empty: not tabulated
 };

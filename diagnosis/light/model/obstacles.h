@@ -30,9 +30,9 @@ class Obstacles {
     double fraction = 1.0;
     Vec2 moment = Vec2::Zero();
   };
-  // All in the body frame; `side` and `up` span the disc and have its radius. `skipped`: index of a
-  // wall to ignore; past the end: none. A single flat wall or box is exact and varies smoothly;
-  // otherwise 100 points of the aperture are tested.
+  // All vectors are in the body frame; `side` and `up` span the disc and have its radius.
+  // `skipped`: index of a wall to ignore; past the end: none. A single flat wall or box is exact
+  // and varies smoothly. Otherwise 100 points of the aperture are tested.
   Open visible(const Vec3& point, const Vec3& lamp, const Vec3& side, const Vec3& up,
                size_t skipped) const;
 

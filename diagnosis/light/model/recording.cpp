@@ -109,7 +109,7 @@ bool next_line(TextLines& lines, std::string_view& line) {
 struct Beginning {
   std::optional<LightHeader> header;
   bool is_curve = false;
-  std::vector<std::string> cells;  // of the header, as written
+  std::vector<std::string> cells;  // header cells as written
 };
 
 // Preambles may lack comment marks: the header is the first line that identifies a kind of
@@ -234,7 +234,7 @@ class RowReader {
     if (columns_.q[0] && columns_.q[1] && columns_.q[2] && columns_.q[3]) {
       const Quat q(value(columns_.q[0]), value(columns_.q[1]), value(columns_.q[2]),
                    value(columns_.q[3]));
-      constexpr double off = 0.01;  // of its norm
+      constexpr double off = 0.01;  // relative deviation from norm 1
       if (!(std::abs(q.norm() - 1.0) < off)) return std::nullopt;
       return q.normalized();
     }
@@ -431,7 +431,8 @@ LightRecording read_light_recording(const std::filesystem::path& path,
     }
     if (!reason.empty()) ++recording.rejected[reason];
   }
-  // A few torn rows are omitted. If most are torn, the cause is another, such as decimal commas.
+  // A few incomplete rows are omitted. If most rows are incomplete, the file has another fault,
+  // such as decimal commas.
   if (2 * of_wrong_length > recording.rows_read) {
     throw InputError(
         {path.string(), first_of_wrong_length}, "",

@@ -186,7 +186,7 @@ LampField LightRun::expanded(LampField field) const {
 void LightRun::find_noise() {
   const LightNoise& noise = lab_->noise();
   if (!is_scan()) {
-    // Squares of readings divided by less would overflow.
+    // Squares of readings divided by a smaller noise would overflow.
     constexpr double least = 1e-12;
     if (!(noise.voltage_V >= least) || !(noise.current_A >= least)) {
       throw InputError(

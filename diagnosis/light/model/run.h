@@ -4,9 +4,9 @@
 // of a scan; photocurrents of every cell at every instant), and the residuals, whitened by their
 // noise:
 //   scan    (measured − predicted)/σ
-//   sweep   the signed distance of a point from the curve, in errors of voltage and current
-//   run     voltage and current of the maximum that the tracker holds; the distance from the curve
-//           where its steps make the voltage an input
+//   sweep   the signed distance of a point from the curve, in standard errors
+//   run     voltage and current of the maximum at which the tracker operates; if the tracker's
+//           steps are stated, the distance from the curve as for a sweep
 #pragma once
 
 #include <Eigen/Core>
@@ -33,7 +33,7 @@ struct LightFields {
 
 // Derivatives of the residuals with respect to the signals.
 struct SignalSlopes {
-  // Scans: ∂r/∂signal of each residual. Others: derivatives by every cell's photocurrent.
+  // Scans: ∂r/∂signal of each residual. Sweeps and runs: ∂r/∂photocurrent of each cell.
   std::vector<double> of_scan;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> by_photocurrent;
 };
@@ -82,7 +82,7 @@ class LightRun {
   std::vector<double> signals(const LightState& state, const LightFields& fields) const {
     return signals_of(state, light(state, fields));
   }
-  // `slopes` may be null.
+  // Whitened residuals, one per sample. `slopes` may be null.
   Eigen::VectorXd residuals(const LightState& state, const std::vector<double>& signals,
                             SignalSlopes* slopes) const;
   // Change of the residuals for a change of the signals.
@@ -147,9 +147,9 @@ class LightRun {
   LightRecording recording_;
   LightSites sites_;
   std::vector<std::shared_ptr<const WallExchange>> exchange_;  // with each wall
-  std::vector<Between> between_;           // of runs, per row; empty: no interpolation
-  std::map<double, CellTables> cells_at_;  // of sweeps, by temperature
-  std::vector<size_t> first_output_;       // of each row; rows of one curve share theirs
+  std::vector<Between> between_;           // for runs, per row; empty: no interpolation
+  std::map<double, CellTables> cells_at_;  // for sweeps, by temperature
+  std::vector<size_t> first_output_;       // one per row; rows of one curve share theirs
   std::vector<size_t> cell_of_point_;      // scans: the cell that contains a row, or none
   std::vector<double> irradiance_sigma_;   // scans, per row
   int number_ = 0;

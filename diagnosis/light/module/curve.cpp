@@ -10,7 +10,8 @@
 namespace photorque {
 namespace {
 
-// A fit may try unphysical parameters; they give a bad curve instead of an error.
+// The parameters of a cell in a state. They are limited, because a fit may try unphysical values:
+// these result in a bad curve instead of an error.
 CellParameters at_state(const ModuleCell& cell, const ModuleState& state) {
   const double T = std::clamp(state.temperature_K, 100.0, 800.0), T0 = cell.temperature_K,
                light = std::max(state.light, 1e-6);
@@ -39,7 +40,7 @@ CellParameters at_state(const ModuleCell& cell, const ModuleState& state) {
   return p;
 }
 
-// A fraction of the area of a cell.
+// Parameters of a part of a cell with this fraction of its area.
 CellParameters part_parameters(CellParameters p, double fraction) {
   p.saturation_1_A *= fraction;
   p.series_ohm /= fraction;
@@ -85,7 +86,8 @@ ArrayCurve module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
   const double light_A = cell.photocurrent_A * state.light, share = 1.0 / wiring.chains;
   ModuleString module;
   module.left = wiring.cells - state.bypassed;
-  // Changed cells, then average cells up to the number that their diode bypasses.
+  // A group under one bypass diode: the changed cells, then average cells up to the number of cells
+  // that the diode bypasses.
   struct Group {
     std::vector<CellGroup> rows;
     bool is_split, is_bypassed = true;
@@ -141,7 +143,7 @@ ArrayCurve module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
       substring.rows = std::move(group.rows);
       continue;
     }
-    // The other chains are alike and count as one of their total area.
+    // The other chains are equal and are modelled as one chain with their total area.
     const size_t count = group.rows.size() + static_cast<size_t>(more);
     const auto of_chain = part_of(usual, share, 0.0), of_others = part_of(usual, 1.0 - share, 0.0);
     std::vector<CellGroup> others;

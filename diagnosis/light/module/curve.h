@@ -45,7 +45,7 @@ struct ModuleState {
   };
   struct Shaded {
     int count = 0;
-    double factor = 1.0;  // of their light
+    double factor = 1.0;  // factor on their light
     Breakdown breakdown = {};
     bool is_bypassed = true;  // false: their bypass diode is open
     bool in_all_chains = false;
@@ -57,7 +57,7 @@ struct ModuleState {
     int count = 0;
     double fraction = 0.0, resistance_ohm = 0.0;
     Breakdown breakdown = {};
-    double leak = 1.0;  // as of shaded cells
+    double leak = 1.0;  // as for shaded cells
   };
   std::vector<Cracked> cracked;
   struct Shunted {
@@ -75,8 +75,8 @@ struct ModuleWiring {
   int cells = 1;
   int bypass_every = 0;  // 0: no diodes
   double bypass_drop_V = 0.5;
-  // Parallel chains of cells beside each bypass diode; half-cut: 2. Changed cells are in one of
-  // them, with their part of the area.
+  // Parallel chains of cells under each bypass diode; half-cut modules: 2. Changed cells are in one
+  // of the chains, with its fraction of the area.
   int chains = 1;
 };
 

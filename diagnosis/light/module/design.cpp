@@ -105,8 +105,8 @@ constexpr NumberKey leak("leak", 1.0, Range::positive(),
                          "shunt conductance of these cells relative to that of the others");
 }  // namespace effect_key
 
-// One number for all references, or one for each file; `files` is the file index of each. Values in
-// the curves themselves have priority.
+// Values for the references: one number for all, or one for each file. `files` is the file index of
+// each reference. Values in the recordings (`recorded`) have priority.
 std::vector<double> of_references(const Settings& s, const OtherKey& key, double usual,
                                   const Range& range, const std::vector<size_t>& files,
                                   const std::vector<double>& recorded) {

@@ -27,7 +27,7 @@ struct ModuleDesign {
   int cells = 1;
   int bypass_every = 0;  // 0: no bypass diodes
   double bypass_drop_V = 0.5;
-  int chains = 1;  // in parallel beside each bypass diode
+  int chains = 1;  // parallel chains under each bypass diode
   std::vector<std::filesystem::path> reference_files;
   std::vector<LightRecording> references;  // one per curve
   // For each reference. If empty, all have reference_temperature_K, and their light is not

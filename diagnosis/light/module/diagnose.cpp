@@ -42,9 +42,9 @@ ModuleData of_one_curve(const ModuleRun& whole) {
   return data;
 }
 
-// Diagnoses every curve separately: the nominal model first, and all hypotheses if it leaves a
-// residual. `light` returns the light of each curve relative to the reference, by the nominal
-// model.
+// Diagnoses every curve separately. The nominal model is fitted first. If it leaves a residual, all
+// hypotheses are fitted. `light` returns the light of each curve relative to the reference, as
+// fitted with the nominal model.
 std::vector<Diagnosis> each_curve(const ModuleDesign& design, const ModuleNominal& nominal,
                                   const ModuleData& all, const ModuleDiagnoseOptions& options,
                                   std::vector<double>& light) {

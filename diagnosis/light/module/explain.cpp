@@ -13,8 +13,8 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-// Divides a curve into segments of `block` points: those for which `is_held` is false, and the
-// others.
+// Divides a curve into segments of `block` points. The first result contains the segments for which
+// `is_held` is false, the second result the others.
 std::pair<ModuleRun, ModuleRun> split_curve(const ModuleRun& run, size_t block,
                                             const std::function<bool(size_t segment)>& is_held) {
   ModuleRun train = run, held = run;
@@ -60,8 +60,8 @@ std::vector<double> chi2_of_segments(const ModuleFitter& fitter, const ModuleHyp
   return chi2;
 }
 
-// Residual structure of a fit, and contradiction of the references and thermometers, which are
-// also data [sigma].
+// Excess of a fit over noise [standard errors]: the largest of its residual structure, its χ², and
+// its deviation from the references and thermometers, which are also data.
 double excess_of(const ModuleFitter& fitter, const ModuleHypothesis& h, const ModuleTrial& trial,
                  const std::vector<ModuleRun>& runs, const Thresholds& limits) {
   std::vector<inference::ChannelResiduals> channels;
@@ -103,8 +103,8 @@ std::vector<Family> families_of(const std::vector<ModuleHypothesis>& hypotheses)
   return families;
 }
 
-// Fits rising numbers of cells, until two in succession are hopeless compared with the best. The
-// solution for one number is a start for the next.
+// Fits hypotheses with rising numbers of cells until two in succession are hopeless compared with
+// the best. The solution for one number is a start for the next.
 void fit_family(const ModuleFitter& fitter, const std::vector<ModuleRun>& runs, Family& family) {
   double best = -INFINITY;
   int behind = 0;
@@ -186,15 +186,16 @@ size_t best_of_kind(const ModuleAnswer& answer, const std::string& kind) {
   return best;
 }
 
-// Parameters of the hypothesis alone.
+// Fitted parameters of the hypothesis, without those of the nominal module.
 std::vector<double> own_of(const ModuleHypothesis& h, const ModuleTrial& trial) {
   const auto own = static_cast<Index>(h.parameters.size());
   const VectorXd x = trial.shared.tail(own);
   return {x.begin(), x.end()};
 }
 
-// Two effects together, from the fit of the first and every start of the second. If the second has
-// no starts, also from every start of the first: alone, it may have stood for both.
+// Combines two effects. The starts are the fit of the first effect with every start of the second.
+// If the second effect has no starts, every start of the first is used too: the fit of the first
+// alone may have imitated both effects.
 ModuleHypothesis pair_of(const ModuleAnswer& answer, size_t a, size_t b) {
   const ModuleHypothesis &of_a = answer.hypotheses[a], &of_b = answer.hypotheses[b];
   ModuleHypothesis h = both(of_a, a, of_b, b);
@@ -230,7 +231,8 @@ class Pairs {
         threads_(threads),
         answer_(answer) {}
 
-  // A fault of some cells together with another one or with one of all cells.
+  // Fits pairs: a fault of some cells with another fault of some cells or with a fault of all
+  // cells.
   void fit() {
     constexpr std::pair<const char*, const char*> kinds[] = {
         {"cell_shaded", "series_resistance"},      {"cell_shaded", "shunt"},
@@ -247,8 +249,8 @@ class Pairs {
     }
     add(std::move(pairs), nullptr);
     if (first == answer_.hypotheses.size()) return;
-    // Other numbers of cells, as long as they are more likely: next to another fault the number of
-    // the single fit says little.
+    // Tries other numbers of cells as long as the evidence rises. In the presence of another fault,
+    // the number of cells from the fit of a single fault is unreliable.
     constexpr int most_steps = 4;
     size_t best = best_from(first);
     for (int step = 0; step < most_steps; ++step) {
@@ -262,7 +264,8 @@ class Pairs {
   }
 
  private:
-  // Fits hypotheses to the training curves, `near` a solution or from their starts, and to all.
+  // Fits hypotheses to the training curves and then to all curves. The fits start from the solution
+  // `near` or, if that is null, from the starts of the hypotheses.
   void add(std::vector<ModuleHypothesis> more, const ModuleTrial* near) {
     std::vector<ModuleTrial> trials(more.size()), joint(more.size());
     parallel_for(more.size(), threads_, [&](size_t i) {
@@ -277,7 +280,7 @@ class Pairs {
     append(answer_.joint, joint);
   }
 
-  // The best pair from index `first`, which is one.
+  // Index of the best pair at or after index `first`, which must be a pair.
   size_t best_from(size_t first) const {
     size_t best = first;
     for (size_t i = first; i < answer_.joint.size(); ++i) {
@@ -287,7 +290,7 @@ class Pairs {
     return best;
   }
 
-  // Index of the effect with another number of cells, which is fitted if it was not.
+  // Index of the effect with `count` cells, which is fitted if it has not been.
   size_t with_count(size_t effect, int count) {
     const std::string kind = answer_.hypotheses[effect].kind;
     const auto is_it = [&](const ModuleHypothesis& h) {
@@ -301,7 +304,8 @@ class Pairs {
     return fitted.size() - 1;
   }
 
-  // Pairs with the next smaller or larger number of cells of one effect that were not fitted.
+  // Pairs that have not been fitted, in which one effect has the next smaller or larger number of
+  // cells.
   std::vector<ModuleHypothesis> neighbours(size_t pair, size_t first) {
     std::vector<ModuleHypothesis> result;
     for (size_t which = 0; which < 2; ++which) {
@@ -337,7 +341,8 @@ class Pairs {
   ModuleAnswer& answer_;
 };
 
-// Prediction of the held-out data by each trial, significance of its effects, and the decision.
+// Sets the prediction of the held-out data by each trial and the significance of its effects, and
+// decides.
 void decide_on(const ModuleFitter& fitter, const ModuleData& data, const Thresholds& limits,
                ModuleAnswer& answer) {
   const size_t count = answer.hypotheses.size();
@@ -348,7 +353,7 @@ void decide_on(const ModuleFitter& fitter, const ModuleData& data, const Thresho
     for (const auto& member : answer.hypotheses[i].members) candidates.push_back(member.hypothesis);
     return candidates.empty() ? std::vector{i} : candidates;
   };
-  // The trial without one of the effects of another.
+  // Index of the trial without the effect `which` of trial `i`.
   const auto without = [&](size_t i, size_t which) -> size_t {
     const auto& members = answer.hypotheses[i].members;
     return members.empty() ? 0 : members[1 - which].hypothesis;
@@ -356,8 +361,8 @@ void decide_on(const ModuleFitter& fitter, const ModuleData& data, const Thresho
   for (size_t i = 0; i < count; ++i) {
     const ModuleHypothesis& h = answer.hypotheses[i];
     traits[i].name = h.kind.empty() ? h.label : h.kind;
-    // If the largest tested number of cells is clearly the best one, the effect is distributed over
-    // the module in a way that this kind only mimics.
+    // If the largest tested number of cells is the best one, the effect is distributed over the
+    // module in a way that this kind only imitates.
     traits[i].is_empirical = h.is_empirical || (h.count > 1 && h.count == h.largest_count);
     traits[i].parameters = h.parameters.size();
     answer.trials[i].candidates = candidates_of(i);
@@ -385,8 +390,8 @@ void decide_on(const ModuleFitter& fitter, const ModuleData& data, const Thresho
   }
   std::vector<inference::Explanation> trials(answer.trials.begin(), answer.trials.end());
   for (size_t i = 0; i < count; ++i) trials[i].log_evidence = answer.joint[i].log_evidence;
-  // References and thermometers are data that a fit to the curves predicts. If a fit contradicts
-  // them, their χ² is a gain besides that of the segments.
+  // References and thermometers are data that a fit to the curves predicts. If a fit without the
+  // effect contradicts them, the fall of their χ² may count in place of the gain of the segments.
   const auto gain = [&](size_t trial, size_t which) -> std::optional<double> {
     const size_t rest = without(trial, which);
     const auto chi2 = [&](size_t of) {
@@ -423,8 +428,8 @@ ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nom
   answer.trials = {fitter.fit(hypotheses.front(), data.train)};
   answer.joint = {fitter.fit(hypotheses.front(), everything, &answer.trials.front().shared)};
   decide_on(fitter, data, limits, answer);
-  // Within the error of one diode and its translation no effect is detectable: χ² up to one per
-  // point and up to four times that of healthy curves.
+  // No effect is detectable if χ² is at most one per point and at most four times that of healthy
+  // curves, which differ from one diode and its translation.
   constexpr double of_healthy = 4.0;
   const double most_chi2 = of_healthy * chi2_of_healthy(nominal, everything);
   const auto leaves_more = [&](const ModuleTrial& trial) {
@@ -435,7 +440,7 @@ ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nom
   const bool is_odd = answer.decision.finding != inference::Finding::nothing_missing;
   if (!is_odd && !leaves_more(answer.joint.front())) return answer;
   fit_effects(fitter, design, nominal, hypotheses, data.train, everything, threads, answer);
-  size_t best = 0;  // of the physical ones
+  size_t best = 0;  // best physical hypothesis
   for (size_t i = 1; i < answer.joint.size(); ++i) {
     if (answer.hypotheses[i].is_empirical) continue;
     if (answer.joint[i].log_evidence > answer.joint[best].log_evidence) best = i;

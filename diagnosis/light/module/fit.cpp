@@ -32,7 +32,7 @@ Acting acting(const ModuleDesign& design, const ModuleNominal& nominal, const Mo
   return a;
 }
 
-// Every third point of the curves, if they are many.
+// Every third point of each curve that has many points.
 std::vector<ModuleRun> thinned(std::vector<ModuleRun> runs) {
   constexpr size_t every = 3, fewest = 20;
   for (ModuleRun& run : runs) {
@@ -131,7 +131,7 @@ ModuleTrial ModuleFitter::fit_from(const ModuleHypothesis& h, const std::vector<
         slopes->col(k).setZero();
         continue;
       }
-      // Differences point away from a bound.
+      // At an upper bound the finite difference has a negative step.
       const double highest =
           shared < 0 ? inference::infinity : parameters.shared[static_cast<size_t>(shared)].highest;
       const double step = x[k] + 1e-5 < highest ? 1e-5 : -1e-5;
@@ -154,7 +154,7 @@ ModuleTrial ModuleFitter::fit(const ModuleHypothesis& h, const std::vector<Modul
   for (const inference::Parameter& p : h.parameters) plain.push_back(p.value);
   std::vector<std::vector<double>> starts = h.starts;
   if (starts.empty() || from != nullptr) starts = {plain};
-  // The starts are compared on a part of the points.
+  // The starts are compared on a subset of the points.
   const std::vector<ModuleRun> some = starts.size() > 1 ? thinned(runs) : runs;
   ModuleTrial best;
   for (const std::vector<double>& start : starts) {

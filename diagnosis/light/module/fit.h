@@ -13,15 +13,15 @@ namespace photorque {
 
 struct ModuleHypothesis {
   std::string kind;         // empty: no effect, or an empirical law
-  int effects = 0;          // number of effects: two of a pair
+  int effects = 0;          // number of effects; 2 for a pair
   std::string label;        // as printed: "cell_cracked (3 cells)"
   std::string explanation;  // a sentence of physics without a full stop
   bool is_empirical = false;
   int count = 0;            // number of cells; 0: not applicable
-  int largest_count = 0;    // of the tested hypotheses of the kind
+  int largest_count = 0;    // largest count of the tested hypotheses of the kind
   double alternatives = 1;  // number of alternatives, including this: other numbers of cells
   std::vector<inference::Parameter> parameters;
-  std::vector<std::vector<double>> starts;  // of the parameters; none: their values
+  std::vector<std::vector<double>> starts;  // starts of the parameters; empty: their values
   std::function<void(std::span<const double> x, ModuleState& state, ModuleCell& cell)> act;
   // Whether the first parameter, a fraction of the light, may limit the short-circuit current, from
   // which the light of a curve is estimated.
@@ -40,20 +40,20 @@ struct ModuleHypothesis {
   std::vector<Member> members;
 };
 
-// The first hypothesis is "nothing missing".
+// All hypotheses about the module of a design; the first one is "nothing missing".
 std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
                                                 const ModuleNominal& nominal);
 
-// Cracked cells with reverse conduction, similar to the `shaded` ones with parameters `own`.
-// Without light on a part of the cell or without its connection, the curves differ by n kT/q
-// ln(factor) and by the series resistance of one cell. `any_cracked`: one of the other hypotheses
-// of cracks.
+// Cracked cells with reverse conduction, similar to the `shaded` ones with parameters `own`. A part
+// of a cell without light and a part without connection change the curve almost equally: the curves
+// differ by n kT/q ln(factor) and by the series resistance of one cell. `any_cracked`: one of the
+// other hypotheses of cracks.
 ModuleHypothesis cracked_hypothesis(const ModuleDesign& design, const ModuleNominal& nominal,
                                     const ModuleHypothesis& shaded, std::span<const double> own,
                                     const ModuleHypothesis& any_cracked);
 
-// Two effects together. The breakdown of the cells and the drop of the diodes, which belong to the
-// make of the module, are common to both. `of_a` and `of_b`: indices of the effects.
+// Two effects together. The breakdown of the cells and the drop of the diodes are properties of the
+// type of module and therefore common to both. `of_a` and `of_b`: indices of the effects.
 ModuleHypothesis both(const ModuleHypothesis& a, size_t of_a, const ModuleHypothesis& b,
                       size_t of_b);
 
@@ -66,7 +66,7 @@ struct ModuleRun {
 
 struct ModuleTrial : inference::Explanation {
   inference::Fit fit;
-  Eigen::VectorXd shared;  // of the nominal module, then of the hypothesis
+  Eigen::VectorXd shared;  // parameters of the nominal module, then of the hypothesis
   // χ² of the deviations of the module from its references and of the temperatures from the
   // thermometer, and its excess over chance [sigma].
   double prior_chi2() const;
@@ -85,11 +85,11 @@ class ModuleFitter {
   // Fits from all starts of the hypothesis, or from one.
   ModuleTrial fit(const ModuleHypothesis& h, const std::vector<ModuleRun>& runs,
                   const Eigen::VectorXd* from = nullptr) const;
-  // Currents of a fit, with its light and temperature of run number `run`, at the voltages of `at`,
-  // a part of that curve.
+  // Currents of a fit at the voltages of `at`, a part of run number `run`, with the fitted light
+  // and temperature of that run.
   std::vector<ArrayCurve::SlopedPoint> curve(const ModuleHypothesis& h, const ModuleTrial& trial,
                                              size_t run, const ModuleRun& at) const;
-  // (measured − predicted)/error.
+  // Residuals (measured − predicted)/error of the points of a run at parameters x.
   Eigen::VectorXd residuals(const ModuleHypothesis& h, const Eigen::VectorXd& x,
                             const ModuleRun& run) const;
   // Parameters of one run of a trial: its two nuisance parameters, then the shared ones.

@@ -46,8 +46,9 @@ void add_bypass_drop(const ModuleDesign& design, ModuleHypothesis& h) {
 
 // Appends reverse conduction of cells. Breakdown is soft, and its exponent may be far from the
 // tabulated three in cells of other makes (J. W. Bishop, Solar Cells 25, 73 (1988)). The shunts of
-// single cells differ by factors, and that of a shaded cell is seen in reverse only. If diodes
-// bypass the cells, their drop is a nuisance parameter: 0.35 V (Schottky) to 0.7 V (junction).
+// single cells differ by factors, and the shunt of a shaded cell affects the curve only in reverse.
+// If diodes bypass the cells, their drop is a nuisance parameter: 0.35 V (Schottky) to 0.7 V
+// (junction).
 void add_reverse(const ModuleDesign& design, ModuleHypothesis& h) {
   const size_t first = h.parameters.size();
   h.parameters.push_back(wide("breakdown_fraction", std::log(0.05), 2.5, -8.0, std::log(7.0)));
@@ -90,7 +91,7 @@ ModuleHypothesis shaded(const ModuleDesign& design, int count, double alternativ
   };
   h.numbers = {{"factor", [](X x) { return x[0]; }}};
   add_reverse(design, h);
-  // Hard breakdown near the voltage of the other cells under the diode.
+  // Adds a start with hard breakdown near the voltage of the other cells under the diode.
   const double other_cells_V = 0.6 * std::max(1, design.bypass_every);
   const size_t dark = h.starts.size();
   h.starts.push_back(h.starts[1]);
@@ -119,7 +120,7 @@ ModuleHypothesis substrings_shaded(const ModuleDesign& design, int count, int mo
   }
   for (const double factor : {0.95, 0.8, 0.4}) {
     h.starts.emplace_back(static_cast<size_t>(count), factor);
-    // Steps at different currents.
+    // The substrings start with different factors, which give steps at different currents.
     for (size_t k = 1; k < h.starts.back().size(); ++k) h.starts.back()[k] = 0.5 + 0.5 * factor;
   }
   h.act = [count, every = design.bypass_every](X x, ModuleState& state, ModuleCell&) {
@@ -205,7 +206,7 @@ ModuleHypothesis shunted(int count, double alternatives, double usual_ohm) {
   return h;
 }
 
-// Empirical competitor: some diode fits every smoothly falling curve.
+// Empirical competitor of the physical effects: some diode fits every smoothly falling curve.
 ModuleHypothesis other_diode() {
   ModuleHypothesis h;
   h.label = "another diode (all five parameters)";
@@ -304,7 +305,7 @@ std::vector<ModuleHypothesis> module_hypotheses(const ModuleDesign& design,
   for (const int k : leaking) {
     all.push_back(shunted(k, static_cast<double>(leaking.size()), usual_ohm));
   }
-  constexpr double coldest_K = 223.0, hottest_K = 393.0;  // outdoors, and of a hot spot
+  constexpr double coldest_K = 223.0, hottest_K = 393.0;  // coldest outdoors, hottest of a hot spot
   all.push_back(of_one_number(
       "temperature", "cells warmer or colder than stated", "change_K", 30.0,
       std::min(0.0, coldest_K - design.temperature_K),

@@ -60,7 +60,7 @@ struct ReferenceFit {
   std::vector<VectorXd> residuals_A;
 };
 
-constexpr Index own = 2;  // of each curve: log light, deviation from the stated temperature
+constexpr Index own = 2;  // per curve: log light, deviation from the stated temperature
 
 inference::Parameters reference_parameters(const ModuleDesign& design,
                                            const std::vector<ModuleSweep>& sweeps) {
@@ -92,8 +92,8 @@ inference::Parameters reference_parameters(const ModuleDesign& design,
   return parameters;
 }
 
-// `noise`: of a point relative to the current of the first curve; `near`: start of the fit, or
-// nullptr.
+// `noise`: standard deviation of a point, relative to the current of the first curve. `near`: start
+// of the fit, or nullptr.
 ReferenceFit fit_references(const ModuleDesign& design, double noise, const ReferenceFit* near) {
   constexpr size_t most_points = 200;
   ReferenceFit result;
@@ -333,11 +333,11 @@ namespace {
 
 // Residual of one diode and its translation.
 double misfit_A(const ModuleNominal& nominal, const ModuleSweep& sweep) {
-  // Per unit of distance, relative to the short-circuit current: the residual of the powers of
-  // Translation for the two modules from which their sizes come.
+  // Residual of the translation per unit of distance, relative to the short-circuit current, for
+  // the two modules from which the sizes of its powers come.
   constexpr double translation_misfit = 1.5e-3;
-  // Correction for one or two references: they sample their misfit over few correlation lengths, to
-  // a third.
+  // Correction for one or two references: with few correlation lengths they determine their misfit
+  // only to a third.
   constexpr double of_curves = 1.33;
   return std::hypot(of_curves * nominal.misfit, translation_misfit * distance_of(nominal, sweep)) *
          nominal.cell.photocurrent_A * sweep.light;

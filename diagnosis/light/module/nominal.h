@@ -14,7 +14,7 @@ struct ModuleSweep {
   double temperature_K = 298.15;             // stated
   std::vector<double> voltage_V, current_A;  // rising voltage
   double light = 1.0;    // relative to the reference, from the currents at low voltage
-  double noise_A = 0.0;  // of a reading; from its neighbours if not stated
+  double noise_A = 0.0;  // noise of a reading; estimated from its neighbours if not stated
 };
 
 // Thins a sweep to at most `max_rows` points by voltage and removes outliers. Throws InputError for
@@ -35,6 +35,7 @@ struct ModuleNominal {
   double voltage_noise_V = 0.0;
 };
 
+// The wiring of the module of a design.
 ModuleWiring wiring_of(const ModuleDesign& design);
 // The cell with its parameters shifted by root · z.
 ModuleCell moved(const ModuleNominal& nominal, const ModuleNominal::Numbers& z);
@@ -43,7 +44,8 @@ ModuleCell moved(const ModuleNominal& nominal, const ModuleNominal::Numbers& z);
 // K.
 double distance_of(const ModuleNominal& nominal, const ModuleSweep& sweep);
 
-// Throws InputError for references that no diode fits.
+// The nominal module from the references or the datasheet. Throws InputError for references that no
+// diode fits.
 ModuleNominal nominal_module(const ModuleDesign& design);
 
 // The standard deviation of each point of a sweep: the noise of its readings and the misfit of one

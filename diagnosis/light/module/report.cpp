@@ -28,7 +28,8 @@ double squares_of(const ModuleFitter& fitter, const ModuleAnswer& answer, size_t
   return std::sqrt(squares / std::max(1.0, points));
 }
 
-// Fitted values and standard errors of the parameters at `which` of the `all` of a hypothesis.
+// Fitted values and standard errors of some parameters of a hypothesis. `which`: their indices;
+// `all`: the number of its parameters.
 std::pair<std::vector<double>, std::vector<double>> own_numbers(const ModuleTrial& trial,
                                                                 const std::vector<size_t>& which,
                                                                 size_t all) {
@@ -59,24 +60,26 @@ void add_equals(const ModuleAnswer& answer, size_t which, const Thresholds& limi
       std::max(1.0, joint.fit.data_chi2 / static_cast<double>(joint.fit.samples));
   const double within =
       std::max(limits.search.min_log_evidence_gain * beyond_noise, model_error * gain);
-  // A part of the gain that counts as an error of the model of the other cells.
+  // Limit of the deficit in log evidence: this part of the gain counts as an error of the model of
+  // the other cells.
   const auto within_part = [&](double part, double most = hopeless_log_evidence) {
     return std::max(within, std::min(most, part * gain));
   };
-  // Shaded and partly cut-off cells, and some of them more or less, differ by some hundredths of a
-  // volt, which is below the accuracy of the model of the other cells.
+  // Shaded cells and partly disconnected cells differ by some hundredths of a volt, and so does one
+  // cell more or less. This is below the accuracy of the model of the other cells.
   const auto is_dim = [](const std::string& kind) {
     return kind == "cell_shaded" || kind == "cell_cracked" || kind == "bypass_open";
   };
   const double cut_off_or_dark = within_part(5e-3),
                more_or_less = within_part(5e-3, 0.5 * hopeless_log_evidence);
-  // A leak and a part cut off both lower the knee of a cell, by little more than cells differ.
+  // A leak and a disconnected part both lower the knee of a cell's curve. They differ by little
+  // more than the scatter between cells.
   const auto lowers_knee = [](const std::string& kind) {
     return kind == "cell_cracked" || kind == "cell_shunted";
   };
   const double leak_or_cut_off = within_part(0.1);
-  // Leaks and light that falls while the voltage rises both tilt the curve up to its knee. Beyond
-  // it they differ by little more than unequal leaks do.
+  // Leaks, and light that falls while the voltage rises, both tilt the curve up to its knee. Beyond
+  // the knee they differ by little more than the scatter of leaks.
   const double leak_or_light = within_part(0.25);
   const auto tilts = [](const std::string& kind) {
     return kind == "shunt" || kind == "cell_shunted" || kind == "unsteady_light";
@@ -108,7 +111,8 @@ void add_equals(const ModuleAnswer& answer, size_t which, const Thresholds& limi
     std::vector<std::string>& rivals = effect.indistinguishable_from;
     if (std::ranges::find(rivals, other.kind) == rivals.end()) rivals.push_back(other.kind);
   }
-  // Two groups of cells of one kind only stand for cells in several states.
+  // Two effects of one kind only approximate cells in many states, so the number of cells is
+  // uncertain.
   if (named.size() == 2 && answer.hypotheses[named[1 - which]].kind == h.kind) {
     fewest = 1;
     most = h.largest_count;
@@ -304,7 +308,7 @@ Diagnosis of_all_curves(std::vector<Diagnosis> each) {
   all.holdout.emplace();
   int64_t samples = 0;
   size_t differing = 0;
-  constexpr size_t most_drawn = 12;  // of the differing curves
+  constexpr size_t most_drawn = 12;  // maximum number of plotted curves
   for (Diagnosis& d : each) {
     const auto n = static_cast<double>(d.samples), m = static_cast<double>(samples);
     all.chi2_per_sample_before =
