@@ -1,4 +1,4 @@
-// Trace, then the solar array.
+// A trace, and the solar array's power from it.
 #pragma once
 
 #include <memory>

@@ -10,7 +10,7 @@ namespace photorque {
 
 struct CameraRun {
   CameraStudy study;
-  double images_per_s = 0.0;  // exposed, read and solved, on one thread
+  double images_per_s = 0.0;  // images that are exposed, read and solved per second on one thread
   RunResult result;
 };
 

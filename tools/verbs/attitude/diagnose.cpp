@@ -1,4 +1,4 @@
-// photorque diagnose: missing physics of an experiment, from its recordings.
+// photorque diagnose: effects that are missing in an experiment, from its recordings.
 #include "tools/verbs/attitude/diagnose.h"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ std::vector<NamedRecording> read_all(const std::vector<fs::path>& paths,
   return all;
 }
 
-// The text with the changes of the command line.
+// The text with the overrides of the command line.
 std::string with_overrides(const std::string& text, const std::vector<std::string>& overrides) {
   if (overrides.empty()) return text;
   TomlDocument document(text, "");
@@ -55,7 +55,7 @@ std::string with_overrides(const std::string& text, const std::vector<std::strin
   return document.text();
 }
 
-// Whether the recordings are of light. InputError naming the first that is of another kind.
+// Whether the recordings are of light. Throws InputError for the first recording of another kind.
 bool are_of_light(const std::vector<fs::path>& recordings, const std::vector<fs::path>& holdouts,
                   const LightColumns& columns) {
   const bool of_light = is_light_recording(recordings.front(), columns);
@@ -82,7 +82,7 @@ std::vector<LightRecording> read_light(const std::vector<fs::path>& paths,
   return all;
 }
 
-// [recording] columns, where recordings of light are read.
+// [recording] columns, for recordings of light.
 LightColumns columns_in(const Settings& root) {
   const Settings recording = own_table(root, "recording", false);
   LightColumns columns = read_recording_options(recording).columns;
@@ -90,7 +90,7 @@ LightColumns columns_in(const Settings& root) {
   return columns;
 }
 
-// The named columns that each recording lacks.
+// The named columns that are missing in each recording.
 template <typename... Recordings>
 std::vector<std::set<std::string>> absent_columns(const Recordings&... lists) {
   std::vector<std::set<std::string>> all;
@@ -112,7 +112,7 @@ Progress progress_on(const Console& console, const std::string& of) {
   return [&console, of](const std::string& what) { console.line("  " + of + what + " ..."); };
 }
 
-// Lamps and array of an experiment, and their recordings.
+// Lamps and array of an experiment with their recordings.
 struct LightInput {
   Experiment experiment;
   LightLab lab{experiment};
@@ -160,7 +160,7 @@ DiagnosisRun diagnose_light_recordings(const RunOptions& options, const Settings
           with_overrides(options.experiment_text(), options.all_overrides()), true};
 }
 
-// Curves of a module in sunlight: no scene is needed.
+// Diagnosis of current-voltage curves of a module in sunlight, which need no scene.
 DiagnosisRun diagnose_module_curves(const RunOptions& options, const Settings& root,
                                     const std::vector<fs::path>& paths,
                                     const std::vector<fs::path>& holdout_paths) {
@@ -209,7 +209,7 @@ DiagnosisRun diagnose_motion(const RunOptions& options, const std::vector<fs::pa
           with_overrides(options.experiment_text(), options.overrides), false};
 }
 
-// Recordings by their content. A run of the array contains the motion of the platform, too.
+// Recordings by their content. A recording of the array contains the motion of the platform, too.
 struct Sorted {
   std::vector<fs::path> motion, light;
 };
@@ -266,7 +266,7 @@ std::string DiagnosisRun::report() const {
   return report_html(diagnosis, provenance, experiment.stem().string());
 }
 
-// A recording counts once, and one that was fitted cannot judge the fit.
+// Rejects repeated recordings, and held-out recordings that are also fitted.
 void require_each_once(const std::vector<fs::path>& recordings,
                        const std::vector<fs::path>& holdouts) {
   std::vector<fs::path> known;
@@ -300,7 +300,7 @@ DiagnosisRun run_diagnose(const RunOptions& options, const std::vector<fs::path>
       !sorted.motion.empty()) {
     return diagnose_both(options, root, sorted, sorted_by_content(holdouts, columns), console);
   }
-  // Without a platform the files must be of light: their reader reports other files.
+  // Without a platform the files must be recordings of light; their reader reports other files.
   return are_of_light(recordings, holdouts, columns) || (root.has("scene") && !root.has("platform"))
              ? diagnose_light_recordings(options, root, recordings, holdouts, console)
              : diagnose_motion(options, recordings, holdouts, console);
@@ -345,7 +345,7 @@ struct Options : CommandOptions {
   std::vector<std::filesystem::path> guess;  // recordings without an experiment
 };
 
-// The name of the guessed experiment: "run1" for data/run1.csv.gz.
+// Name of the guessed experiment: "run1" for data/run1.csv.gz.
 std::string name_of_guess(const std::vector<std::filesystem::path>& guess) {
   std::filesystem::path name = guess.front().filename();
   while (name.has_extension()) name = name.stem();
@@ -399,12 +399,12 @@ void print_diagnosis(const Console& console, const Diagnosis& d) {
   for (const std::string& warning : d.warnings) console.line("  note: " + warning);
 }
 
-// All that is printed is an experiment too.
+// Writes the guessed experiment; the printed text is the same experiment.
 void write_guess(const Options& options) {
   const Console console = terminal(options);
   const std::filesystem::path file = options.out_folder() / (options.name + ".toml");
   const std::string text = first_experiment(options.guess, file);
-  // The user may have edited the file.
+  // An existing file may contain changes by the user.
   if (std::filesystem::exists(file) && read_file(file) != text) {
     throw InputError({file.string()}, "", "another file of this name",
                      "a folder without one (--out DIR)");
