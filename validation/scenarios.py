@@ -15,7 +15,7 @@ from .strength import fit_strengths, stays_physical
 
 COMPANIONS = tuple(kind for kind in CATALOGUE if kind.pairs)
 ADJUSTABLE = tuple(kind for kind in CATALOGUE if kind.strength)
-VISIBLE_GAIN, HOPELESS_GAIN = 30.0, 6.0  # in chi²: above the first a name is required, below the second nothing can be concluded
+VISIBLE_GAIN, HOPELESS_GAIN = 30.0, 6.0  # of chi²: name required above; no conclusion below
 TRIALS = 40
 
 

@@ -36,7 +36,7 @@ class CaseScore:
     exit_status: int = 0  # of `diagnose`; −1: stopped
     verdict_right: bool = False
     right: bool = False  # verdict and set of names are accepted by the truth
-    right_within_group: bool = False  # as `right`, with names replaced by ones that the diagnosis calls indistinguishable
+    right_within_group: bool = False  # as `right`, up to names that the answer calls indistinguishable
     false_alarm: bool = False  # an effect named, or "unexplained", although nothing is missing
     wrong_name: bool = False  # an effect named that neither acts nor is accepted
     dependence_right: bool = False  # for an unknown law: the first variable named is correct

@@ -117,7 +117,7 @@ def fit_strengths(case, wanted, loosened):
     count = len(case.world.effects)
     if count == 0:
         return case, Strengths([], [])
-    reached, beyond = np.ones(count), np.ones(count)  # relative to the drawn size; the fraction that the catalogue leaves
+    reached, beyond = np.ones(count), np.ones(count)  # times the drawn size; fraction that the catalogue leaves
     acting = [e.kind for e in case.world.effects]
     for round_number in range(ROUNDS + 1):
         final = round_number == ROUNDS
