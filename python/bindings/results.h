@@ -27,8 +27,8 @@ py::dict views_of(const std::vector<Item>& items, const py::object& owner) {
   return views;
 }
 py::dict provenance_of(const Provenance& provenance);
-// Text of a result: the command and its first figures, such as "<power: emitted_W = 88, absorbed_W
-// = 76.8592 ± 0.0014, …>".
+// Text of a result: the command and its first figures, such as "<power: emitted_W = 88,
+// absorbed_W = 76.8592 ± 0.0014, …>".
 std::string text_of(const RunResult& result, const std::string& command);
 // Writes the files that the program writes for this command; returns their paths.
 py::list write_of(const RunResult& result, const std::filesystem::path& folder,

@@ -89,8 +89,8 @@ class DiscLight {
   Eigen::Array2d factors_W_m2(double distance_m, double height_m) const;
 
   // Unobstructed power [W] through a flat polygon in the emitter's frame, at any inclination. All
-  // rays must pass through the same side. The estimated error is aimed to be below `tolerance_W` (>
-  // 0); the value is ≥ 0 within its error. Not for parallel light.
+  // rays must pass through the same side. The estimated error is aimed to be below `tolerance_W`
+  // (> 0); the value is ≥ 0 within its error. Not for parallel light.
   Integral<double> power_through_W(std::span<const Vec3> polygon_m, double tolerance_W) const;
 
   // Contribution of one side of the polygon to power_through_W(). Both corners are in front of the

@@ -52,8 +52,8 @@ struct ReciprocalBrdf {
 // beyond, the one that is less far beyond counts.
 ReciprocalBrdf reciprocal_brdf(const BrdfTable& table);
 
-// Position of an angle among rising nodes: between `below` and `below` + 1, at the fraction `part`
-// ∈ [0, 1].
+// Position of an angle among rising nodes: between `below` and `below` + 1, at the fraction
+// `part` ∈ [0, 1].
 struct NodePlace {
   size_t below = 0;
   double part = 0.0;

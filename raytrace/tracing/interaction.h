@@ -12,8 +12,8 @@
 
 namespace photorque {
 
-// Rays that continue after a hit, with their power per band (ray-major: power_W[ray · bands +
-// band]).
+// Rays that continue after a hit, with their power per band (ray-major:
+// power_W[ray · bands + band]).
 struct Continuation {
   std::vector<Ray> rays;
   std::vector<double> power_W;

@@ -9,8 +9,8 @@
 
 namespace photorque {
 
-// The plane of a triangle: points p, relative to the scene's centre_m in body axes, with normal · p
-// = offset_m. The normal has unit length and points to the front.
+// The plane of a triangle: points p, relative to the scene's centre_m in body axes, with
+// normal · p = offset_m. The normal has unit length and points to the front.
 struct TrianglePlane {
   double normal[3];
   double offset_m;

@@ -62,8 +62,8 @@ Gathered gather_direct(const TraceableScene& scene, const RigidTransform& lab_fr
                        std::span<const Beam> beams, const FluxMapReceiver& map,
                        const GatherOptions& options);
 
-// Torque. With the force f per area of FirstContact (lamp.h), torques per bin are integrals of (r −
-// p) × f by the same rules as irradiance. Later bounces come from rays.
+// Torque. With the force f per area of FirstContact (lamp.h), torques per bin are integrals of
+// (r − p) × f by the same rules as irradiance. Later bounces come from rays.
 
 // Whether gather_torque() applies: the conditions of can_gather() for both sides, and surfaces with
 // fractions that do not depend on the angle and without other components.

@@ -34,8 +34,8 @@ struct OpenTile {
 
 // Visibility in one square of bins, an item of parallel work.
 struct TileSight {
-  std::vector<OpenTile> open;      // lamp by lamp
-  std::vector<ShadedPair> shaded;  // likewise
+  std::vector<OpenTile> open;      // sorted by lamp
+  std::vector<ShadedPair> shaded;  // sorted by lamp
 };
 
 // The surface, the lamps and the bodies between them, at one attitude.

@@ -12,8 +12,8 @@
 
 namespace photorque {
 
-// `kind = "wrench"`. Sums the momentum that surfaces take up over hits on the chosen instances: F =
-// Σ force and T = Σ (r − p) × force. Both sides count. Bins: per instance, F [N] and T about
+// `kind = "wrench"`. Sums the momentum that surfaces take up over hits on the chosen instances:
+// F = Σ force and T = Σ (r − p) × force. Both sides count. Bins: per instance, F [N] and T about
 // `about_body_m` [N m], x, y, z each, in the body frame. The first half is light directly from the
 // emitters, the second half, in the same order, light that has met a surface before.
 class WrenchReceiver final : public Receiver {

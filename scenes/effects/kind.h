@@ -14,8 +14,8 @@
 
 namespace photorque {
 
-// One parameter of an effect: a number, or several numbers of one key. The fitted variable is x; x
-// = 0 means no effect.
+// One parameter of an effect: a number, or several numbers of one key. The fitted variable is x;
+// x = 0 means no effect.
 struct EffectParameter {
   // Value of the key from x, in SI.
   enum class Form {

@@ -10,8 +10,8 @@
 namespace photorque {
 
 // Light from a disc whose points all radiate alike: the position is uniform over the area, the
-// direction is independent of the position. The disc lies at z = 0, directions are measured from
-// +z.
+// direction is independent of the position. The disc lies at z = 0, directions are measured
+// from +z.
 class DiscLamp : public Emitter {
  public:
   // power > 0 and aperture diameter > 0; the caller checks this.

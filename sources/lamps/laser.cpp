@@ -3,8 +3,8 @@
 // The rays are drawn from the Wigner distribution of the beam. Position in the waist and transverse
 // slope are independent Gaussians with the standard deviations w0/2 and tan Θ/2 along each axis; w0
 // is the 1/e² radius of the waist, Θ the 1/e² half angle of the far field. The irradiance at any
-// distance z is then exactly Gaussian with w(z)² = w0² + (z tan Θ)². At the diffraction limit tan Θ
-// = λ/(π w0).
+// distance z is then exactly Gaussian with w(z)² = w0² + (z tan Θ)². At the diffraction limit
+// tan Θ = λ/(π w0).
 // Source: R. Simon, N. Mukunda, E. C. G. Sudarshan, Phys. Rev. A 29 (1984) 3273; A. E. Siegman,
 // Lasers (1986), section 17.1, for w(z) and the diffraction limit.
 #include <cmath>

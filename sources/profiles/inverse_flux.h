@@ -1,11 +1,11 @@
 // The inverse of the encircled flux of a profile: the cone that contains a fraction of the flux.
 //
 // Method. With the rise h = 1 − cos θ the element of solid angle is 2π dh. The flux outside a cone
-// is G(h) = ∫_h^end I dh, and its fraction is v = G/G(0). The inverse h(v) is smooth except for v →
-// 0, where profiles without an edge increase like ln 1/v. It is tabulated on knots that divide
-// every octave of v evenly, with cubic Hermite polynomials through the exact values and slopes
-// dh/dv = −G(0)/I. The rise has full relative precision down to the narrowest beams; sin θ = √(h(2
-// − h)) and cos θ = 1 − h need no trigonometry.
+// is G(h) = ∫_h^end I dh, and its fraction is v = G/G(0). The inverse h(v) is smooth except
+// for v → 0, where profiles without an edge increase like ln 1/v. It is tabulated on knots that
+// divide every octave of v evenly, with cubic Hermite polynomials through the exact values and
+// slopes dh/dv = −G(0)/I. The rise has full relative precision down to the narrowest beams.
+// sin θ = √(h(2 − h)) and cos θ = 1 − h need no trigonometry.
 #pragma once
 
 #include <bit>

@@ -16,8 +16,8 @@ struct OnwardRay {
   uint32_t owner;
 };
 
-// Callbacks for the points where rays land. A side is the back (2 · facet) or the front (2 · facet
-// + 1) of a facet.
+// Callbacks for the points where rays land. A side is the back (2 · facet) or the front
+// (2 · facet + 1) of a facet.
 struct OnwardSink {
   // Receives the mean force and torque that a ray of this owner exerts on a surface.
   std::function<void(uint32_t owner, const WrenchSum& wrench)> push;
