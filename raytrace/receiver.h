@@ -52,6 +52,7 @@ struct BinSums {
   // none.
   std::vector<double> bound = {};
 
+  // The bins of one replicate.
   std::span<const double> of(int replicate) const {
     return std::span(sums).subspan(static_cast<size_t>(replicate) * bins, bins);
   }

@@ -46,6 +46,7 @@ class HitBinner {
   // `grid` must have been made for `scene`.
   HitBinner(const Scene& scene, const SurfaceGrid& grid);
 
+  // Sets `out` to the runs and bins of the hits that count.
   void bin(const Hits& hits, BinnedHits& out) const;
 
  private:

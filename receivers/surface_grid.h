@@ -65,6 +65,7 @@ struct SurfaceGrid {
   double overlapping_m2 = 0.0;
 
   size_t bins() const { return area_m2.size(); }
+  // Sum of area_m2.
   double total_area_m2() const;
 };
 

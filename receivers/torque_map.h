@@ -46,6 +46,7 @@ class TorqueMapReceiver final : public Receiver {
   // "torque_x_NAME_body_N_m" and so on.
   Product product(const BinSums& sums) const override;
 
+  // Requires at least two replicates.
   TorqueMap torque_map(const BinSums& sums) const;
 
   const std::string& name() const { return name_; }

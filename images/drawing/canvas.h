@@ -88,6 +88,7 @@ class Canvas {
   Canvas& operator=(Canvas&&) noexcept;
   ~Canvas();
 
+  // Coordinates and lengths of the drawing functions are in points.
   void fill(const PageBox& box, const Rgb& colour, double opacity = 1.0);
   void fill(std::span<const PagePoint> polygon, const Rgb& colour, double opacity = 1.0);
   void disc(const PagePoint& centre, double radius, const Rgb& colour);

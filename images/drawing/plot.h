@@ -36,6 +36,7 @@ struct PlotLayout {
 // All panels of a plot, from the top.
 std::vector<Plot::Panel> panels_of(const Plot& plot);
 
+// Places panels, axes and legends in `room`.
 PlotLayout plot_layout(const Plot& plot, const PlotRoom& room);
 
 // Draws shaded intervals, grids, curves, levels, frames, axes and legends.

@@ -23,6 +23,7 @@ class Hdf5File {
   // One component of an HDF5 path, from a name with any characters.
   static std::string part(const std::string& name);
 
+  // Creates a group.
   void group(const std::string& place);
   bool has(const std::string& place) const;
   // Numbers row by row; their count must match the shape.
@@ -37,6 +38,7 @@ class Hdf5File {
   // Adds program, version, git hash, seed, inputs and warnings as attributes.
   void stamp(const std::string& place, const Provenance& provenance);
 
+  // Writes the file completely or not at all. Throws InputError if it cannot be written.
   void write(const std::filesystem::path& path) const;
 
  private:

@@ -42,6 +42,7 @@ void write_exr(const std::filesystem::path& path, int width, int height,
 void write_tiff(const std::filesystem::path& path, int width, int height,
                 const std::vector<ImageChannel>& channels, const ImageMetadata& metadata);
 
+// Writes an 8-bit sRGB picture.
 void write_png(const std::filesystem::path& path, const Picture& picture,
                const ImageMetadata& metadata);
 

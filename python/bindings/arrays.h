@@ -17,6 +17,7 @@ namespace py = pybind11;
 py::array view(const double* first, const std::vector<py::ssize_t>& shape,
                const std::vector<py::ssize_t>& strides, const py::object& owner);
 
+// Shape (n,).
 py::array view(const std::vector<double>& numbers, const py::object& owner);
 // Shape (rows, columns): numbers[y · columns + x].
 py::array view(const std::vector<double>& numbers, size_t rows, size_t columns,

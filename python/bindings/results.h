@@ -16,6 +16,7 @@ namespace py = pybind11;
 // The Python classes Estimate, Table, Map, Plot, Panel and Curve.
 void bind_results(py::module_& module);
 
+// The quantities of a result as Estimates, by name.
 py::dict figures_of(const RunResult& result);
 // Views by name; they keep `owner` alive.
 template <class Item>

@@ -92,6 +92,7 @@ class Lobe {
 struct PowerFractions {
   double absorbed = 0.0, specular = 0.0, diffuse = 0.0, transmitted = 0.0, retroreflected = 0.0;
 
+  // The fraction of a component.
   double of(Component component) const;
 };
 

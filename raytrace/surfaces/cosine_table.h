@@ -19,10 +19,12 @@ class CosineTable {
  public:
   using Values = std::array<double, Count>;
 
+  // Tabulates `function` at the nodes.
   explicit CosineTable(const std::function<Values(double cosine)>& function) {
     for (size_t i = 0; i <= intervals; ++i) nodes_.push_back(function(node_cosine(i)));
   }
 
+  // Interpolated values at a cosine in [0, 1].
   Values operator()(double cosine) const {
     const double place = std::sqrt(std::max(cosine, 0.0)) * static_cast<double>(intervals);
     const size_t i = std::min(static_cast<size_t>(place), intervals - 1);

@@ -34,6 +34,7 @@ struct PowerBalanceSums {
   // would wait for the one before.
   std::vector<std::array<double, 4>> absorbed_lanes_W;
 
+  // Absorbed power of an instance [W].
   double absorbed_W(size_t instance) const;
   void add(const PowerBalanceSums& other);
   // Adds the momentum of a ray of this power that leaves the scene through `at_m`.

@@ -14,11 +14,11 @@ namespace photorque {
 //
 // Seen along a direction at the angle θ from the axis, a point moves by at most
 // |z| sin θ + ρ (1 − cos θ) from its position along the axis (z: height over the disc's middle, ρ:
-// distance from the axis). Triangles with this margin are drawn on a bitmap. The bitmap is halved in both
-// directions until few cells are left. Light far from the axis has wide margins and little power.
-// Therefore directions are divided into a few ranges of angles, each with separate cells. Points
-// and directions are drawn in proportion to the cells' area times the range's power, so that every
-// ray carries the same power. The omitted light meets nothing: the results are unbiased.
+// distance from the axis). Triangles with this margin are drawn on a bitmap. The bitmap is halved
+// in both directions until few cells are left. Light far from the axis has wide margins and little
+// power. Therefore directions are divided into a few ranges of angles, each with separate cells.
+// Points and directions are drawn in proportion to the cells' area times the range's power, so that
+// every ray carries the same power. The omitted light meets nothing: the results are unbiased.
 class Targets {
  public:
   // Empty if the light is not parallel, or if nearly all of the disc is needed. The number of

@@ -32,6 +32,7 @@ class TraceableScene {
   ~TraceableScene();
   TraceableScene(TraceableScene&&) noexcept;
 
+  // The copy of the scene.
   const Scene& scene() const;
 
   struct Data;

@@ -34,6 +34,7 @@ struct BinPatches {
   Vec3 point_m = Vec3::Zero();  // a point of the plane
   Vec3 normal = Vec3::UnitZ();  // normal of the surfaces' fronts
 
+  // Patches of a bin.
   std::span<const SurfacePatch> of(size_t bin) const {
     return std::span(patches).subspan(first[bin], first[bin + 1] - first[bin]);
   }

@@ -140,6 +140,7 @@ struct Experiment {
   std::vector<std::string> warnings = {};
   std::vector<std::pair<std::string, std::string>> inputs;  // experiment, overrides, scene files
 
+  // The receivers for trace(), in their order.
   std::vector<const Receiver*> receiver_pointers() const;
 };
 

@@ -46,6 +46,7 @@ class JointPositions {
   std::vector<double> angles_rad_;  // rising
 };
 
+// Reads the tables [[joint]]. Throws InputError for invalid keys.
 std::vector<Joint> read_joints(const std::vector<Settings>& tables);
 std::vector<Key> joint_keys();
 

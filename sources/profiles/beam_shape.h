@@ -55,6 +55,7 @@ struct BeamShape {
   double within_fwhm = 0.0;           // and ±fwhm; 1 for a collimated beam
   bool collimated = false;
 };
+// Widths and encircled flux of an emitter.
 BeamShape describe(const Emitter& emitter);
 
 // "lamp: FWHM 3 deg, full width at tenth maximum 5.468 deg; 50 % of the flux within ±1.5 deg, …"

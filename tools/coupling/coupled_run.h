@@ -23,6 +23,7 @@ struct GroupOutput {
   double at(double time_s) const { return output->at(time_s) * weight_at(time_s); }
   double weight_at(double time_s) const { return weight ? weight(time_s) : 1.0; }
 };
+// Output of every group of lamps over time, with its switches and warm-up droop.
 std::vector<GroupOutput> group_outputs(const LightModel& light, const LightSettings& settings,
                                        double start_s);
 

@@ -36,6 +36,7 @@ class UnitOutputs {
  public:
   static constexpr size_t numbers = 17, flags = 2;
 
+  // Takes the outputs of a tick.
   void take(const LiveRow& row);
   // The output with this reference; null if there is none.
   const double* number(uint32_t reference) const;

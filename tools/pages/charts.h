@@ -69,6 +69,7 @@ struct ScanView {
 // The residuals of the improved model, the last view, are included only if an effect was found.
 std::vector<ScanView> views_of_scans(bool something_was_found);
 
+// Map of one view of a scan; `number` makes its name unique.
 Map scan_map(const ScanGroup& group, const ScanView& shown, size_t number);
 
 // Numbers of the sweeps in a recording.

@@ -16,6 +16,7 @@ struct CommandLine {
   Command command = {};  // of the verb, with parsed options
 };
 
+// Parses the command line, and prints help, manual or the error of a wrong line.
 CommandLine read_command_line(int argc, char** argv, const std::vector<Verb>& verbs);
 
 }  // namespace photorque

@@ -25,6 +25,7 @@ class TickClock {
   TickClock(double step_s, double deadline_s, OnMiss on_miss);
 
   void start(int64_t now_ns) { start_ns_ = now_ns; }
+  // Due time of a tick on CLOCK_MONOTONIC.
   int64_t due_ns(size_t tick) const;
   // Time of the run [s] at an instant of the clock.
   double run_s(int64_t at_ns) const;

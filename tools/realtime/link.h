@@ -65,6 +65,7 @@ class SimulatedLink {
   SimulatedLink(LinkSettings settings, uint64_t seed, uint64_t stream)
       : keeps_order_(!settings.reorder), fate_(std::move(settings), seed, stream) {}
 
+  // Sends a packet; it is lost or arrives after a random delay.
   void push(const Packet& packet, double now_s) {
     const std::optional<double> delay_s = fate_.next();
     if (!delay_s) return;

@@ -41,6 +41,7 @@ struct ArrayReport {
   std::vector<PublishedFigure> published;  // [[published]], compared with the target
 };
 
+// Reads the sub-tables of `[array]`. Throws InputError for invalid keys.
 ArrayReport read_array_report(const Settings& array, std::vector<PublishedFigure> published);
 // Key [array] including the keys of its design.
 Key array_table();

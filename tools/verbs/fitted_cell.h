@@ -47,6 +47,7 @@ struct CellRow {
   Is is = Is::value;
 };
 
+// Parameters of a fitted diode as figures.
 std::vector<CellRow> diode_rows(const SingleDiode& diode, const FitTask& task);
 
 // The figures, with the table `parameters`.

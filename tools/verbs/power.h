@@ -16,6 +16,7 @@ struct PowerRun {
   RunResult result;
 };
 
+// Traces the experiment and evaluates its array. Throws InputError for invalid input.
 PowerRun run_power(const RunOptions& options, const Console& console);
 
 }  // namespace photorque

@@ -31,6 +31,7 @@ class Facets {
  public:
   explicit Facets(const Scene& scene);
 
+  // Facets of an instance.
   std::span<const Facet> of(uint32_t instance) const {
     return std::span(facets_).subspan(first_[instance], first_[instance + 1] - first_[instance]);
   }

@@ -16,6 +16,7 @@ namespace photorque {
 // Force and torque about a point, x, y and z of each.
 using WrenchSum = Eigen::Array<double, 6, 1>;
 
+// Force and its torque about a point, for the lever arm from that point.
 WrenchSum wrench_of(const Vec3& force_N, const Vec3& lever_m);
 
 // Light of an emitter, with tables of its momentum per slab of heights above the aperture. A table

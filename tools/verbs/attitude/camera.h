@@ -14,6 +14,7 @@ struct CameraRun {
   RunResult result;
 };
 
+// Computes the attitude error of the camera by [camera_study]. Throws InputError for invalid input.
 CameraRun run_camera(const RunOptions& options, const Console& console);
 
 }  // namespace photorque

@@ -20,6 +20,7 @@ struct DiagnosisRun {
   std::string text;       // of the experiment, with the overrides of the command line
   bool of_light = false;  // recordings are scans, sweeps and runs of light instead of motion
 
+  // Text of diagnosis.json.
   std::string json() const;
   // HTML page of the findings, without a script.
   std::string report() const;
