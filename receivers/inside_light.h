@@ -32,7 +32,7 @@ class InsideLightReceiver final : public Receiver {
 
  private:
   std::vector<uint32_t> instances_;
-  // the number of parts for instances that are not monitored
+  // The number of parts for instances that are not monitored.
   std::vector<uint32_t> part_of_instance_;
 };
 

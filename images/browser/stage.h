@@ -108,7 +108,7 @@ struct SceneStage {
   // Rays of each light traced at some attitudes, from the lamp to their first hit: x, y, z of start
   // and end of each ray.
   std::vector<std::vector<float>> rays_of_light_lab_m;
-  // index of the light that a state shows; empty: each state shows its own
+  // Index of the light that a state shows; empty: each state shows its own.
   std::vector<size_t> light_of_state;
   StageCamera camera;
   double radius_m = 1.0;    // radius of a sphere about the origin that contains the body

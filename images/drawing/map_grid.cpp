@@ -105,7 +105,7 @@ bool is_round(const Map& map) {
 Map beyond_rim(Map map) {
   const double middle_x = 0.5 * (map.width - 1), middle_y = 0.5 * (map.height - 1);
   const double rim = std::min(middle_x, middle_y);
-  // in nodes: so far inside the rim all four surrounding nodes have values
+  // In nodes: so far inside the rim all four surrounding nodes have values.
   constexpr double step = 1.5;
   if (rim < 2.0 * step) return map;
   const auto extend = [&](const std::vector<double>& values) {

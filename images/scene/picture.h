@@ -28,7 +28,7 @@ struct SceneView {
   std::vector<float> cos_view;  // cosine between the normal and the ray back to the camera, 0 to 1
   std::vector<float> irradiance_W_m2;  // NaN: not on a receiver
   std::vector<Rgb> part_colour;
-  // fraction of the sample covered by rays of light, 0 to 1; empty: none
+  // Fraction of the sample covered by rays of light, 0 to 1; empty: none.
   std::vector<float> ray = {};
 
   int sample_columns() const { return width * oversampling; }

@@ -55,7 +55,7 @@ AngularTable::AngularTable(const Emitter& emitter, const std::vector<double>& ed
 // the interpolated intensity agrees with the emitter's.
 void AngularTable::add_segment(const Emitter& emitter, double low_rad, double high_rad,
                                int splits) {
-  // stays off the edges, because a profile may jump exactly there
+  // Stays off the edges, because a profile may jump exactly there.
   constexpr double inside = 1.0 - 1e-14;
   constexpr double tolerance = 1e-7;
   constexpr size_t stride = 17;  // tests the interpolation in every 17th interval

@@ -16,7 +16,7 @@ double tail_integral(double radius_m, double distance_m, double half_sine) {
   const double a = radius_m * radius_m + distance_m * distance_m;
   const double b = 2.0 * radius_m * distance_m;
   const double half_turn = std::asin(half_sine), turn = 2.0 * half_turn;
-  // below this ratio u is nearly constant and the closed form loses digits
+  // Below this ratio u is nearly constant and the closed form loses digits.
   constexpr double flat = 0.05;
   if (b < flat * a) {
     return integrate(

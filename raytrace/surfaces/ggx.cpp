@@ -32,7 +32,7 @@ double Ggx::distribution(const Vec3& normal) const {
 }
 
 Vec3 Ggx::visible_normal(const Vec3& towards_light, double u, double v) const {
-  // Stretch the frame: the facets become those of a hemisphere, seen as a disc that is cut along
+  // Scale the frame: the facets become those of a hemisphere, seen as a disc that is cut along
   // its middle.
   const Vec3 seen =
       Vec3(alpha * towards_light.x(), alpha * towards_light.y(), towards_light.z()).normalized();

@@ -42,7 +42,7 @@ void intersect_packets(const TraceableScene::Data& scene, size_t rays, Coherence
 // Converts records to columns; the columns are padded to a whole packet with copies of the last
 // ray.
 void load_rays(const RayList& rays, HitBuffer& buffer) {
-  // prefetch distance; reordered rays are read from anywhere in the batch
+  // Prefetch distance; reordered rays are read from anywhere in the batch.
   constexpr size_t ahead = 32;
   size_t i = 0;
   std::array<const float*, 8> rows;

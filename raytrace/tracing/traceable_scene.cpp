@@ -115,7 +115,7 @@ void add_instance(TraceableScene::Data& data, const Instance& instance) {
                             std::span(data.planes).subspan(data.first_triangle.back()));
   data.flat.push_back(flat ? 1 : 0);
   rtcCommitGeometry(geometry);
-  // its id equals the instance's index: both count from 0
+  // Its id equals the instance's index: both count from 0.
   rtcAttachGeometry(data.embree, geometry);
   rtcReleaseGeometry(geometry);
   const int bands = data.scene.bands.count();

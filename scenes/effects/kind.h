@@ -21,10 +21,9 @@ struct EffectParameter {
   enum class Form {
     offset,      // neutral + x
     reciprocal,  // 1/x
-    // refractive index of a glass with the loss x at 45° relative to a glass of index 2; glass
-    // above index 2 loses less again
+    // Refractive index of a glass with the loss x at 45° relative to a glass of index 2. (Glass
+    // above index 2 loses less again.)
     slant,
-    // light at 45°; beyond 2 glass takes less again
     tangent,  // atan x, of an angle
   };
   std::string key;           // name in diagnosis.json and in experiments, with its unit

@@ -67,7 +67,7 @@ void require_traceable(const Settings& source, const Beam& beam) {
 // Rejects scenes that are much smaller than this disc.
 void require_sunlight_to_land(const ExperimentFile& file, const Scene& scene,
                               const std::vector<Beam>& beams) {
-  // at this limit one ray in 10,000 meets the scene, and error estimates are still correct
+  // At this limit one ray in 10,000 meets the scene, and error estimates are still correct.
   constexpr double most = 100.0;
   if (std::ranges::none_of(beams, [](const Beam& beam) {
         return beam.aperture && std::isinf(beam.aperture->radius_m);
@@ -150,7 +150,7 @@ NamedReceiver make_receiver(const Settings& settings, const Scene& scene,
 std::vector<NamedReceiver> make_receivers(const ExperimentFile& file, const Scene& scene) {
   const std::vector<ReceiverKind> kinds = all_receiver_kinds();
   std::vector<NamedReceiver> receivers;
-  // receivers of equal kind and name would overwrite each other's files
+  // Receivers of equal kind and name would overwrite each other's files.
   std::set<std::pair<std::string, std::string>> taken;
   for (const Settings& settings : file.receivers) {
     receivers.push_back(make_receiver(settings, scene, kinds));

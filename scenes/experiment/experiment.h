@@ -76,7 +76,7 @@ struct ExperimentFile {
   std::filesystem::path path;
   // The whole file with overrides.
   Settings settings{SettingsNode{}};
-  // for Provenance: this file and the overrides
+  // For Provenance: this file and the overrides.
   std::vector<std::pair<std::string, std::string>> inputs;
 
   // Model of an optical run; empty if the file has no [scene].

@@ -135,7 +135,7 @@ std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const 
   if (file.effort.direct == TraceEffort::Direct::rays) return nullptr;
   if (file.trace.max_depth < TraceOptions{}.max_depth) return nullptr;
   SunlitEffort effort;
-  // scattered light is computed once for all directions
+  // Scattered light is computed once for all directions.
   constexpr uint64_t for_all = 64, most = 1ull << 24;
   const uint64_t rays = file.torque_map_rays.value_or(file.trace.rays);
   effort.scattered.rays = std::min(for_all * std::min(rays, most), most);

@@ -212,7 +212,7 @@ bool hits_tilt_limit(const PropagationResult& result) {
 // lamps in the worst direction all the time.
 std::optional<double> attitude_error_rad(const PropagationRun& run, const RotationTable& table,
                                          size_t groups) {
-  // for longer runs the derivatives take more time than the run
+  // For longer runs the derivatives take more time than the run.
   constexpr double longest_s = 3600.0;
   if (run.duration_s > longest_s) return {};
   const double torque_N_m = std::sqrt(3.0) * static_cast<double>(groups) * table.error().max[0];

@@ -51,7 +51,7 @@ class KeyTable {
   struct Group {
     std::string label;
     std::vector<std::pair<int, std::string>> lines;
-    // rows that have no rows below them and were printed with their meaning
+    // Rows that have no rows below them and were printed with their meaning.
     std::vector<Row> full = {};
   };
 

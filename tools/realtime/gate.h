@@ -31,7 +31,7 @@ inline constexpr std::array<const char*, static_cast<size_t>(Refusal::count)> re
 
 // An accepted packet.
 struct ClientPacket {
-  // a hello of another client, or of a client that has sent commands before
+  // A hello of another client, or of a client that has sent commands before.
   bool begins_session = false;
   photorque_packet_kind kind = PHOTORQUE_HELLO;
   photorque_command_packet command{};  // a hello and a goodbye have only its header

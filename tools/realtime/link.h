@@ -19,8 +19,8 @@ struct LinkSettings {
   enum class Jitter { exponential, uniform, gaussian };
   double delay_s = 0.0;  // minimum delay of a packet
   double jitter_s =
-      // in addition: mean of an exponential, width of a uniform, or scale of a half-normal
-      // distribution
+      // In addition: mean of an exponential, width of a uniform, or scale of a half-normal
+      // distribution.
       0.0;
   Jitter jitter = Jitter::exponential;
   double loss = 0.0;  // fraction of lost packets, independent of each other

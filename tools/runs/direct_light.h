@@ -21,7 +21,7 @@ struct DirectLight {
   double difference_sigma = 0.0;  // of the totals, in standard errors of both
   // Mean of (difference/error)² over the bins with enough rays; about 1 + 2/replicates.
   double mean_square = 0.0;
-  // pairs of bins and beams, by quadrature and by shadow rays
+  // Pairs of bins and beams, by quadrature and by shadow rays.
   size_t open_pairs = 0, shaded_pairs = 0;
   uint64_t shadow_rays = 0;
 };

@@ -17,7 +17,7 @@ namespace photorque {
 // A file in addition to those that the writers make from the product.
 struct RunFile {
   std::string name;
-  // writes to this path, completely or not at all
+  // Writes to this path, completely or not at all.
   std::function<void(const std::filesystem::path&)> write;
   std::string remark = {};  // printed with the file name
 };

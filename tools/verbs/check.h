@@ -15,7 +15,7 @@ struct CheckReport {
     std::string what;  // effect of the command, as a sentence
   };
   std::vector<Command> commands;
-  // commands with tables in the file that cannot run, and the reason
+  // Commands with tables in the file that cannot run, and the reason.
   std::vector<Command> impossible;
   std::vector<std::string> tables;  // tables of the file, in the order of the documents
   // Every key that is unknown, of the wrong type or out of range. For tables without such keys, the

@@ -31,7 +31,7 @@ std::vector<double> start_of(const SearchBox& box, const SweepPlan& plan,
     try {
       value = number_in(toml_text(identity.value({}, plan.axes[i].key))).value_or(value);
     } catch (const InputError&) {
-      // stated in another unit, or not stated
+      // Stated in another unit, or not stated.
     }
     start.push_back(std::clamp(value, box.low[i], box.high[i]));
   }

@@ -15,7 +15,7 @@ from .illumination import Box
 
 @dataclasses.dataclass(frozen=True)
 class Effect:
-    """An effect with its numbers as in truth.json: a number or a list of numbers per key."""
+    """An effect with its numbers as stated by truth.json: a number or a list of numbers per key."""
 
     kind: str
     index: int | None = None  # of a lamp, cell, string, bypass diode or wall

@@ -60,7 +60,8 @@ Facets::Facets(const Scene& scene) {
 // to 2e8 pairs; beyond this limit only the largest facets are compared.
 void Facets::find_free(double scene_radius_m) {
   constexpr size_t most_pairs = 200'000'000;
-  // of the scene's radius: in the facet's plane, to the precision of rays
+  // Fraction of the scene's radius: such corners are in the facet's plane, to the precision of
+  // rays.
   constexpr double rounding = 1e-6;
   std::vector<size_t> order(facets_.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = i;

@@ -32,7 +32,7 @@ class FacetQuadrature {
  private:
   static constexpr double tolerance = 2e-7;  // of all momentum of the beam, for each piece
   static constexpr double tiny = 0.1;        // of the length over which the light changes
-  // of the same length: pieces below this size are accurate enough
+  // Fraction of the same length: pieces below this size are accurate enough.
   static constexpr double smooth = 1.0;
   static constexpr int depth = 8;
 
@@ -129,7 +129,7 @@ WrenchSum wrench_of(const Vec3& force_N, const Vec3& lever_m) {
 }
 
 void BodyLight::reach(double low_m, double high_m) {
-  // of the largest height: nearer light is computed without a table
+  // Fraction of the largest height: nearer light is computed without a table.
   constexpr double nearest = 0.05;
   if (light_->parallel() || !(high_m > 0.0)) return;
   high_m_ = std::max(high_m_, high_m);

@@ -60,7 +60,7 @@ OnwardLight::OnwardLight(const TraceableScene& scene,
 }
 
 void OnwardLight::follow(std::vector<OnwardRay>& rays, double cutoff, const OnwardSink& sink) {
-  // the cutoff ends all light earlier, except between perfect mirrors
+  // The cutoff ends all light earlier, except between perfect mirrors.
   constexpr int deepest = 1000;
   std::vector<OnwardRay> next;
   std::vector<double> least_W, next_least_W;

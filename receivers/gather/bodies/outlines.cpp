@@ -154,7 +154,7 @@ void LineGrid::add(uint32_t index) {
       one = height_at(low_m_ + c / per_m_);
       other = height_at(low_m_ + (c + 1) / per_m_);
     }
-    // margin for rounding
+    // Margin for rounding.
     const double margin = 1e-9 / per_m_;
     const int bottom = column(std::min(one, other) - margin);
     const int top = column(std::max(one, other) + margin);

@@ -12,7 +12,7 @@ namespace photorque {
 namespace {
 
 constexpr size_t most_facets = 20'000;
-// largest half-angle of a light that is treated as a point for shadows
+// Largest half-angle of a light that is treated as a point for shadows.
 constexpr double widest_rad = 1.0 * degree_rad;
 constexpr double rounding = 1e-7;     // of the scene's size: counts as in the facet's plane
 constexpr double least_piece = 1e-6;  // of the total area: smaller pieces are not cut

@@ -112,7 +112,7 @@ class FacetSampler {
     const size_t dimension = directed ? 0 : 2;
     const double share_m2 = facet.area_m2 / static_cast<double>(sampled.points);
     for (size_t i = first; i < first + count; ++i) {
-      // area-preserving map of the unit square to the triangle
+      // Area-preserving map of the unit square to the triangle.
       const double root = std::sqrt(sobol_fraction(samples_.bits[dimension][i]));
       const double t = sobol_fraction(samples_.bits[dimension + 1][i]);
       const Vec3 at = origin + root * (1.0 - t) * edge1 + root * t * edge2;

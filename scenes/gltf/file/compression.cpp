@@ -7,7 +7,7 @@ namespace photorque::gltf {
 using nlohmann::json;
 
 void decompress(Document* document, MemoryBudget* budget) {
-  // first, because Draco data may lie in a view that it decodes
+  // First, because Draco data may lie in a view that it decodes.
   decode_meshopt_views(document, budget);
   decode_draco_primitives(document, budget);
 }
