@@ -4,7 +4,6 @@
 // preserves f(i, o) = f(o, i). The reflectance ρ(θ_i) = ∫ f cos θ_o do, the leaving momentum and
 // the distribution of directions are those of this interpolant, to rounding. Hence power and
 // momentum balance. A peak narrower than the node spacing is broadened to the spacing.
-// are.
 #pragma once
 
 #include <cstddef>
