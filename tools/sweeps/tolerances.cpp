@@ -14,7 +14,7 @@ double number_of_node(const SettingsNode& node) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-// A number or an array of numbers; throws InputError for other values.
+// A number or an array of numbers; empty for other values.
 std::vector<double> numbers_of_node(const SettingsNode& node) {
   std::vector<double> all;
   if (const auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
